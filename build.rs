@@ -1,0 +1,2 @@
+//! Finds Embree and generates its bindings.
+fn main() {}

@@ -1,0 +1,48 @@
+//! The ray of every query: a point, a direction of any length and a range.
+
+use glam::DVec3;
+
+/// The set of points `origin + t * direction` with `t_min <= t <= t_max`.
+///
+/// The direction need not have unit length; `t` counts in lengths of
+/// `direction`, and keeps that meaning through placements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// The point at `t = 0`.
+    pub origin: DVec3,
+    /// Any finite vector that is not zero.
+    pub direction: DVec3,
+    /// Least `t` that counts; may be negative or minus infinity.
+    pub t_min: f64,
+    /// Greatest `t` that counts; may be infinite.
+    pub t_max: f64,
+}
+
+impl Ray {
+    /// The half line that starts at `origin`: `t` in `[0, inf]`.
+    #[must_use]
+    pub fn new(origin: DVec3, direction: DVec3) -> Self {
+        Self {
+            origin,
+            direction,
+            t_min: 0.0,
+            t_max: f64::INFINITY,
+        }
+    }
+
+    /// The point at parameter `t`, rounded to f64.
+    #[must_use]
+    pub fn at(&self, t: f64) -> DVec3 {
+        self.origin + self.direction * t
+    }
+
+    /// Whether the ray can hit anything: origin and direction are finite, the
+    /// direction is not zero, and the range is not empty (NaN makes it empty).
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        self.origin.is_finite()
+            && self.direction.is_finite()
+            && self.direction != DVec3::ZERO
+            && self.t_min <= self.t_max
+    }
+}

@@ -1,0 +1,205 @@
+//! The validated description of a scene: everything `tracer` and `render` need,
+//! nothing of the files it came from.
+
+use glam::{DAffine3, DVec3};
+
+use crate::solid::{Caps, Cylinder};
+
+/// A whole scene. What it holds has been checked when it was loaded.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// All prototypes; the first is the root, the scene itself. Prototypes
+    /// refer to each other by index and never in a cycle.
+    pub prototypes: Vec<Prototype>,
+    /// All materials; the first is the default one.
+    pub materials: Vec<Material>,
+    /// The camera of `render`.
+    pub camera: Camera,
+    /// The picture's size.
+    pub film: Film,
+    /// What `render` computes unless the command line says otherwise.
+    pub render: RenderSettings,
+    /// The sun, where there is one.
+    pub sun: Option<Sun>,
+    /// The sky, where there is one.
+    pub sky: Option<Sky>,
+    /// Linear RGB seen where a camera ray misses and there is no sky.
+    pub background: DVec3,
+    /// Rows of tables left out because `degenerate = "skip"` was asked for.
+    pub skipped_rows: u64,
+}
+
+/// The position of a prototype in [`Scene::prototypes`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PrototypeIndex(pub u32);
+
+impl PrototypeIndex {
+    /// The scene itself.
+    pub const ROOT: Self = Self(0);
+}
+
+/// The position of a material in [`Scene::materials`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct MaterialIndex(pub u16);
+
+/// A named list of solids and of placements of other prototypes.
+#[derive(Clone, Debug, Default)]
+pub struct Prototype {
+    /// The name in the scene file; empty for the root.
+    pub name: String,
+    /// The cylinders, in the order of their primitive numbers.
+    pub cylinders: Vec<CylinderRecord>,
+    /// The placements, in the order of their instance numbers.
+    pub placements: Vec<Placement>,
+}
+
+/// Another prototype put into this one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// What is placed.
+    pub of: PrototypeIndex,
+    /// Takes points of the placed prototype to points of the one it is placed
+    /// in: `L x + translation`, with finite entries and `L` regular.
+    pub parent_from_child: DAffine3,
+}
+
+/// A cylinder with its number and material, in one cache line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub struct CylinderRecord {
+    p0: DVec3,
+    p1: DVec3,
+    radius: f64,
+    primitive: u32,
+    material: MaterialIndex,
+    caps: Caps,
+}
+
+const _: () = assert!(size_of::<CylinderRecord>() == 64);
+
+impl CylinderRecord {
+    /// The record of a cylinder. `primitive` is its number within its
+    /// prototype, as `trace` reports it.
+    #[must_use]
+    pub fn new(cylinder: &Cylinder, primitive: u32, material: MaterialIndex) -> Self {
+        Self {
+            p0: cylinder.p0(),
+            p1: cylinder.p1(),
+            radius: cylinder.radius(),
+            primitive,
+            material,
+            caps: cylinder.caps(),
+        }
+    }
+
+    /// The number within the prototype.
+    #[must_use]
+    pub fn primitive(&self) -> u32 {
+        self.primitive
+    }
+
+    /// The material.
+    #[must_use]
+    pub fn material(&self) -> MaterialIndex {
+        self.material
+    }
+}
+
+/// How a surface scatters light: a diffuse one, for now.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// The name in the scene file; empty for the default material.
+    pub name: String,
+    /// Linear RGB reflectance, each in [0, 1].
+    pub color: DVec3,
+}
+
+/// Where the picture is taken from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// The kind of projection.
+    pub projection: Projection,
+    /// The viewpoint.
+    pub frame: Frame,
+}
+
+/// How points are projected on the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Through a point.
+    Perspective {
+        /// The vertical angle of view, in degrees, between 0 and 180.
+        fov_degrees: f64,
+    },
+    /// Along parallel lines.
+    Orthographic {
+        /// Scene units across the picture's height; `None` fits the scene.
+        height: Option<f64>,
+    },
+}
+
+/// How the viewpoint is found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Frame {
+    /// So that the whole scene is in the picture.
+    Auto,
+    /// As stated.
+    LookAt {
+        /// The eye.
+        position: DVec3,
+        /// A point in the middle of the picture, other than `position`.
+        look_at: DVec3,
+        /// The direction that is upward in the picture, not along the view.
+        up: DVec3,
+    },
+}
+
+/// The size of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Film {
+    /// Pixels across, at least 1.
+    pub width: u32,
+    /// Pixels down, at least 1.
+    pub height: u32,
+}
+
+/// What `render` computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RenderSettings {
+    /// The picture's meaning.
+    pub integrator: Integrator,
+    /// Samples a pixel, at least 1.
+    pub spp: u32,
+}
+
+/// What a pixel shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Integrator {
+    /// The world normal as a colour.
+    Normal,
+    /// Ambient occlusion.
+    Ao,
+    /// Sun and sky with shadows.
+    #[default]
+    Sun,
+}
+
+/// A light at infinity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sun {
+    /// Unit vector towards the sun.
+    pub direction: DVec3,
+    /// Linear RGB.
+    pub color: DVec3,
+    /// Factor on `color`; irradiance on a surface that faces the sun.
+    pub strength: f64,
+}
+
+/// Light from every direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sky {
+    /// Linear RGB.
+    pub color: DVec3,
+    /// Factor on `color`.
+    pub strength: f64,
+}

@@ -1,0 +1,8 @@
+//! The scene as the user states it, in f64, and the files it is read from.
+
+mod description;
+
+pub use description::{
+    Camera, CylinderRecord, Film, Frame, Integrator, Material, MaterialIndex, Placement,
+    Projection, Prototype, PrototypeIndex, RenderSettings, Scene, Sky, Sun,
+};

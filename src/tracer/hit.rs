@@ -1,0 +1,58 @@
+//! What a query answers.
+
+use glam::DVec3;
+
+use crate::math::Ray;
+use crate::scene::{MaterialIndex, PrototypeIndex};
+use crate::solid::{Crossing, Part, SolidKind};
+
+/// A point where a ray meets the surface of a solid, in world space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hit {
+    /// The ray's parameter.
+    pub t: f64,
+    /// The hit point, put onto the surface.
+    pub point: DVec3,
+    /// Bounds the distance of `point` from the true surface, in scene units.
+    pub error: f64,
+    /// Outward unit normal.
+    pub normal: DVec3,
+    /// Angle around the axis divided by 2π, in [0, 1).
+    pub u: f64,
+    /// Axial position from `p0` to `p1`, in [0, 1].
+    pub v: f64,
+    /// The prototype that holds the solid.
+    pub prototype: PrototypeIndex,
+    /// The kind of solid.
+    pub solid: SolidKind,
+    /// The solid's number within its prototype.
+    pub primitive: u32,
+    /// The part of the surface.
+    pub part: Part,
+    /// Whether the ray goes into the solid or out of it.
+    pub crossing: Crossing,
+    /// The placements from the root to the prototype, outermost first.
+    pub instance: Vec<u32>,
+    /// The solid's material.
+    pub material: MaterialIndex,
+    /// How far along the normal a new ray has to start.
+    pub(crate) spawn_offset: f64,
+}
+
+impl Hit {
+    /// A ray that leaves the surface here, towards `direction`, and does not
+    /// meet it again where it starts: it begins on the side that `direction`
+    /// points to.
+    #[must_use]
+    pub fn spawn(&self, direction: DVec3) -> Ray {
+        let side = if direction.dot(self.normal) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        Ray::new(
+            self.point + self.normal * (side * self.spawn_offset),
+            direction,
+        )
+    }
+}
