@@ -47,6 +47,24 @@ impl Bounds {
         self.upper - self.lower
     }
 
+    /// The box that holds one point only.
+    #[must_use]
+    pub fn at(point: DVec3) -> Self {
+        Self {
+            lower: point,
+            upper: point,
+        }
+    }
+
+    /// The box with every face moved outward by `distance`.
+    #[must_use]
+    pub fn grown(&self, distance: f64) -> Self {
+        Self {
+            lower: self.lower - distance,
+            upper: self.upper + distance,
+        }
+    }
+
     /// The next greater box: every coordinate moves outward by one ulp, which
     /// makes up for one rounding to nearest.
     #[must_use]
