@@ -150,13 +150,15 @@ fn compile_shim(embree: &Embree) {
 }
 
 fn link(embree: &Embree) {
+    let loader_looks_there = ["/usr/lib", "/usr/lib64"]
+        .iter()
+        .any(|known| embree.library_directory.starts_with(known));
     let directory = embree.library_directory.display();
     println!("cargo::rustc-link-search=native={directory}");
     println!("cargo::rustc-link-lib={}", embree.library);
     println!("cargo::metadata=lib_dir={directory}");
     let windows = env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "windows");
-    if !embree.is_system && !windows {
-        // The loader doesn't look here by itself.
+    if !loader_looks_there && !windows {
         println!("cargo::rustc-link-arg=-Wl,-rpath,{directory}");
     }
 }
