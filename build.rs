@@ -74,7 +74,9 @@ fn fail(message: &str) -> ! {
     for line in message.lines() {
         println!("cargo::error={line}");
     }
-    exit(1)
+    // An error line is failure enough. With another exit code cargo would
+    // repeat all that was printed, and the message would drown in it.
+    exit(0)
 }
 
 /// Keeps only [`CONSTANTS`], so that an unused binding is a warning.
@@ -112,8 +114,7 @@ fn bind(embree: &Embree) {
         .generate_comments(false)
         .use_core();
 
-    // bindgen panics when there is no libclang; the panic's own text has been
-    // printed by then, the way out is added here.
+    // bindgen panics when there is no libclang; the way out is added here.
     let generated = panic::catch_unwind(panic::AssertUnwindSafe(|| builder.generate()));
     let bindings = match generated {
         Ok(Ok(bindings)) => bindings,
@@ -121,12 +122,14 @@ fn bind(embree: &Embree) {
             "Embree's headers in {} could not be read: {error}",
             embree.include.display()
         )),
-        Err(_) => fail(
-            "bindgen could not run, most likely for want of libclang. `sh setup.sh` installs it; by hand:\n  \
-             apt install libclang-dev | dnf install clang-devel | pacman -S clang | brew install llvm | \
-             conda install -c conda-forge libclang\n\
+        Err(panic) => fail(&format!(
+            "bindgen could not run: {}\n\
+             It needs libclang, which `sh setup.sh` installs; by hand:\n  \
+             apt install libclang-dev\n  dnf install clang-devel\n  pacman -S clang\n  \
+             brew install llvm\n  conda install -c conda-forge libclang\n\
              LIBCLANG_PATH names its directory when it is in an unusual place.",
-        ),
+            panic.downcast_ref::<String>().map_or("", String::as_str)
+        )),
     };
     let target = Path::new(&env::var("OUT_DIR").expect("cargo sets OUT_DIR")).join("embree.rs");
     if let Err(error) = bindings.write_to_file(&target) {
@@ -147,13 +150,15 @@ fn compile_shim(embree: &Embree) {
 }
 
 fn link(embree: &Embree) {
+    let loader_looks_there = ["/usr/lib", "/usr/lib64"]
+        .iter()
+        .any(|known| embree.library_directory.starts_with(known));
     let directory = embree.library_directory.display();
     println!("cargo::rustc-link-search=native={directory}");
     println!("cargo::rustc-link-lib={}", embree.library);
     println!("cargo::metadata=lib_dir={directory}");
     let windows = env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "windows");
-    if !embree.is_system && !windows {
-        // The loader doesn't look here by itself.
+    if !loader_looks_there && !windows {
         println!("cargo::rustc-link-arg=-Wl,-rpath,{directory}");
     }
 }

@@ -23,6 +23,8 @@ pub const VARIABLES: [&str; 10] = [
 ];
 
 const OLDEST: (u32, u32) = (3, 12);
+/// Later minor versions than were tried are let in: they have only ever added,
+/// and the start-up guard looks at the hit layout.
 const NEWEST_MAJOR: u32 = 4;
 
 const INSTALL: &str = "\
@@ -45,8 +47,6 @@ pub struct Embree {
     pub library_directory: PathBuf,
     /// The library's name for the linker, such as `embree3`.
     pub library: String,
-    /// Whether the loader looks into the library's directory by itself.
-    pub is_system: bool,
 }
 
 impl Embree {
@@ -60,12 +60,10 @@ impl Embree {
 struct Place {
     include: PathBuf,
     libraries: Vec<PathBuf>,
-    is_system: bool,
 }
 
 /// Finds Embree by the variables that `environment` reads, then under the
-/// prefixes `system`, whose libraries for the processor `arch` the loader
-/// knows. Version 4 wins over 3 within a place, unless `EMBREE_MAJOR` says
+/// prefixes `system`, for the processor `arch`. Version 4 wins over 3 within a place, unless `EMBREE_MAJOR` says
 /// which one is wanted.
 ///
 /// # Errors
@@ -104,7 +102,6 @@ pub fn locate(
                         include: place.include,
                         library_directory: directory.clone(),
                         library,
-                        is_system: place.is_system,
                     });
                 }
                 searched.push(format!("{}/lib{library}.*", directory.display()));
@@ -125,30 +122,29 @@ fn places(set: &impl Fn(&str) -> Option<String>, system: &[PathBuf], arch: &str)
         return vec![Place {
             include: include.into(),
             libraries: vec![library.into()],
-            is_system: false,
         }];
     }
     if let Some(prefix) = set("EMBREE_DIR") {
-        return vec![under(Path::new(&prefix), arch, false)];
+        return vec![under(Path::new(&prefix), arch)];
     }
     let mut places = Vec::new();
     for name in ["CONDA_PREFIX", "HOMEBREW_PREFIX"] {
         if let Some(prefix) = set(name) {
-            places.push(under(Path::new(&prefix), arch, false));
+            places.push(under(Path::new(&prefix), arch));
         }
     }
     let installed = set("VCPKG_INSTALLED_DIR")
         .map(PathBuf::from)
         .or_else(|| set("VCPKG_ROOT").map(|root| Path::new(&root).join("installed")));
     if let (Some(installed), Some(triplet)) = (installed, set("VCPKG_DEFAULT_TRIPLET")) {
-        places.push(under(&installed.join(triplet), arch, false));
+        places.push(under(&installed.join(triplet), arch));
     }
-    places.extend(system.iter().map(|prefix| under(prefix, arch, true)));
+    places.extend(system.iter().map(|prefix| under(prefix, arch)));
     places
 }
 
 /// The usual subdirectories of a prefix.
-fn under(prefix: &Path, arch: &str, is_system: bool) -> Place {
+fn under(prefix: &Path, arch: &str) -> Place {
     let libraries = [
         format!("lib/{arch}-linux-gnu"),
         "lib64".into(),
@@ -157,7 +153,6 @@ fn under(prefix: &Path, arch: &str, is_system: bool) -> Place {
     Place {
         include: prefix.join("include"),
         libraries: libraries.iter().map(|name| prefix.join(name)).collect(),
-        is_system,
     }
 }
 

@@ -78,8 +78,9 @@ struct Parts {
 /// once, also when the scene is never committed.
 pub struct SceneBuilder<Q: 'static> {
     parts: Parts,
-    // `Cell` keeps builders from being shared between threads.
-    query: PhantomData<(Cell<()>, fn(&mut Q))>,
+    query: PhantomData<fn(&mut Q)>,
+    /// A `Cell` may not be shared between threads, so a builder may not.
+    unshared: PhantomData<Cell<()>>,
 }
 
 impl<Q: 'static> SceneBuilder<Q> {
@@ -103,6 +104,7 @@ impl<Q: 'static> SceneBuilder<Q> {
                 device: device.clone(),
             },
             query: PhantomData,
+            unshared: PhantomData,
         })
     }
 

@@ -9,6 +9,10 @@
     non_upper_case_globals,
     reason = "the names are Embree's"
 )]
+#![allow(
+    clippy::allow_attributes_without_reason,
+    reason = "bindgen writes such attributes"
+)]
 
 use std::mem::offset_of;
 
