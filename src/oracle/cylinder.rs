@@ -21,9 +21,10 @@
 
 use std::cmp::Ordering;
 
+use super::affine::ExactAffine;
 use super::number::{Exact, ExactVector, Surd, exact, long, sign, to_f64, zero};
 use crate::math::Ray;
-use crate::solid::{Crossing, Cylinder, Part};
+use crate::solid::{Caps, Crossing, Cylinder, Part};
 
 /// The exact answer for one ray and one cylinder.
 #[derive(Clone, Debug)]
@@ -62,9 +63,10 @@ struct Candidate {
     crossing: Crossing,
 }
 
-/// The line and the cylinder in exact numbers.
-struct Problem<'a> {
-    cylinder: &'a Cylinder,
+/// The line and the cylinder in exact numbers, in any unit of length.
+struct Problem {
+    caps: Caps,
+    a: ExactVector,
     x: ExactVector,
     d: ExactVector,
     aa: Exact,
@@ -79,42 +81,47 @@ struct Problem<'a> {
 /// When the ray is not valid ([`Ray::is_valid`]).
 #[must_use]
 pub fn first_hit(cylinder: &Cylinder, ray: &Ray) -> CylinderTruth {
+    placed_first_hit(cylinder, &ExactAffine::identity(), ray)
+}
+
+/// The same for a cylinder that is placed in the ray's space.
+///
+/// The ray is taken to the cylinder's space by the adjugate of the placement's
+/// matrix, which is its inverse times its determinant; the cylinder is
+/// enlarged by the determinant to match.
+///
+/// # Panics
+/// When the ray is not valid, or the placement's matrix is singular.
+#[must_use]
+pub fn placed_first_hit(
+    cylinder: &Cylinder,
+    world_from_object: &ExactAffine,
+    ray: &Ray,
+) -> CylinderTruth {
     assert!(ray.is_valid(), "the oracle was asked about {ray:?}");
-    let p0 = ExactVector::new(cylinder.p0());
-    let a = &ExactVector::new(cylinder.p1()) - &p0;
-    let x = &ExactVector::new(ray.origin) - &p0;
-    let d = ExactVector::new(ray.direction);
-    let radius = exact(cylinder.radius());
+    let (adjugate, determinant) = world_from_object.adjugate();
+    assert!(
+        sign(&determinant) != Ordering::Equal,
+        "the placement is singular"
+    );
+    let p0 = ExactVector::new(cylinder.p0()).times(&determinant);
+    let p1 = ExactVector::new(cylinder.p1()).times(&determinant);
+    let radius = exact(cylinder.radius()) * &determinant;
+    let origin = &ExactVector::new(ray.origin) - world_from_object.translation();
+    let x = &adjugate.times(&origin) - &p0;
+    let d = adjugate.times(&ExactVector::new(ray.direction));
+    let a = &p1 - &p0;
     let problem = Problem {
-        cylinder,
+        caps: cylinder.caps(),
         aa: a.dot(&a),
         ax: a.dot(&x),
         ad: a.dot(&d),
         rr: &radius * &radius,
+        a,
         x,
         d,
     };
-
-    let mut candidates = Vec::new();
-    let wall_gap = problem.list_wall(ray, &mut candidates);
-    if sign(&problem.ad) != Ordering::Equal {
-        problem.list_disc(&a, Part::Cap0, &mut candidates);
-        problem.list_disc(&a, Part::Cap1, &mut candidates);
-    }
-    let in_range = |candidate: &Candidate| {
-        candidate.t.cmp_f64(ray.t_min) != Ordering::Less
-            && candidate.t.cmp_f64(ray.t_max) != Ordering::Greater
-    };
-    let first = candidates
-        .into_iter()
-        .filter(in_range)
-        .min_by(|one, other| one.t.cmp_exact(&other.t).then(rank(one).cmp(&rank(other))));
-    let hit = first.map(|first| TrueHit {
-        t: first.t.value(),
-        part: first.part,
-        crossing: first.crossing,
-    });
-    CylinderTruth { hit, wall_gap }
+    problem.solve(ray)
 }
 
 /// Of two candidates at one `t`, the disc and the entry come first.
@@ -122,12 +129,35 @@ fn rank(candidate: &Candidate) -> (bool, Crossing) {
     (candidate.part == Part::Side, candidate.crossing)
 }
 
-impl Problem<'_> {
+impl Problem {
+    fn solve(&self, ray: &Ray) -> CylinderTruth {
+        let mut candidates = Vec::new();
+        let wall_gap = self.list_wall(ray, &mut candidates);
+        if sign(&self.ad) != Ordering::Equal {
+            self.list_disc(Part::Cap0, &mut candidates);
+            self.list_disc(Part::Cap1, &mut candidates);
+        }
+        let in_range = |candidate: &Candidate| {
+            candidate.t.cmp_f64(ray.t_min) != Ordering::Less
+                && candidate.t.cmp_f64(ray.t_max) != Ordering::Greater
+        };
+        let first = candidates
+            .into_iter()
+            .filter(in_range)
+            .min_by(|one, other| one.t.cmp_exact(&other.t).then(rank(one).cmp(&rank(other))));
+        let hit = first.map(|first| TrueHit {
+            t: first.t.value(),
+            part: first.part,
+            crossing: first.crossing,
+        });
+        CylinderTruth { hit, wall_gap }
+    }
+
     fn has(&self, part: Part) -> bool {
         match part {
             Part::Side => true,
-            Part::Cap0 => self.cylinder.caps().at_p0(),
-            Part::Cap1 => self.cylinder.caps().at_p1(),
+            Part::Cap0 => self.caps.at_p0(),
+            Part::Cap1 => self.caps.at_p1(),
         }
     }
 
@@ -249,13 +279,13 @@ impl Problem<'_> {
     }
 
     /// Lists where a line that is not parallel to the discs meets one.
-    fn list_disc(&self, a: &ExactVector, cap: Part, candidates: &mut Vec<Candidate>) {
+    fn list_disc(&self, cap: Part, candidates: &mut Vec<Candidate>) {
         if !self.has(cap) {
             return;
         }
         // From the disc's middle: y = x or x - a, a·y + t a·d = 0.
         let (y, ay) = match cap {
-            Part::Cap1 => (&self.x - a, &self.ax - &self.aa),
+            Part::Cap1 => (&self.x - &self.a, &self.ax - &self.aa),
             _ => (self.x.clone(), self.ax.clone()),
         };
         // The point times a·d, so that nothing is divided.
@@ -282,7 +312,6 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::solid::Caps;
 
     fn answer(
         caps: Caps,

@@ -170,6 +170,25 @@ impl ExactVector {
     }
 }
 
+impl ExactVector {
+    /// The vector product.
+    #[must_use]
+    pub fn cross(&self, other: &Self) -> Self {
+        let [a, b] = [&self.0, &other.0];
+        Self([
+            &a[1] * &b[2] - &a[2] * &b[1],
+            &a[2] * &b[0] - &a[0] * &b[2],
+            &a[0] * &b[1] - &a[1] * &b[0],
+        ])
+    }
+
+    /// The length, rounded to f64 in the last step only.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        to_f64(&long(&self.dot(self)).sqrt())
+    }
+}
+
 impl Add for &ExactVector {
     type Output = ExactVector;
 
