@@ -4,14 +4,12 @@
 //! `CYLTRACE_RAYS=1000000 cargo test --release --test traversal` is the full
 //! run; the default is a tenth of it.
 
+mod support;
+
 use std::sync::Arc;
 
 use cyltrace::math::{Random, Ray};
-use cyltrace::scene::{
-    Camera, CylinderRecord, Film, Frame, MaterialIndex, Placement, Projection, Prototype,
-    PrototypeIndex, RenderSettings, Scene,
-};
-use cyltrace::solid::{Caps, Cylinder};
+use cyltrace::scene::{CylinderRecord, Placement, Prototype, PrototypeIndex};
 use cyltrace::tracer::{Options, Tracer};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
@@ -20,53 +18,6 @@ const SEED: u64 = 20_261_122;
 
 fn ray_count() -> u64 {
     std::env::var("CYLTRACE_RAYS").map_or(100_000, |count| count.parse().expect("a number"))
-}
-
-fn scene_of(prototypes: Vec<Prototype>) -> Arc<Scene> {
-    Arc::new(Scene {
-        prototypes,
-        materials: Vec::new(),
-        camera: Camera {
-            projection: Projection::Perspective { fov_degrees: 40.0 },
-            frame: Frame::Auto,
-        },
-        film: Film {
-            width: 1,
-            height: 1,
-        },
-        render: RenderSettings {
-            integrator: Default::default(),
-            spp: 1,
-        },
-        sun: None,
-        sky: None,
-        background: DVec3::ZERO,
-        skipped_rows: 0,
-    })
-}
-
-/// `count` cylinders in the unit cube: long and short, thick and thin, of all
-/// cap kinds, along an axis or not, some of them twice.
-fn cylinders_in_a_box(count: u32) -> Vec<CylinderRecord> {
-    let mut random = Random::new(SEED, 1);
-    let mut records: Vec<CylinderRecord> = Vec::new();
-    for primitive in 0..count {
-        let p0 = DVec3::new(random.unit(), random.unit(), random.unit());
-        let heading = match random.below(3) {
-            0 => DVec3::AXES[random.below(3) as usize],
-            _ => random.direction(),
-        };
-        let p1 = p0 + heading * random.log_uniform(1e-3, 0.5);
-        let radius = random.log_uniform(1e-5, 5e-2);
-        let caps = [Caps::None, Caps::P0, Caps::P1, Caps::Both][random.below(4) as usize];
-        let mut cylinder = Cylinder::new(p0, p1, radius, caps).unwrap();
-        if random.below(20) == 0 && primitive > 0 {
-            let twin = random.below(u64::from(primitive)) as usize;
-            cylinder = records[twin].cylinder();
-        }
-        records.push(CylinderRecord::new(&cylinder, primitive, MaterialIndex(0)));
-    }
-    records
 }
 
 /// A ray at a cylinder of the unit cube from up to `reach` away, with any
@@ -131,18 +82,7 @@ fn assert_nothing_lost(name: &str, tracer: &Tracer, ray_of: impl Fn(&mut Random)
             let ray = ray_of(&mut Random::new(SEED, 1000 + number));
             let found = tracer.closest(&ray);
             let truth = tracer.closest_exhaustive(&ray);
-            let bits = |v: f64| format!("{:#018x}", v.to_bits());
-            let replay = || {
-                let numbers: Vec<String> = ray
-                    .origin
-                    .to_array()
-                    .into_iter()
-                    .chain(ray.direction.to_array())
-                    .chain([ray.t_min, ray.t_max])
-                    .map(bits)
-                    .collect();
-                format!("{name}, seed {SEED}, ray {number}: {}", numbers.join(" "))
-            };
+            let replay = || format!("{name}, seed {SEED}, ray {number}: {}", support::bits(&ray));
             assert_eq!(found, truth, "{}", replay());
             assert_eq!(tracer.occluded(&ray), truth.is_some(), "{}", replay());
             u64::from(truth.is_some())
@@ -158,23 +98,15 @@ fn assert_nothing_lost(name: &str, tracer: &Tracer, ray_of: impl Fn(&mut Random)
 
 #[test]
 fn box_of_cylinders_loses_no_hit() {
-    let cylinders = cylinders_in_a_box(1000);
+    let cylinders = support::cylinders_in_a_box(SEED, 1000);
     let root = Prototype {
         cylinders: cylinders.clone(),
         ..Default::default()
     };
-    let tracer = Tracer::new(scene_of(vec![root]), &Options::default()).unwrap();
+    let tracer = Tracer::new(support::scene_of(vec![root]), &Options::default()).unwrap();
     for (name, reach) in [("near", 1e2), ("far", 1e8)] {
         assert_nothing_lost(name, &tracer, |random| ray_at(random, &cylinders, reach));
     }
-}
-
-fn random_rotation(random: &mut Random) -> DMat3 {
-    let axis = random.direction();
-    let across = axis.any_orthonormal_vector();
-    let (sin, cos) = libm::sincos(random.uniform(0.0, std::f64::consts::TAU));
-    let turned = across * cos + axis.cross(across) * sin;
-    DMat3::from_cols(axis, turned, axis.cross(turned))
 }
 
 /// Three levels of placements with translations up to 1e7 extents and scales
@@ -188,16 +120,16 @@ fn nested_placements_lose_no_hit() {
             0 => DVec3::ONE,
             _ => DVec3::new(1.0, random.uniform(0.2, 1.0), random.uniform(1.0, 5.0)),
         };
-        let matrix = random_rotation(&mut random)
+        let matrix = support::random_rotation(&mut random)
             * DMat3::from_diagonal(stretch * scale)
-            * random_rotation(&mut random);
+            * support::random_rotation(&mut random);
         let offset = random.direction() * (scale * translation);
         Placement {
             of: PrototypeIndex(of),
             parent_from_child: DAffine3::from_mat3_translation(matrix, offset),
         }
     };
-    let cylinders = cylinders_in_a_box(100);
+    let cylinders = support::cylinders_in_a_box(SEED, 100);
     let leaf = Prototype {
         cylinders: cylinders.clone(),
         ..Default::default()
@@ -215,7 +147,7 @@ fn nested_placements_lose_no_hit() {
             placements: vec![place(1, translation)],
             ..Default::default()
         };
-        let scene = scene_of(vec![root, outer.clone(), middle.clone(), leaf.clone()]);
+        let scene = support::scene_of(vec![root, outer.clone(), middle.clone(), leaf.clone()]);
         let tracer = Tracer::new(Arc::clone(&scene), &Options::default()).unwrap();
         let bounds = tracer.bounds();
         // The placed prototypes are far apart and small against their distance:

@@ -15,6 +15,12 @@ impl ExactMatrix {
         ExactVector(std::array::from_fn(|row| self.0[row].dot(vector)))
     }
 
+    /// The image of a vector under the transposed matrix.
+    #[must_use]
+    pub fn times_from_left(&self, vector: &ExactVector) -> ExactVector {
+        ExactVector(self.columns().map(|column| column.dot(vector)))
+    }
+
     fn columns(&self) -> [ExactVector; 3] {
         std::array::from_fn(|column| {
             ExactVector(std::array::from_fn(|row| self.0[row].0[column].clone()))
