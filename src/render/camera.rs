@@ -15,8 +15,8 @@ use crate::scene::{self, Film, Frame, Projection};
 const MARGIN: f64 = 0.04;
 
 /// From the scene towards the eye of an automatic frame: a three-quarter view
-/// from the front right, about 25 degrees above the horizon.
-const AUTO_EYE: DVec3 = DVec3::new(0.5, -0.75, 0.42);
+/// from the front right, about 28 degrees above the horizon.
+const AUTO_EYE: DVec3 = DVec3::new(0.5, -0.75, 0.48);
 
 /// The least distance from the eye of an automatic perspective to the nearest
 /// corner of the scene's box, in diagonals of the box. Without it a wide
@@ -131,26 +131,27 @@ impl Camera {
     }
 
     /// Moves the eye of a perspective to the nearest place along the view
-    /// from where all corners are in the picture, margin included.
+    /// from where all corners are in the picture, margin included, and
+    /// sideways so that what is left free is the same on opposite sides.
     ///
     /// With the slope `s` of the picture's edge, a corner (x, z) is left of
     /// the right edge when `x - shift <= s (z + distance)`, and likewise on
     /// the other side. So `distance >= max(x/s - z) - shift/s` and
-    /// `distance >= max(-x/s - z) + shift/s`; both bounds meet at the shift
-    /// that allows the least distance, which then is [`CLEARANCE`] at least.
+    /// `distance >= max(-x/s - z) + shift/s`; some shift allows the mean of
+    /// both maxima, and none allows less.
     fn step_back(&mut self, corners: &[DVec3; 8]) {
         let slope = self.half * (1.0 - 2.0 * MARGIN);
-        let along = |x_over_slope: &dyn Fn(&DVec3) -> f64| {
-            greatest(corners.iter().map(|c| x_over_slope(c) - c.z))
-        };
-        let (from_right, from_left) = (along(&|c| c.x / slope.x), along(&|c| -c.x / slope.x));
-        let (from_top, from_bottom) = (along(&|c| c.y / slope.y), along(&|c| -c.y / slope.y));
-        let shift = slope * DVec2::new(from_right - from_left, from_top - from_bottom) * 0.5;
-        let fitting = 0.5 * (from_right + from_left).max(from_top + from_bottom);
+        let reach =
+            |x: fn(&DVec3) -> f64, s: f64| greatest(corners.iter().map(move |c| x(c) / s - c.z));
+        let across = 0.5 * (reach(|c| c.x, slope.x) + reach(|c| -c.x, slope.x));
+        let upward = 0.5 * (reach(|c| c.y, slope.y) + reach(|c| -c.y, slope.y));
         let diagonal = corners[0].distance(corners[7]);
         let clear = greatest(corners.iter().map(|c| -c.z)) + CLEARANCE * diagonal;
-        let distance = fitting.max(clear);
-        self.eye += self.right * shift.x + self.up * shift.y - self.forward * distance;
+        let distance = across.max(upward).max(clear);
+        let depths = corners.map(|c| c.z + distance);
+        let shift_right = balancing_shift(&corners.map(|c| c.x), &depths);
+        let shift_up = balancing_shift(&corners.map(|c| c.y), &depths);
+        self.eye += self.right * shift_right + self.up * shift_up - self.forward * distance;
     }
 
     /// Moves the film plane of an orthographic camera before all corners, and
@@ -172,6 +173,24 @@ impl Camera {
         let reach = greatest(corners.iter().map(|c| c.y.abs().max(c.x.abs() / aspect)));
         reach / (1.0 - 2.0 * MARGIN)
     }
+}
+
+/// The shift for which the greatest and the least slope `(x - shift) / depth`
+/// are opposite. Their sum falls as the shift grows, so bisection finds it; 60
+/// halvings exhaust the digits that the picture can show. This shift also
+/// makes the greater of both as small as any shift does.
+fn balancing_shift(x: &[f64; 8], depths: &[f64; 8]) -> f64 {
+    let (mut low, mut high) = (-greatest(x.iter().map(|x| -x)), greatest(x.iter().copied()));
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        let slopes = || x.iter().zip(depths).map(|(x, depth)| (x - middle) / depth);
+        if greatest(slopes()) > greatest(slopes().map(|slope| -slope)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
 }
 
 /// The middle of the box; the origin for an empty one.
@@ -254,6 +273,7 @@ mod tests {
             };
             let camera = Camera::new(&auto(projection), &bounds, size);
             let mut touched = 0.0_f64;
+            let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
             for on_film in corners_on_film(&camera, &bounds) {
                 let relative = on_film / DVec2::new(f64::from(size.width), f64::from(size.height));
                 let edge = (relative - 0.5).abs().max_element();
@@ -264,7 +284,13 @@ mod tests {
                     "seed 7 case {case}: {on_film:?} outside {size:?}, {bounds:?}, {projection:?}"
                 );
                 touched = touched.max(edge);
+                least = least.min(relative);
+                most = most.max(relative);
             }
+            assert!(
+                (least + most - 1.0).abs().max_element() < 1e-3,
+                "seed 7 case {case}: {least:?} to {most:?} is off the middle, {bounds:?}"
+            );
             let nearest = -greatest(camera.corners(&bounds).iter().map(|c| -c.z));
             let held_back =
                 camera.perspective && nearest < (CLEARANCE + 1e-3) * bounds.extent().length();
