@@ -1,16 +1,10 @@
 //! Pictures as files: 8-bit sRGB PNG and linear f32 EXR.
-//!
-//! A picture is written to a temporary file beside its target and renamed, so
-//! that whatever stood there stays whole until the new picture is whole too.
 
-use std::fs;
-use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use image::{ImageBuffer, ImageFormat, Rgb};
-use tempfile::NamedTempFile;
 
-use super::{Film, srgb};
+use super::{FileError, Film, NewFile, srgb};
 
 /// Why a picture cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -21,30 +15,11 @@ pub enum OutputError {
         /// The file as asked for.
         path: PathBuf,
     },
-    /// The directory of the file does not exist, or is no directory.
-    #[error("cannot write {path:?}: there is no directory {directory:?}")]
-    NoDirectory {
-        /// The file as asked for.
-        path: PathBuf,
-        /// Its directory.
-        directory: PathBuf,
-    },
-    /// There is a directory in the file's place.
-    #[error("cannot write {path:?}: it is a directory")]
-    IsDirectory {
-        /// The file as asked for.
-        path: PathBuf,
-    },
-    /// The system refuses to create, write or rename the file.
-    #[error("cannot write {path:?}: {source}")]
-    System {
-        /// The file as asked for.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// The picture cannot be encoded.
-    #[error("cannot encode {path:?}: {source}")]
+    /// The file cannot be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The picture cannot be encoded, or not all of it could be written.
+    #[error("cannot write the picture {path:?}")]
     Encoding {
         /// The file as asked for.
         path: PathBuf,
@@ -77,12 +52,12 @@ impl Format {
     }
 }
 
-/// A file that a picture will replace or create.
+/// A file that a picture will replace or create, see [`NewFile`].
 #[derive(Debug)]
 pub struct Output {
     path: PathBuf,
     format: Format,
-    temporary: NamedTempFile,
+    file: NewFile,
 }
 
 impl Output {
@@ -90,50 +65,21 @@ impl Output {
     /// be told without creating anything.
     ///
     /// # Errors
-    /// When the extension is unknown, the directory does not exist, or `path`
-    /// is a directory.
+    /// When the extension is unknown, or for those of [`NewFile::check`].
     pub fn check(path: &Path) -> Result<(), OutputError> {
         Format::of(path)?;
-        let directory = directory_of(path);
-        if !directory.is_dir() {
-            return Err(OutputError::NoDirectory {
-                path: path.into(),
-                directory: directory.into(),
-            });
-        }
-        if path.is_dir() {
-            return Err(OutputError::IsDirectory { path: path.into() });
-        }
-        Ok(())
+        Ok(NewFile::check(path)?)
     }
 
-    /// Creates the temporary file of `path`; it is removed when the value is
-    /// dropped before [`Output::write`] ends.
+    /// Opens the temporary file of a picture.
     ///
     /// # Errors
-    /// Those of [`Output::check`], or when the directory cannot be written to.
+    /// When the extension is unknown, or for those of [`NewFile::create`].
     pub fn create(path: &Path) -> Result<Self, OutputError> {
-        Self::check(path)?;
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".cyltrace-");
-        // Temporary files are private by default; a picture is as readable as
-        // any file that the user's umask lets him create.
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
-        let temporary =
-            builder
-                .tempfile_in(directory_of(path))
-                .map_err(|source| OutputError::System {
-                    path: path.into(),
-                    source,
-                })?;
         Ok(Self {
             path: path.into(),
             format: Format::of(path)?,
-            temporary,
+            file: NewFile::create(path)?,
         })
     }
 
@@ -141,41 +87,16 @@ impl Output {
     ///
     /// # Errors
     /// When encoding, writing or renaming fails. Nothing is left behind then.
-    pub fn write(self, film: &Film) -> Result<(), OutputError> {
-        let Self {
-            path,
-            format,
-            temporary,
-        } = self;
-        let mut writer = BufWriter::new(temporary);
-        let encoded = match format {
-            Format::Png => png(film).write_to(&mut writer, ImageFormat::Png),
-            Format::Exr => exr(film).write_to(&mut writer, ImageFormat::OpenExr),
+    pub fn write(mut self, film: &Film) -> Result<(), OutputError> {
+        let encoded = match self.format {
+            Format::Png => png(film).write_to(&mut self.file, ImageFormat::Png),
+            Format::Exr => exr(film).write_to(&mut self.file, ImageFormat::OpenExr),
         };
         encoded.map_err(|source| OutputError::Encoding {
-            path: path.clone(),
+            path: self.path,
             source,
         })?;
-        let system = |source| OutputError::System {
-            path: path.clone(),
-            source,
-        };
-        writer.flush().map_err(system)?;
-        let temporary = writer
-            .into_inner()
-            .map_err(|error| system(error.into_error()))?;
-        temporary
-            .persist(&path)
-            .map_err(|error| system(error.error))?;
-        Ok(())
-    }
-}
-
-/// The directory that a file lies in: `.` for a bare name.
-fn directory_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(parent) if parent != Path::new("") => parent,
-        _ => Path::new("."),
+        Ok(self.file.finish()?)
     }
 }
 
@@ -212,11 +133,6 @@ mod tests {
         Film::new(130, 70, pixels)
     }
 
-    fn left_in(directory: &Path) -> Vec<PathBuf> {
-        let entries = fs::read_dir(directory).expect("readable directory");
-        entries.map(|entry| entry.expect("entry").path()).collect()
-    }
-
     #[test]
     fn exr_read_back_same_bits() {
         let directory = tempfile::tempdir().expect("directory");
@@ -229,7 +145,6 @@ mod tests {
         assert_eq!((read.width(), read.height()), (130, 70));
         let bits = |values: &[f32]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(read.as_raw()), bits(film.pixels().as_flattened()));
-        assert_eq!(left_in(directory.path()), [path]);
     }
 
     #[test]
@@ -252,32 +167,13 @@ mod tests {
     }
 
     #[test]
-    fn output_dropped_unwritten_nothing_left_and_old_file_kept() {
-        let directory = tempfile::tempdir().expect("directory");
-        let path = directory.path().join("old.png");
-        fs::write(&path, "old").expect("written");
-        drop(Output::create(&path).expect("created"));
-        assert_eq!(left_in(directory.path()), [path.clone()]);
-        assert_eq!(fs::read(&path).expect("read"), b"old");
-    }
-
-    #[test]
-    fn output_unusable_paths_refused_by_name() {
-        let directory = tempfile::tempdir().expect("directory");
-        for (name, expected) in [
-            ("picture.jpg", ".png or .exr"),
-            ("picture", ".png or .exr"),
-            ("missing/picture.png", "no directory"),
-        ] {
-            let error = Output::create(&directory.path().join(name)).expect_err(name);
-            let message = error.to_string();
+    fn output_of_unknown_format_refused_by_name() {
+        for name in ["picture.jpg", "picture", ".png"] {
+            let message = Output::check(Path::new(name)).expect_err(name).to_string();
             assert!(
-                message.contains(expected) && message.contains(name),
+                message.contains(".png or .exr") && message.contains(name),
                 "{message}"
             );
         }
-        fs::create_dir(directory.path().join("taken.png")).expect("directory");
-        let error = Output::create(&directory.path().join("taken.png")).expect_err("a directory");
-        assert!(error.to_string().contains("is a directory"), "{error}");
     }
 }
