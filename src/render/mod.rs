@@ -116,7 +116,8 @@ pub enum RenderError {
 /// [`workers()`]).
 ///
 /// `progress` is told the number of pixels done since the last call, from any
-/// of the threads. The rendering ends soon after `cancelled` becomes true.
+/// of the threads. The rendering ends within a pixel of every thread when
+/// `cancelled` becomes true.
 ///
 /// # Errors
 /// When the settings are unusable (see [`Settings::check`]), or the rendering

@@ -75,10 +75,10 @@ fn render_tile(
     let mut colors = Vec::with_capacity((tile.width * tile.height) as usize);
     let mut rays = RayCounts::default();
     for y in tile.y..tile.y + tile.height {
-        if cancelled.load(Ordering::Relaxed) {
-            return Err(RenderError::Cancelled);
-        }
         for x in tile.x..tile.x + tile.width {
+            if cancelled.load(Ordering::Relaxed) {
+                return Err(RenderError::Cancelled);
+            }
             let pixel = u64::from(y) * u64::from(settings.film.width) + u64::from(x);
             let sampler = PixelSampler::new(settings.seed, pixel);
             let sum: DVec3 = (0..settings.spp)
