@@ -192,7 +192,7 @@ mod tests {
         let mut file = NewFile::create(&path).expect("created");
         file.write_all(b"new").expect("written");
         drop(file);
-        assert_eq!(names_in(directory.path()), [path.clone()]);
+        assert_eq!(names_in(directory.path()), std::slice::from_ref(&path));
         assert_eq!(fs::read(&path).expect("read"), b"old");
     }
 
@@ -204,7 +204,7 @@ mod tests {
         let mut file = NewFile::create(&path).expect("created");
         file.write_all(b"new").expect("written");
         file.finish().expect("finished");
-        assert_eq!(names_in(directory.path()), [path.clone()]);
+        assert_eq!(names_in(directory.path()), std::slice::from_ref(&path));
         assert_eq!(fs::read(&path).expect("read"), b"new");
     }
 
