@@ -1,13 +1,19 @@
-//! Rays, boxes, transforms and random numbers, on top of glam's f64 vectors.
+//! Rays, boxes, roundings and random numbers, on top of glam's f64 vectors.
 //!
 //! This layer knows nothing of the rest of the crate. Everything here is f64;
 //! f32 appears only where a value is handed to Embree, and is then rounded in
 //! a stated direction.
 
 mod bounds;
+mod double_double;
+mod placement;
 mod random;
 mod ray;
+mod rounding;
 
 pub use bounds::Bounds;
+pub use double_double::DoubleDouble;
+pub use placement::{ChildFromParent, PlacementErrors};
 pub use random::Random;
 pub use ray::Ray;
+pub use rounding::{UNIT_ROUNDOFF, f32_above, f32_below, power_of_two, power_of_two_below};

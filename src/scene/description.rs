@@ -92,6 +92,13 @@ impl CylinderRecord {
         }
     }
 
+    /// The cylinder.
+    #[inline]
+    #[must_use]
+    pub fn cylinder(&self) -> Cylinder {
+        Cylinder::from_valid(self.p0, self.p1, self.radius, self.caps)
+    }
+
     /// The number within the prototype.
     #[must_use]
     pub fn primitive(&self) -> u32 {

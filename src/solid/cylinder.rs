@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::math::{Bounds, UNIT_ROUNDOFF, power_of_two};
+
 /// Which ends of a cylinder are closed by a disc.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Caps {
@@ -47,7 +49,7 @@ pub struct Cylinder {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CylinderError {
     /// A coordinate of an endpoint is NaN, infinite or beyond [`Cylinder::GREATEST`].
-    #[error("{which} is ({}, {}, {}): every coordinate must be finite and at most {:e} in size", point.x, point.y, point.z, Cylinder::GREATEST)]
+    #[error("{which} is ({}, {}, {}): every coordinate must be finite and at most {:.1e} in size", point.x, point.y, point.z, Cylinder::GREATEST)]
     Endpoint {
         /// `"p0"` or `"p1"`.
         which: &'static str,
@@ -56,7 +58,7 @@ pub enum CylinderError {
     },
     /// The radius is not a number in [`Cylinder::LEAST`, `Cylinder::GREATEST`].
     #[error(
-        "radius is {radius}: it must be a positive number between {:e} and {:e}",
+        "radius is {radius}: it must be a positive number between {:.1e} and {:.1e}",
         Cylinder::LEAST,
         Cylinder::GREATEST
     )]
@@ -66,7 +68,7 @@ pub enum CylinderError {
     },
     /// The endpoints are the same, or nearer than [`Cylinder::LEAST`].
     #[error(
-        "p0 and p1 are {length:e} apart: a cylinder needs a length of at least {:e}",
+        "p0 and p1 are {length:e} apart: a cylinder needs a length of at least {:.1e}",
         Cylinder::LEAST
     )]
     Length {
@@ -76,12 +78,13 @@ pub enum CylinderError {
 }
 
 impl Cylinder {
-    /// The least radius and length: about 6.2e-61. Below it, products of four
-    /// lengths would lose bits to f64 underflow.
-    pub const LEAST: f64 = 1.0 / Self::GREATEST;
-    /// The greatest radius and coordinate: 2^200, about 1.6e60. Above it,
-    /// products of four lengths would overflow f64.
-    pub const GREATEST: f64 = (1_u128 << 100) as f64 * (1_u128 << 100) as f64;
+    /// The least radius and length: 2^-150, about 7.0e-46, below the least
+    /// number of f32. Under it, products of four lengths and two directions
+    /// would lose bits to underflow.
+    pub const LEAST: f64 = power_of_two(-150);
+    /// The greatest radius and size of a coordinate: 2^150, about 1.4e45,
+    /// above the greatest number of f32. Over it, the same products overflow.
+    pub const GREATEST: f64 = power_of_two(150);
 
     /// The cylinder from `p0` to `p1`.
     ///
@@ -108,6 +111,17 @@ impl Cylinder {
         })
     }
 
+    /// The cylinder of numbers that [`Cylinder::new`] accepted before.
+    #[inline]
+    pub(crate) fn from_valid(p0: DVec3, p1: DVec3, radius: f64, caps: Caps) -> Self {
+        Self {
+            p0,
+            p1,
+            radius,
+            caps,
+        }
+    }
+
     /// The first endpoint.
     #[must_use]
     pub fn p0(&self) -> DVec3 {
@@ -130,5 +144,28 @@ impl Cylinder {
     #[must_use]
     pub fn caps(&self) -> Caps {
         self.caps
+    }
+
+    /// The least box that holds the solid, rounded outward by a few ulps.
+    ///
+    /// Along axis `i` a disc reaches `radius √(1 - aᵢ²/|a|²)` from its middle;
+    /// written as `radius √((aⱼ² + aₖ²)/|a|²)` nothing cancels, and the relative
+    /// error is below 8 roundings, which the factor on the radius covers.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        let a = self.p1 - self.p0;
+        let squared = a * a;
+        let others = DVec3::new(
+            squared.y + squared.z,
+            squared.z + squared.x,
+            squared.x + squared.y,
+        );
+        let sine = (others / a.length_squared()).map(f64::sqrt).min(DVec3::ONE);
+        let reach = sine * (self.radius * (1.0 + 10.0 * UNIT_ROUNDOFF));
+        Bounds {
+            lower: self.p0.min(self.p1) - reach,
+            upper: self.p0.max(self.p1) + reach,
+        }
+        .rounded_outward()
     }
 }

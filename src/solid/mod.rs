@@ -1,8 +1,13 @@
 //! What a solid is, and the solvers that intersect rays with it.
 
+mod chord;
 mod cylinder;
+mod surface;
+pub mod triple_product;
 
+pub use chord::{Chord, ChordEnd, Meeting};
 pub use cylinder::{Caps, Cylinder, CylinderError};
+pub use surface::{SurfacePoint, surface_point};
 
 /// The kinds of solids; [`SolidKind::name`] is the `solid` column of `trace`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

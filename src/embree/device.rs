@@ -1,0 +1,224 @@
+//! The Embree device: its options, version and memory.
+
+use std::ffi::{CString, c_void};
+use std::fmt::{self, Write as _};
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicIsize, Ordering};
+
+use super::abort::AbortOnPanic;
+use super::error::{Error, check, keep_message};
+use super::isa::MaxIsa;
+use super::probe;
+use super::sys;
+
+/// How a device is set up; the default leaves all to Embree.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DeviceOptions {
+    /// Threads that build scenes; `None` is one a processor. Queries run on
+    /// the caller's threads.
+    pub threads: Option<NonZeroUsize>,
+    /// The greatest instruction set to use; `None` is the processor's best.
+    pub max_isa: Option<MaxIsa>,
+}
+
+impl DeviceOptions {
+    /// Embree's configuration string.
+    fn config(&self) -> String {
+        let mut config = String::new();
+        if let Some(threads) = self.threads {
+            let _ = write!(config, "threads={threads},");
+        }
+        if let Some(isa) = self.max_isa {
+            let _ = write!(config, "max_isa={isa},");
+        }
+        config
+    }
+}
+
+/// A version of Embree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Version {
+    /// 3 or 4.
+    pub major: u32,
+    /// Counts features.
+    pub minor: u32,
+    /// Counts corrections.
+    pub patch: u32,
+}
+
+impl Version {
+    /// The version of the headers this program was built with.
+    pub const BUILT_FOR: Self = Self {
+        major: sys::RTC_VERSION_MAJOR,
+        minor: sys::RTC_VERSION_MINOR,
+        patch: sys::RTC_VERSION_PATCH,
+    };
+}
+
+impl fmt::Display for Version {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}.{}.{}", self.major, self.minor, self.patch)
+    }
+}
+
+/// Embree's entry point. Clones share one device, which lives as long as the
+/// last of them and of the scenes built on it.
+#[derive(Clone, Debug)]
+pub struct Device {
+    shared: Arc<Shared>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    handle: sys::RTCDevice,
+    memory: Arc<Memory>,
+}
+
+// SAFETY: invariant 1, and Embree's device functions may be called on any
+// thread, several at a time; the counters are atomic.
+unsafe impl Send for Shared {}
+// SAFETY: as for `Send`.
+unsafe impl Sync for Shared {}
+
+impl Drop for Shared {
+    fn drop(&mut self) {
+        // SAFETY: invariant 1: this is the one reference that `Device::new`
+        // made. Invariant 2: `memory`, to which Embree still counts while it
+        // frees, is dropped after this body.
+        unsafe { sys::rtcReleaseDevice(self.handle) }
+    }
+}
+
+impl Device {
+    /// Sets up Embree.
+    ///
+    /// # Errors
+    /// When Embree refuses, is of another version (major or minor) than the
+    /// headers this program was built with, or writes another hit layout.
+    pub fn new(options: &DeviceOptions) -> Result<Self, Error> {
+        const STEP: &str = "set up a device";
+        let config = CString::new(options.config()).expect("the options hold no zero byte");
+        // SAFETY: the string ends in a zero byte and outlives the call.
+        let handle = unsafe { sys::rtcNewDevice(config.as_ptr()) };
+        if handle.is_null() {
+            check(handle, STEP)?;
+        }
+        assert!(!handle.is_null(), "Embree made no device and no error");
+        let device = Self {
+            shared: Arc::new(Shared {
+                handle,
+                memory: Arc::default(),
+            }),
+        };
+        let memory = Arc::as_ptr(&device.shared.memory).cast_mut().cast();
+        // SAFETY: invariant 1; the function needs no data of its own.
+        unsafe { sys::rtcSetDeviceErrorFunction(handle, Some(keep_message), std::ptr::null_mut()) };
+        // SAFETY: invariants 1 and 2: the counters outlive the handle;
+        // `count_memory` takes the pointer for what it is.
+        unsafe { sys::rtcSetDeviceMemoryMonitorFunction(handle, Some(count_memory), memory) };
+        check(handle, STEP)?;
+
+        let (built_for, loaded) = (Version::BUILT_FOR, device.version());
+        if (loaded.major, loaded.minor) != (built_for.major, built_for.minor) {
+            return Err(Error::Version { built_for, loaded });
+        }
+        probe::check_hit_layout(&device)?;
+        Ok(device)
+    }
+
+    /// The version of the library that was loaded.
+    #[must_use]
+    pub fn version(&self) -> Version {
+        let number = |property| {
+            // SAFETY: invariant 1.
+            let value = unsafe { sys::rtcGetDeviceProperty(self.handle(), property) };
+            u32::try_from(value).unwrap_or(0)
+        };
+        Version {
+            major: number(sys::RTC_DEVICE_PROPERTY_VERSION_MAJOR),
+            minor: number(sys::RTC_DEVICE_PROPERTY_VERSION_MINOR),
+            patch: number(sys::RTC_DEVICE_PROPERTY_VERSION_PATCH),
+        }
+    }
+
+    /// Bytes that Embree holds now: hierarchies and buffers of all scenes of
+    /// this device, without user data.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        as_bytes(&self.shared.memory.live)
+    }
+
+    /// The most bytes that Embree held at a time.
+    #[must_use]
+    pub fn peak_memory_bytes(&self) -> usize {
+        as_bytes(&self.shared.memory.peak)
+    }
+
+    pub(super) fn handle(&self) -> sys::RTCDevice {
+        self.shared.handle
+    }
+
+    /// Whether the last call on this thread to something of this device went
+    /// well; `step` follows "could not" in the message.
+    pub(super) fn check(&self, step: &'static str) -> Result<(), Error> {
+        check(self.handle(), step)
+    }
+}
+
+/// What Embree holds, counted by its memory monitor.
+#[derive(Debug, Default)]
+struct Memory {
+    live: AtomicIsize,
+    peak: AtomicIsize,
+}
+
+/// A counter's value. Threads report out of order, so that a sum may be below
+/// zero for a moment.
+fn as_bytes(counter: &AtomicIsize) -> usize {
+    usize::try_from(counter.load(Ordering::Relaxed)).unwrap_or(0)
+}
+
+/// Embree's memory monitor: `bytes` more are about to be or have been
+/// allocated, or fewer when negative. True lets Embree go on.
+unsafe extern "C" fn count_memory(memory: *mut c_void, bytes: isize, _after: bool) -> bool {
+    AbortOnPanic::run("memory monitor", || {
+        // SAFETY: invariant 2: the pointer was made from the `Arc<Memory>` of
+        // a device that has not been given back yet; it is only read through.
+        let memory = unsafe { &*memory.cast::<Memory>() };
+        let live = memory.live.fetch_add(bytes, Ordering::Relaxed) + bytes;
+        memory.peak.fetch_max(live, Ordering::Relaxed);
+        true
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn config_full_options_names_threads_and_isa() {
+        let options = DeviceOptions {
+            threads: NonZeroUsize::new(3),
+            max_isa: Some(MaxIsa::Sse42),
+        };
+        assert_eq!(options.config(), "threads=3,max_isa=sse4.2,");
+        assert_eq!(DeviceOptions::default().config(), "");
+    }
+
+    #[test]
+    fn check_after_refused_call_gives_embrees_message_once() {
+        let device = Device::new(&DeviceOptions::default()).unwrap();
+        // SAFETY: invariant 1; an unknown geometry type is refused by Embree.
+        let geometry = unsafe { sys::rtcNewGeometry(device.handle(), sys::RTCGeometryType(9999)) };
+        assert!(geometry.is_null());
+        let error = device.check("make a geometry").unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.starts_with("Embree could not make a geometry: "),
+            "{text}"
+        );
+        assert!(text.contains("geometry type"), "{text}");
+        assert_eq!(device.check("make a geometry"), Ok(()));
+    }
+}

@@ -1,0 +1,75 @@
+//! Embree behind a safe surface: devices, scenes, user geometry, triangle
+//! meshes and cone curves, and single-ray queries.
+//!
+//! This layer knows neither cylinders nor scene files. A geometry written in
+//! Rust implements [`UserGeometry`]; its answers travel in a *query*, a value
+//! of the caller's own type that every callback of one ray receives. Embree 3
+//! and 4 look the same from here: `shim.c` owns their differences.
+//!
+//! Rays must be finite: distributions build Embree with its assertions on, and
+//! those end the process on a NaN, an infinity or a coordinate beyond
+//! [`GREATEST_COORDINATE`]. Callers guarantee it; [`Ray32`] says what exactly.
+//!
+//! # Invariants
+//! Every `unsafe` block of this layer rests on one or more of these:
+//!
+//! 1. **Handles are alive.** A handle newtype owns one reference of Embree's
+//!    and gives it back in its `Drop`, so a handle that can be named is valid.
+//! 2. **Scenes go first.** [`Scene`] and [`SceneBuilder`] drop the Embree scene
+//!    (with it, its geometries), then the user data, then the device; a device
+//!    gives its handle back before its memory counters. So every pointer that
+//!    Embree holds outlives the Embree object that holds it.
+//! 3. **User data has one type and is shared.** The data pointer of a geometry
+//!    and its callbacks are set together, for the same type, from an `Arc`
+//!    that is never written to; `UserGeometry` is `Send + Sync`, so any thread
+//!    may read it.
+//! 4. **A query pointer is a `&mut Q` of the query that runs.** It is made from
+//!    one by [`Scene`], goes through Embree untouched in the context of that
+//!    query, and callbacks of the query run on the calling thread, one at a
+//!    time. A geometry's `Query` is its scene's `Q`. A nested query borrows
+//!    from the reference its callback was given and ends before it.
+//! 5. **Builders write, scenes read.** Until [`SceneBuilder::commit`] one owner
+//!    holds the Embree scene and no query can run; afterwards nothing is
+//!    written, and Embree's queries may run on any number of threads.
+//! 6. **Bindings are of the installed headers.** `build.rs` generates them, and
+//!    [`Device::new`] refuses a library that writes another hit layout.
+//! 7. **Callback arguments are whole.** Embree passes a structure that is valid
+//!    for the call, in the layout of its headers; rays and hits in it are
+//!    arrays by component, `N` lanes each.
+//! 8. **No unwinding.** A panic in a callback ends the process and names the
+//!    callback, so no frame of Embree's is ever unwound.
+//!
+//! # What is left out, and why
+//! | Embree | why |
+//! |---|---|
+//! | instances, instance arrays | placements are user geometry here: f64 transforms, any depth |
+//! | packets of 4, 8, 16 rays | user geometry through them comes when it is measured to pay |
+//! | ray streams | gone in Embree 4 |
+//! | filter functions, ray masks | the callback itself accepts or refuses; all masks are ones |
+//! | motion blur, subdivision, grids, points, other curves | nothing here moves or is made of them |
+//! | point queries, collision | other questions than rays ask |
+//! | updates of a committed scene | a committed scene is read-only, which is what makes it shareable |
+
+#![allow(
+    unsafe_code,
+    reason = "calls into C; each block names the invariants it rests on"
+)]
+
+mod abort;
+mod device;
+mod error;
+mod float_mode;
+mod isa;
+mod native;
+mod probe;
+mod ray;
+mod scene;
+mod sys;
+mod user;
+
+pub use device::{Device, DeviceOptions, Version};
+pub use error::Error;
+pub use isa::{MaxIsa, UnknownIsa};
+pub use ray::{Box32, GREATEST_COORDINATE, NativeHit, Ray32};
+pub use scene::{GeometryId, Scene, SceneBuilder};
+pub use user::UserGeometry;

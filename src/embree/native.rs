@@ -1,0 +1,156 @@
+//! Geometry that Embree intersects by itself: triangle meshes and cone curves.
+
+use super::error::Error;
+use super::ray::is_inside;
+use super::scene::{GeometryHandle, GeometryId, SceneBuilder};
+use super::sys;
+
+impl<Q: 'static> SceneBuilder<Q> {
+    /// Adds a triangle mesh; each triangle is three vertex numbers. The
+    /// vertices are copied.
+    ///
+    /// # Errors
+    /// When a vertex is not finite or too far out, a triangle names a vertex
+    /// that isn't there, or Embree refuses.
+    pub fn attach_triangles(
+        &mut self,
+        vertices: &[[f32; 3]],
+        triangles: &[[u32; 3]],
+    ) -> Result<GeometryId, Error> {
+        check_vertices(vertices, |_| true)?;
+        for (primitive, corners) in triangles.iter().enumerate() {
+            for &vertex in corners {
+                check_index(primitive, u64::from(vertex), vertices.len())?;
+            }
+        }
+        let mesh = GeometryHandle::new(self.device(), sys::RTC_GEOMETRY_TYPE_TRIANGLE)?;
+        self.fill(
+            &mesh,
+            sys::RTC_BUFFER_TYPE_VERTEX,
+            sys::RTC_FORMAT_FLOAT3,
+            vertices,
+        )?;
+        self.fill(
+            &mesh,
+            sys::RTC_BUFFER_TYPE_INDEX,
+            sys::RTC_FORMAT_UINT3,
+            triangles,
+        )?;
+        self.attach(&mesh)
+    }
+
+    /// Adds straight cone segments of Embree's own (`CONE_LINEAR_CURVE`), the
+    /// rival of analytic cylinders. A vertex is a point and a radius; a segment
+    /// goes from the vertex it names to the next one. `neighbours` has a byte a
+    /// segment: 1 if the segment to the left continues it, 2 to the right, 3
+    /// both; an end without neighbour is capped. `None` caps all.
+    ///
+    /// # Errors
+    /// When a vertex is not finite, too far out or of negative radius, a
+    /// segment names a vertex that isn't there, there are not as many flags as
+    /// segments, or Embree refuses.
+    pub fn attach_cone_curves(
+        &mut self,
+        vertices: &[[f32; 4]],
+        segments: &[u32],
+        neighbours: Option<&[u8]>,
+    ) -> Result<GeometryId, Error> {
+        check_vertices(vertices, |&[_, _, _, radius]| radius >= 0.0)?;
+        for (primitive, &first) in segments.iter().enumerate() {
+            check_index(primitive, u64::from(first) + 1, vertices.len())?;
+        }
+        let capped;
+        let flags = if let Some(flags) = neighbours {
+            flags
+        } else {
+            capped = vec![0; segments.len()];
+            &capped
+        };
+        if flags.len() != segments.len() {
+            return Err(Error::FlagCount {
+                flags: flags.len(),
+                segments: segments.len(),
+            });
+        }
+        let curves = GeometryHandle::new(self.device(), sys::RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE)?;
+        self.fill(
+            &curves,
+            sys::RTC_BUFFER_TYPE_VERTEX,
+            sys::RTC_FORMAT_FLOAT4,
+            vertices,
+        )?;
+        self.fill(
+            &curves,
+            sys::RTC_BUFFER_TYPE_INDEX,
+            sys::RTC_FORMAT_UINT,
+            segments,
+        )?;
+        self.fill(
+            &curves,
+            sys::RTC_BUFFER_TYPE_FLAGS,
+            sys::RTC_FORMAT_UCHAR,
+            flags,
+        )?;
+        self.attach(&curves)
+    }
+
+    /// Copies `items` into a new buffer of Embree's, which pads it for the
+    /// 16-byte loads it reads vertices with.
+    fn fill<T: Copy>(
+        &self,
+        geometry: &GeometryHandle,
+        kind: sys::RTCBufferType,
+        format: sys::RTCFormat,
+        items: &[T],
+    ) -> Result<(), Error> {
+        // SAFETY: invariants 1 and 5.
+        let buffer = unsafe {
+            sys::rtcSetNewGeometryBuffer(
+                geometry.raw(),
+                kind,
+                0,
+                format,
+                size_of::<T>(),
+                items.len(),
+            )
+        };
+        self.device().check("make a geometry's buffer")?;
+        // SAFETY: Embree made room for as many items of this size, apart from
+        // ours; invariant 5: nothing reads it yet.
+        unsafe {
+            buffer
+                .cast::<T>()
+                .copy_from_nonoverlapping(items.as_ptr(), items.len())
+        };
+        Ok(())
+    }
+}
+
+/// Embree leaves out primitives with bad vertices without a word, so they are
+/// refused here.
+fn check_vertices<const N: usize>(
+    vertices: &[[f32; N]],
+    is_good: impl Fn(&[f32; N]) -> bool,
+) -> Result<(), Error> {
+    let bad = |vertex: &[f32; N]| !is_inside(vertex) || !is_good(vertex);
+    match vertices.iter().position(bad) {
+        None => Ok(()),
+        Some(vertex) => Err(Error::Vertex {
+            vertex,
+            value: vertices[vertex].to_vec(),
+        }),
+    }
+}
+
+/// Embree reads vertices unchecked, so a number beyond the last one would read
+/// foreign memory.
+fn check_index(primitive: usize, vertex: u64, vertices: usize) -> Result<(), Error> {
+    if vertex < vertices as u64 {
+        return Ok(());
+    }
+    Err(Error::VertexIndex {
+        primitive,
+        vertex,
+        vertices,
+    })
+}

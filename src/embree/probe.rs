@@ -1,0 +1,60 @@
+//! The start-up guard: does the loaded library write hits where the headers
+//! say it does?
+//!
+//! The layout depends on how a library was configured, not on its version
+//! alone. Headers of 4.2 with a library of 4.4 let every query write a word
+//! behind the hit, without any error.
+
+use super::device::Device;
+use super::error::Error;
+use super::ray::Ray32;
+use super::scene::SceneBuilder;
+use super::sys;
+
+/// No value that Embree writes.
+const SENTINEL: u32 = 0x5EA1_C0DE;
+/// More than any known layout exceeds another one.
+const MARGIN_WORDS: usize = 16;
+
+#[repr(C)]
+struct Padded {
+    query: sys::RTCRayHit,
+    margin: [u32; MARGIN_WORDS],
+}
+
+/// Traces one ray against one triangle, into a hit with a margin behind it.
+pub(super) fn check_hit_layout(device: &Device) -> Result<(), Error> {
+    let mut builder = SceneBuilder::<()>::new(device)?;
+    let corners = [[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0]];
+    builder.attach_triangles(&corners, &[[0, 1, 2]])?;
+    let scene = builder.commit()?;
+    let ray = Ray32 {
+        origin: [1.0, 1.0, 0.0],
+        direction: [0.0, 0.0, 0.5],
+        t_near: 0.0,
+        t_far: f32::INFINITY,
+    };
+    let mut padded = Padded {
+        query: ray.to_query(),
+        margin: [SENTINEL; MARGIN_WORDS],
+    };
+    // SAFETY: invariants 1 and 5; the margin makes a layout that is longer than
+    // the headers' one, which this call looks for, harmless.
+    unsafe { scene.trace_into((&raw mut padded).cast(), &mut ()) };
+    let Padded { query, margin } = padded;
+    // Embree's reciprocals may be off by an ulp, a misplaced part is far off.
+    let near = |found: f32, expected: f32| (found - expected).abs() < 1e-3;
+    let found = if margin != [SENTINEL; MARGIN_WORDS] {
+        "it writes behind the hit"
+    } else if !near(query.ray.tfar, 2.0) || query.hit.geomID != 0 || query.hit.primID != 0 {
+        "a triangle straight ahead is not found"
+    } else if !near(query.hit.u, 0.25) || !near(query.hit.Ng_z.abs(), 16.0) {
+        "the parts of a hit are not where they should be"
+    } else {
+        return Ok(());
+    };
+    Err(Error::HitLayout {
+        loaded: device.version(),
+        found,
+    })
+}

@@ -1,0 +1,237 @@
+//! Scenes: one owner builds them, any number of threads query them.
+
+use std::cell::Cell;
+use std::marker::PhantomData;
+use std::ptr;
+use std::sync::Arc;
+
+use super::device::Device;
+use super::error::Error;
+use super::ray::{Box32, NativeHit, Ray32};
+use super::sys;
+use super::user::{UserData, UserGeometry, new_user_geometry};
+
+/// The number of a geometry in its scene; they count from 0 in the order in
+/// which they were attached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct GeometryId(pub u32);
+
+/// One reference to an Embree scene.
+struct SceneHandle(sys::RTCScene);
+
+// SAFETY: invariant 5: while it is written to, one builder owns it; afterwards
+// it is only read.
+unsafe impl Send for SceneHandle {}
+// SAFETY: as for `Send`; a shared builder offers no function that writes.
+unsafe impl Sync for SceneHandle {}
+
+impl Drop for SceneHandle {
+    fn drop(&mut self) {
+        // SAFETY: invariant 1: the one reference that `SceneBuilder::new` made.
+        unsafe { sys::rtcReleaseScene(self.0) }
+    }
+}
+
+/// One reference to an Embree geometry; attaching adds one for the scene.
+pub(super) struct GeometryHandle(sys::RTCGeometry);
+
+impl GeometryHandle {
+    /// A geometry of the given kind that every ray may hit.
+    pub(super) fn new(device: &Device, kind: sys::RTCGeometryType) -> Result<Self, Error> {
+        // SAFETY: invariant 1.
+        let geometry = Self(unsafe { sys::rtcNewGeometry(device.handle(), kind) });
+        device.check("make a geometry")?;
+        // The default mask differs between Embree 3 and 4.
+        // SAFETY: invariant 1.
+        unsafe { sys::rtcSetGeometryMask(geometry.0, u32::MAX) };
+        device.check("set a geometry's mask")?;
+        Ok(geometry)
+    }
+
+    pub(super) fn raw(&self) -> sys::RTCGeometry {
+        self.0
+    }
+}
+
+impl Drop for GeometryHandle {
+    fn drop(&mut self) {
+        if !self.0.is_null() {
+            // SAFETY: invariant 1: the one reference that `new` made.
+            unsafe { sys::rtcReleaseGeometry(self.0) }
+        }
+    }
+}
+
+/// An Embree scene and what has to outlive it; the order of the fields is the
+/// order in which they are dropped (invariant 2).
+struct Parts {
+    handle: SceneHandle,
+    /// Shared pointers because, unlike a box, one may be moved while Embree
+    /// holds a pointer into it. There is no second owner.
+    user_data: Vec<(GeometryId, Arc<dyn UserData>)>,
+    device: Device,
+}
+
+/// A scene that is being put together, for queries with a state of type `Q`.
+///
+/// Whatever is attached belongs to the scene and is dropped with it, exactly
+/// once, also when the scene is never committed.
+pub struct SceneBuilder<Q: 'static> {
+    parts: Parts,
+    query: PhantomData<fn(&mut Q)>,
+    /// A `Cell` may not be shared between threads, so a builder may not.
+    unshared: PhantomData<Cell<()>>,
+}
+
+impl<Q: 'static> SceneBuilder<Q> {
+    /// An empty scene.
+    ///
+    /// # Errors
+    /// When Embree refuses, say for want of memory.
+    pub fn new(device: &Device) -> Result<Self, Error> {
+        // SAFETY: invariant 1.
+        let handle = SceneHandle(unsafe { sys::rtcNewScene(device.handle()) });
+        device.check("make a scene")?;
+        // Meshes are the witness of exact answers, so no ray may slip between
+        // two triangles. User geometry is the same with and without.
+        // SAFETY: invariants 1 and 5.
+        unsafe { sys::rtcSetSceneFlags(handle.0, sys::RTC_SCENE_FLAG_ROBUST) };
+        device.check("set a scene's flags")?;
+        Ok(Self {
+            parts: Parts {
+                handle,
+                user_data: Vec::new(),
+                device: device.clone(),
+            },
+            query: PhantomData,
+            unshared: PhantomData,
+        })
+    }
+
+    /// Adds a geometry whose primitives `geometry` bounds and intersects.
+    ///
+    /// # Errors
+    /// When Embree refuses.
+    pub fn attach_user<G>(&mut self, geometry: G) -> Result<GeometryId, Error>
+    where
+        G: UserGeometry<Query = Q>,
+    {
+        // Declared before the handle, hence dropped after it on an error.
+        let (data, handle) = new_user_geometry(&self.parts.device, geometry)?;
+        let id = self.attach(&handle)?;
+        self.parts.user_data.push((id, data));
+        Ok(id)
+    }
+
+    pub(super) fn device(&self) -> &Device {
+        &self.parts.device
+    }
+
+    /// Commits a geometry and gives the scene a reference to it.
+    pub(super) fn attach(&mut self, geometry: &GeometryHandle) -> Result<GeometryId, Error> {
+        // SAFETY: invariants 1 and 5.
+        unsafe { sys::rtcCommitGeometry(geometry.raw()) };
+        self.device().check("commit a geometry")?;
+        // SAFETY: invariants 1 and 5.
+        let id = unsafe { sys::rtcAttachGeometry(self.parts.handle.0, geometry.raw()) };
+        self.device().check("attach a geometry")?;
+        Ok(GeometryId(id))
+    }
+
+    /// Builds the hierarchy. `bounds` of user geometries is called from this
+    /// thread and from Embree's own.
+    ///
+    /// # Errors
+    /// When Embree refuses, say for want of memory, or when a primitive of a
+    /// user geometry has bounds that it would leave out.
+    pub fn commit(self) -> Result<Scene<Q>, Error> {
+        let parts = self.parts;
+        // SAFETY: invariants 1 and 5: this builder was the only owner, and it
+        // has been taken.
+        unsafe { sys::rtcCommitScene(parts.handle.0) };
+        parts.device.check("commit a scene")?;
+        for (geometry, data) in &parts.user_data {
+            if let Some(primitive) = data.refused() {
+                return Err(Error::Bounds {
+                    geometry: *geometry,
+                    primitive,
+                });
+            }
+        }
+        let mut bounds = sys::RTCBounds::default();
+        // SAFETY: invariant 1; `bounds` is written during the call only.
+        unsafe { sys::rtcGetSceneBounds(parts.handle.0, &raw mut bounds) };
+        parts.device.check("tell a scene's bounds")?;
+        Ok(Scene {
+            parts,
+            bounds: Some(Box32::from_embree(&bounds)).filter(Box32::is_legal),
+            query: PhantomData,
+        })
+    }
+}
+
+/// A built scene, which never changes and which any number of threads may
+/// query at a time, also from within a callback of another query.
+pub struct Scene<Q: 'static> {
+    parts: Parts,
+    bounds: Option<Box32>,
+    query: PhantomData<fn(&mut Q)>,
+}
+
+impl<Q: 'static> Scene<Q> {
+    /// Traverses the scene for the closest hit. User geometries answer through
+    /// `query`; what Embree finds by itself is not reported.
+    #[inline]
+    pub fn closest(&self, ray: &Ray32, query: &mut Q) {
+        self.trace(ray, query);
+    }
+
+    /// Traverses the scene until anything is hit, and says whether it was.
+    #[inline]
+    pub fn any(&self, ray: &Ray32, query: &mut Q) -> bool {
+        let mut ray = ray.to_embree();
+        // SAFETY: invariants 1, 4, 5 and 6.
+        unsafe {
+            sys::cyltrace_occluded1(
+                self.parts.handle.0,
+                &raw mut ray,
+                ptr::from_mut(query).cast(),
+            );
+        }
+        ray.tfar == f32::NEG_INFINITY
+    }
+
+    /// The closest hit as Embree reports it. A user geometry that shrank the
+    /// ray last is named, its answer is in `query`.
+    #[inline]
+    pub fn closest_native(&self, ray: &Ray32, query: &mut Q) -> Option<NativeHit> {
+        NativeHit::from_embree(&self.trace(ray, query))
+    }
+
+    /// The box of all primitives; `None` when there are none.
+    #[must_use]
+    pub fn bounds(&self) -> Option<Box32> {
+        self.bounds
+    }
+
+    #[inline]
+    fn trace(&self, ray: &Ray32, query: &mut Q) -> sys::RTCRayHit {
+        let mut rayhit = ray.to_query();
+        // SAFETY: the pointer is to a whole ray and hit, which by invariant 6
+        // is all that Embree writes to.
+        unsafe { self.trace_into(&raw mut rayhit, query) };
+        rayhit
+    }
+
+    /// Traverses the scene with a ray and hit of Embree's.
+    ///
+    /// # Safety
+    /// `rayhit` is valid for all that the loaded library writes to it.
+    #[inline]
+    pub(super) unsafe fn trace_into(&self, rayhit: *mut sys::RTCRayHit, query: &mut Q) {
+        // SAFETY: invariants 1, 4 and 5; the caller answers for `rayhit`.
+        unsafe {
+            sys::cyltrace_intersect1(self.parts.handle.0, rayhit, ptr::from_mut(query).cast());
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! The bindings that `build.rs` generated from the installed headers.
+//!
+//! C enumerations are newtypes over integers: a Rust enum holding a value that
+//! only another version of Embree knows would be undefined behaviour.
+
+#![allow(
+    non_camel_case_types,
+    non_snake_case,
+    non_upper_case_globals,
+    reason = "the names are Embree's"
+)]
+#![allow(
+    clippy::allow_attributes_without_reason,
+    reason = "bindgen writes such attributes"
+)]
+
+use std::mem::offset_of;
+
+include!(concat!(env!("OUT_DIR"), "/embree.rs"));
+
+/// What `geomID` says when nothing was hit; a cast macro, which bindgen skips.
+pub const INVALID_ID: u32 = u32::MAX;
+
+/// The components of a ray and hit of any number of lanes are 32-bit words;
+/// component `c` of lane `i` is word `c * lanes + i`.
+pub mod word {
+    pub const RAY_T_FAR: usize = 8;
+    pub const HIT_NORMAL_X: usize = 12;
+    pub const HIT_V: usize = 16;
+    pub const HIT_PRIMITIVE: usize = 17;
+    pub const HIT_GEOMETRY: usize = 18;
+}
+
+// For one lane the words are the fields of the single-ray structures.
+const _: () = {
+    let hit = offset_of!(RTCRayHit, hit);
+    assert!(offset_of!(RTCRay, tfar) == 4 * word::RAY_T_FAR);
+    assert!(hit + offset_of!(RTCHit, Ng_x) == 4 * word::HIT_NORMAL_X);
+    assert!(hit + offset_of!(RTCHit, v) == 4 * word::HIT_V);
+    assert!(hit + offset_of!(RTCHit, primID) == 4 * word::HIT_PRIMITIVE);
+    assert!(hit + offset_of!(RTCHit, geomID) == 4 * word::HIT_GEOMETRY);
+    assert!(offset_of!(RTCRayHit, ray) == 0);
+    assert!(offset_of!(cyltrace_context, embree) == 0);
+};

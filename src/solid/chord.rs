@@ -1,0 +1,171 @@
+//! The stretch of a ray inside a convex solid, and the one step that turns it
+//! into hits.
+//!
+//! A solver answers with the closed interval of `t` in which the ray's line is
+//! inside the solid, and on which part of the boundary either end lies. What is
+//! a hit then depends only on which parts exist (caps) and on the ray's range,
+//! so closest hit, any hit and all hits share this file.
+//!
+//! The surface is a closed set and a rim belongs to the cap. Where the cap is
+//! absent, its rim is still the edge of the wall: such an end is a hit of the
+//! side. A ray that runs *within* the surface (in a cap's plane, or along the
+//! wall) touches it all the way; its least `t` may be the start of the range.
+
+use super::{Caps, Crossing, Part};
+
+/// One end of a [`Chord`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChordEnd {
+    /// The ray's parameter.
+    pub t: f64,
+    /// The part of the solid's boundary, whether or not the surface has it.
+    pub part: Part,
+    /// Whether the point is on a rim, that is on the wall too.
+    pub on_rim: bool,
+}
+
+/// The interval in which a line is inside a closed convex solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chord {
+    /// Where the ray goes in.
+    pub enter: ChordEnd,
+    /// Where the ray comes out; its `t` is not less than that of `enter`, but
+    /// for rounding.
+    pub leave: ChordEnd,
+    /// The part within which the whole chord runs, if it does.
+    pub lies_on: Option<Part>,
+}
+
+/// A point where a ray meets a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Meeting {
+    /// The parameter, counted as the chord's.
+    pub t: f64,
+    /// The part of the surface.
+    pub part: Part,
+    /// The direction of the crossing.
+    pub crossing: Crossing,
+}
+
+impl Chord {
+    /// The first point at which the ray is on the surface that has the discs
+    /// `caps`, among those with `t_min <= t + shift <= t_max`.
+    ///
+    /// The range is the whole ray's; `shift` is where the chord's `t` starts
+    /// on it, 0 unless the solver was given a point farther along the ray.
+    #[inline]
+    #[must_use]
+    pub fn first(&self, caps: Caps, shift: f64, t_min: f64, t_max: f64) -> Option<Meeting> {
+        if let Some(part) = self.lies_on
+            && exists(part, caps)
+            && self.enter.t + shift < t_min
+            && t_min <= self.leave.t + shift
+            && t_min <= t_max
+        {
+            return Some(Meeting {
+                t: t_min - shift,
+                part,
+                crossing: Crossing::Enter,
+            });
+        }
+        let meet = |end: &ChordEnd, crossing| {
+            let part = end.present(caps)?;
+            let t = end.t + shift;
+            (t_min <= t && t <= t_max).then_some(Meeting {
+                t: end.t,
+                part,
+                crossing,
+            })
+        };
+        meet(&self.enter, Crossing::Enter).or_else(|| meet(&self.leave, Crossing::Leave))
+    }
+}
+
+impl ChordEnd {
+    /// The part of the surface this end lies on, if the surface has one there.
+    #[inline]
+    fn present(&self, caps: Caps) -> Option<Part> {
+        if exists(self.part, caps) {
+            Some(self.part)
+        } else {
+            self.on_rim.then_some(Part::Side)
+        }
+    }
+}
+
+/// Whether a surface with these caps has this part.
+#[inline]
+fn exists(part: Part, caps: Caps) -> bool {
+    match part {
+        Part::Side => true,
+        Part::Cap0 => caps.at_p0(),
+        Part::Cap1 => caps.at_p1(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chord(enter: (f64, Part), leave: (f64, Part)) -> Chord {
+        let end = |(t, part)| ChordEnd {
+            t,
+            part,
+            on_rim: false,
+        };
+        Chord {
+            enter: end(enter),
+            leave: end(leave),
+            lies_on: None,
+        }
+    }
+
+    #[test]
+    fn first_outside_the_range_takes_the_exit() {
+        let chord = chord((1.0, Part::Cap0), (2.0, Part::Side));
+        let hit = chord.first(Caps::Both, 0.0, 1.5, 9.0).unwrap();
+        assert_eq!(
+            (hit.t, hit.part, hit.crossing),
+            (2.0, Part::Side, Crossing::Leave)
+        );
+        assert_eq!(chord.first(Caps::Both, 0.0, 1.5, 1.9), None);
+        assert_eq!(chord.first(Caps::Both, 0.0, 1.0, 1.0).unwrap().t, 1.0);
+    }
+
+    #[test]
+    fn shift_moves_the_chord_within_the_range() {
+        let chord = chord((1.0, Part::Cap0), (2.0, Part::Side));
+        assert_eq!(chord.first(Caps::Both, 10.0, 11.0, 11.0).unwrap().t, 1.0);
+        assert_eq!(chord.first(Caps::Both, 10.0, 11.5, 13.0).unwrap().t, 2.0);
+        assert_eq!(chord.first(Caps::Both, 10.0, 0.0, 9.0), None);
+    }
+
+    #[test]
+    fn absent_cap_lets_the_ray_through_but_keeps_its_rim() {
+        let mut chord = chord((1.0, Part::Cap0), (2.0, Part::Cap1));
+        assert_eq!(chord.first(Caps::None, 0.0, 0.0, 9.0), None);
+        assert_eq!(
+            chord.first(Caps::P1, 0.0, 0.0, 9.0).unwrap().part,
+            Part::Cap1
+        );
+        chord.enter.on_rim = true;
+        assert_eq!(
+            chord.first(Caps::None, 0.0, 0.0, 9.0).unwrap().part,
+            Part::Side
+        );
+        assert_eq!(
+            chord.first(Caps::P0, 0.0, 0.0, 9.0).unwrap().part,
+            Part::Cap0
+        );
+    }
+
+    #[test]
+    fn ray_within_the_surface_hits_at_the_start_of_its_range() {
+        let mut chord = chord((1.0, Part::Cap0), (3.0, Part::Cap0));
+        chord.lies_on = Some(Part::Cap0);
+        assert_eq!(chord.first(Caps::Both, 0.0, 2.0, 9.0).unwrap().t, 2.0);
+        assert_eq!(chord.first(Caps::Both, 0.0, 0.0, 9.0).unwrap().t, 1.0);
+        assert_eq!(chord.first(Caps::P1, 0.0, 2.0, 9.0), None);
+        assert_eq!(chord.first(Caps::Both, 0.0, 3.5, 9.0), None);
+    }
+}

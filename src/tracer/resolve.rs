@@ -1,0 +1,110 @@
+//! From the best hit of a query to the answer in world space.
+//!
+//! Point, normal, parameters and bounds are worked out once, for the hit that
+//! won. The path of placements is walked down again, with the very steps of the
+//! query, to the ray in the solid's own space; the surface point found there is
+//! then carried up.
+//!
+//! **The error of the point.** The true surface is that of the solid's exact
+//! numbers, carried through the exact placements. The point starts within the
+//! surface's own bound of it. A placement `p = L c + T` stretches that by at
+//! most `‖L‖` and rounds: three products and sums a component, below
+//! `4 u |L| |c|`, and the last sum, `u |p|`. The inverse is not used on the way
+//! up, so its error does not enter.
+//!
+//! **Where a spawned ray may start.** A new ray from near the surface must not
+//! meet it there again. Put the start at distance δ outside the tangent plane
+//! of the true surface. All that the next query computes is the exact answer
+//! for a start and a direction that are a little displaced; as the solid is
+//! convex and the direction does not point into it, there is no such meeting
+//! if δ is more than all displacements together, counted in world space:
+//!
+//! - the point's own `error`, and the rounding of the start, `u |p|`;
+//! - for each placement, `inverse_error` (see `math::placement`) times the
+//!   distance to the child's origin, and times the solid's size for the
+//!   direction;
+//! - for the solver, [`SOLVER_DISPLACEMENT`] times the sizes that it sees;
+//! - for the normal, which is within `16 u` times the conditions of the
+//!   placements of the true one, that angle times the solid's size.
+//!
+//! The sum, taken twice for the terms of second order, is `spawn_offset`.
+
+use std::sync::Arc;
+
+use super::Hit;
+use super::frame::LocalRay;
+use super::prototype::Prototype;
+use super::query::Best;
+use crate::math::{PlacementErrors, Ray, UNIT_ROUNDOFF};
+use crate::scene::Scene;
+use crate::solid::{SolidKind, surface_point};
+
+/// The triple-product solver answers exactly for a ray displaced by at most
+/// this times `|o| + |p0| + |p1| + 2 radius`; `docs/derivations.md`, section 5,
+/// adds up its roundings to 22 u.
+const SOLVER_DISPLACEMENT: f64 = 32.0 * UNIT_ROUNDOFF;
+
+/// The answer for the best hit of a query with `ray`.
+pub(crate) fn resolve(scene: &Scene, root: &Arc<Prototype>, ray: &Ray, best: &Best) -> Hit {
+    // Down to the prototype that was hit.
+    let mut prototype = root;
+    let mut local = root.frame.approach(&LocalRay::new(ray)).0;
+    let mut placements = Vec::with_capacity(best.path.len());
+    let mut description = &scene.prototypes[0];
+    for &index in &best.path {
+        let (record, child) = prototype.placement(index);
+        let placement = &description.placements[index as usize];
+        placements.push((record, placement.parent_from_child));
+        local = child.frame.approach(&record.child_ray(&local)).0;
+        prototype = child;
+        description = &scene.prototypes[placement.of.0 as usize];
+    }
+
+    // The point on the solid.
+    let record = &description.cylinders[best.record as usize];
+    let cylinder = record.cylinder();
+    let from_p0 = local.origin_from(cylinder.p0()) + local.direction * best.meeting.t;
+    let surface = surface_point(&cylinder, best.meeting.part, from_p0);
+    let mut size = (cylinder.p1() - cylinder.p0()).length() + 2.0 * cylinder.radius();
+    let seen = surface.point.length()
+        + cylinder.p0().length()
+        + cylinder.p1().length()
+        + 2.0 * cylinder.radius();
+
+    // Up again to the world.
+    let (mut point, mut normal, mut error) = (surface.point, surface.normal, surface.error);
+    let mut displacement = SOLVER_DISPLACEMENT * seen;
+    let mut normal_error = 16.0 * UNIT_ROUNDOFF;
+    for (record, parent_from_child) in placements.iter().rev() {
+        let way = &record.child_from_parent;
+        let errors = PlacementErrors::new(parent_from_child, way);
+        let terms = (parent_from_child.matrix3.abs() * point.abs()).length();
+        let moved = parent_from_child.matrix3 * point;
+        point = moved + parent_from_child.translation;
+        normal = way.parent_normal(normal);
+        error = errors.stretch * error + UNIT_ROUNDOFF * (4.0 * terms + point.length());
+        size *= errors.stretch;
+        displacement =
+            errors.stretch * displacement + errors.inverse_error * (moved.length() + error + size);
+        normal_error = errors.condition * (normal_error + 16.0 * UNIT_ROUNDOFF);
+    }
+    let spawn_offset =
+        2.0 * (error + displacement + 2.0 * UNIT_ROUNDOFF * point.length() + normal_error * size);
+
+    Hit {
+        t: best.t,
+        point,
+        error,
+        normal,
+        u: surface.u,
+        v: surface.v,
+        prototype: best.prototype,
+        solid: SolidKind::Cylinder,
+        primitive: best.primitive,
+        part: best.meeting.part,
+        crossing: best.meeting.crossing,
+        instance: best.path.to_vec(),
+        material: record.material(),
+        spawn_offset,
+    }
+}

@@ -1,0 +1,124 @@
+//! A user geometry simple enough to check by brute force: balls, in f64.
+
+use cyltrace::embree::{Box32, Ray32, UserGeometry};
+use cyltrace::math::Random;
+use glam::DVec3;
+
+#[derive(Clone, Copy, Debug)]
+pub struct Ball {
+    pub centre: DVec3,
+    pub radius: f64,
+}
+
+/// A ray and its closest hit so far.
+#[derive(Clone, Debug)]
+pub struct BallQuery {
+    pub origin: DVec3,
+    pub direction: DVec3,
+    /// The least `t`, then the least number of a ball.
+    pub best: Option<(f64, u32)>,
+    pub visits: u32,
+}
+
+pub struct Balls(pub Vec<Ball>);
+
+impl Ball {
+    /// Where a ray from outside enters.
+    pub fn enter(&self, query: &BallQuery) -> Option<f64> {
+        let to_centre = self.centre - query.origin;
+        let a = query.direction.length_squared();
+        let b = to_centre.dot(query.direction);
+        let discriminant = b * b - a * (to_centre.length_squared() - self.radius * self.radius);
+        let t = (b - discriminant.sqrt()) / a;
+        (t >= 0.0).then_some(t)
+    }
+
+    /// A box with room for the rounding of f32 rays of this test.
+    pub fn bounds(&self) -> Box32 {
+        let reach = DVec3::splat(self.radius * 1.001);
+        Box32 {
+            lower: (self.centre - reach).as_vec3().to_array(),
+            upper: (self.centre + reach).as_vec3().to_array(),
+        }
+    }
+}
+
+impl UserGeometry for Balls {
+    type Query = BallQuery;
+
+    fn primitive_count(&self) -> u32 {
+        self.0.len() as u32
+    }
+
+    fn bounds(&self, primitive: u32) -> Box32 {
+        self.0[primitive as usize].bounds()
+    }
+
+    fn intersect(&self, primitive: u32, query: &mut BallQuery) -> Option<f32> {
+        query.visits += 1;
+        let t = self.0[primitive as usize].enter(query)?;
+        let is_better = query.best.is_none_or(|best| (t, primitive) < best);
+        is_better.then(|| {
+            query.best = Some((t, primitive));
+            (t as f32).next_up()
+        })
+    }
+
+    fn occluded(&self, primitive: u32, query: &mut BallQuery) -> bool {
+        query.visits += 1;
+        self.0[primitive as usize].enter(query).is_some()
+    }
+}
+
+impl BallQuery {
+    pub fn new(origin: DVec3, direction: DVec3) -> Self {
+        Self {
+            origin,
+            direction,
+            best: None,
+            visits: 0,
+        }
+    }
+
+    pub fn ray(&self) -> Ray32 {
+        Ray32 {
+            origin: self.origin.as_vec3().to_array(),
+            direction: self.direction.as_vec3().to_array(),
+            t_near: 0.0,
+            t_far: f32::INFINITY,
+        }
+    }
+
+    pub fn brute_force(&self, balls: &[Ball]) -> Option<(f64, u32)> {
+        let hits = balls.iter().zip(0..);
+        hits.filter_map(|(ball, primitive)| Some((ball.enter(self)?, primitive)))
+            .min_by(|a, b| a.partial_cmp(b).expect("t is a number"))
+    }
+}
+
+/// Balls in the cube [-1, 1]^3.
+pub fn random_balls(seed: u64, count: usize) -> Vec<Ball> {
+    let mut random = Random::new(seed, 0);
+    let mut coordinate = || random.uniform(-1.0, 1.0);
+    let centres: Vec<DVec3> = (0..count)
+        .map(|_| DVec3::new(coordinate(), coordinate(), coordinate()))
+        .collect();
+    centres
+        .into_iter()
+        .map(|centre| Ball {
+            centre,
+            radius: random.log_uniform(1e-3, 0.2),
+        })
+        .collect()
+}
+
+/// The ray of a number: from a sphere of radius 4 through the cube, with f32
+/// coordinates, so that Embree and brute force see the same one.
+pub fn random_query(seed: u64, number: u64) -> BallQuery {
+    let mut random = Random::new(seed, number + 1);
+    let origin = (random.direction() * 4.0).as_vec3().as_dvec3();
+    let target = random.direction() * random.unit();
+    let length = random.log_uniform(1e-3, 1e3);
+    let direction = ((target - origin) * length).as_vec3().as_dvec3();
+    BallQuery::new(origin, direction)
+}

@@ -1,0 +1,10 @@
+//! What the Embree layer promises: lifetimes, threads, floating-point mode,
+//! panics, memory, and right answers of user and native geometry. A picture
+//! proves none of it.
+
+mod balls;
+mod lifetime;
+mod locate;
+mod native;
+mod panics;
+mod queries;
