@@ -103,6 +103,11 @@ fn layers_planted_uses_are_found() {
     );
     bites(layers, "src/solid/mod.rs", "use crate as everything;");
     bites(layers, "src/solid/mod.rs", "use crate::*;");
+    bites(
+        layers,
+        "src/oracle/mod.rs",
+        "use crate::solid::triple_product;",
+    );
     bites(layers, "src/elsewhere/mod.rs", "");
     spares(
         layers,

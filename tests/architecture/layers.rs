@@ -26,6 +26,10 @@ const MUST_NOT_KNOW: [(&str, &str); 5] = [
     ("capi", "report"),
 ];
 
+/// The solvers of `solid`, a file each; layers that must not know them by name.
+const SOLVERS: [&str; 1] = ["triple_product"];
+const WITHOUT_SOLVERS: [&str; 2] = ["oracle", "render"];
+
 /// A folder is a layer and uses only what stands above it.
 pub fn layers(file: &str, source: &str) -> Vec<String> {
     let path = file.trim_start_matches("src/");
@@ -37,8 +41,17 @@ pub fn layers(file: &str, source: &str) -> Vec<String> {
     let Some(own_row) = row(layer) else {
         return vec![format!("{file}: \"{layer}\" is not in the table of layers")];
     };
+    let tokens = tokens(source);
     let mut complaints = Vec::new();
-    for (used, line) in uses(&tokens(source), depth) {
+    for token in &tokens {
+        if WITHOUT_SOLVERS.contains(&layer) && SOLVERS.contains(&token.text.as_str()) {
+            let (line, name) = (token.line, &token.text);
+            complaints.push(format!(
+                "{file}:{line}: \"{layer}\" must not know \"{name}\""
+            ));
+        }
+    }
+    for (used, line) in uses(&tokens, depth) {
         if used == layer {
             continue;
         }
