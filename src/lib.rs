@@ -3,6 +3,8 @@
 
 pub mod embree;
 pub mod math;
+pub mod oracle;
+pub mod render;
 pub mod scene;
 pub mod solid;
 pub mod tracer;

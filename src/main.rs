@@ -1,2 +1,9 @@
-//! The command line.
-fn main() {}
+//! The `cyltrace` program: see `cyltrace --help`.
+
+mod cli;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::run()
+}

@@ -8,6 +8,7 @@
 //! further checks and knows nothing of files.
 
 mod camera;
+mod census;
 mod description;
 mod document;
 mod error;
@@ -24,6 +25,7 @@ mod table;
 mod transform;
 mod values;
 
+pub use census::Census;
 pub use description::{
     Camera, CylinderRecord, Film, Frame, Integrator, Material, MaterialIndex, Placement,
     Projection, Prototype, PrototypeIndex, RenderSettings, Scene, Sky, Sun,

@@ -8,6 +8,7 @@
 //! what the caller wants to know of it is worked out at the end (`resolve`).
 
 mod build;
+mod estimate;
 mod frame;
 mod hit;
 mod prototype;
@@ -18,6 +19,7 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 pub use build::{GREATEST_CONDITION, GREATEST_STRETCH, TracerError};
+pub use estimate::MemoryEstimate;
 pub use hit::Hit;
 pub use query::GREATEST_DEPTH;
 

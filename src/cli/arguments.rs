@@ -1,0 +1,149 @@
+//! The arguments, as clap reads them.
+
+use std::num::{NonZeroU32, NonZeroUsize};
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use cyltrace::embree::MaxIsa;
+use cyltrace::scene::{Film, Integrator};
+
+use super::target::is_standard_output;
+
+/// Traces analytic cylinders through Embree: exact hits, no meshes.
+#[derive(Debug, Parser)]
+#[command(version, about, long_about = None, max_term_width = 100)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    Render(RenderArguments),
+    Trace(TraceArguments),
+    Info(InfoArguments),
+}
+
+/// What every command takes.
+#[derive(Args, Debug)]
+pub struct Common {
+    /// Write the figures of the run to FILE; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Print neither figures nor progress
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Use N threads [default: as many as the machine has]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+    /// Hold Embree to an instruction set: sse2, sse4.2, avx, avx2 or avx512
+    #[arg(long, value_name = "NAME")]
+    pub max_isa: Option<MaxIsa>,
+}
+
+impl Common {
+    /// Whether the lines meant for people are printed: not when asked to be
+    /// quiet, nor when standard output is for the figures.
+    pub fn prints(&self) -> bool {
+        !self.quiet
+            && self
+                .json
+                .as_deref()
+                .is_none_or(|path| !is_standard_output(path))
+    }
+}
+
+/// Make a picture of a scene
+#[derive(Args, Debug)]
+pub struct RenderArguments {
+    /// The scene file
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// The picture: a name ending in .png (8-bit sRGB, clamped to [0, 1]) or
+    /// .exr (32-bit linear)
+    #[arg(long, short, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Size of the picture in pixels [default: the scene's, else 1280x720]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub size: Option<Film>,
+    /// Samples a pixel; powers of two are best [default: the scene's, else 4]
+    #[arg(long, value_name = "N")]
+    pub spp: Option<NonZeroU32>,
+    /// What the picture shows [default: the scene's, else sun]
+    #[arg(long, value_name = "NAME", value_enum)]
+    pub integrator: Option<IntegratorName>,
+    /// Chooses the random numbers
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Trace rays from a table; write their hits to another
+#[derive(Args, Debug)]
+pub struct TraceArguments {
+    /// The scene file
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// CSV with the columns ox,oy,oz,dx,dy,dz and optionally t_min,t_max
+    /// (defaults 0 and inf)
+    #[arg(long, value_name = "FILE")]
+    pub rays: PathBuf,
+    /// CSV of hits, one row a ray, in order; `-` is standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Say what a scene holds, without tracing it
+#[derive(Args, Debug)]
+pub struct InfoArguments {
+    /// The scene file
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// The integrators by their names.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum IntegratorName {
+    /// Sun and sky with shadows
+    Sun,
+    /// The visible part of an open sky
+    Ao,
+    /// The outward normal as a colour
+    Normal,
+}
+
+impl From<IntegratorName> for Integrator {
+    fn from(name: IntegratorName) -> Self {
+        match name {
+            IntegratorName::Sun => Self::Sun,
+            IntegratorName::Ao => Self::Ao,
+            IntegratorName::Normal => Self::Normal,
+        }
+    }
+}
+
+/// The name under which an integrator is reported.
+pub fn integrator_name(integrator: Integrator) -> &'static str {
+    match integrator {
+        Integrator::Sun => "sun",
+        Integrator::Ao => "ao",
+        Integrator::Normal => "normal",
+    }
+}
+
+fn parse_size(text: &str) -> Result<Film, String> {
+    let size = text.split_once(['x', 'X']).and_then(|(width, height)| {
+        let width: NonZeroU32 = width.parse().ok()?;
+        let height: NonZeroU32 = height.parse().ok()?;
+        Some(Film {
+            width: width.get(),
+            height: height.get(),
+        })
+    });
+    size.ok_or_else(|| "it must be two whole numbers above 0, such as 1280x720".to_owned())
+}

@@ -1,0 +1,106 @@
+//! Tables of hits, as DESIGN.md fixes their columns.
+
+use std::fmt::Write;
+
+use cyltrace::scene::Scene;
+use cyltrace::tracer::Hit;
+
+/// The header line.
+pub const HEADER: &str =
+    "ray,hit,t,x,y,z,nx,ny,nz,prototype,solid,primitive,part,crossing,instance,u,v,error\n";
+
+/// The cells of a miss after `ray` and `hit`: all 16 empty.
+const MISS: &str = ",,,,,,,,,,,,,,,";
+
+/// Appends the row of ray number `ray`.
+pub fn push_row(rows: &mut String, ray: u64, hit: Option<&Hit>, scene: &Scene) {
+    let Some(hit) = hit else {
+        push(rows, format_args!("{ray},0,{MISS}\n"));
+        return;
+    };
+    push(rows, format_args!("{ray},1"));
+    let numbers = [hit.t, hit.point.x, hit.point.y, hit.point.z];
+    for value in numbers.into_iter().chain(hit.normal.to_array()) {
+        push_number(rows, value);
+    }
+    rows.push(',');
+    push_text(rows, &scene.prototypes[hit.prototype.0 as usize].name);
+    push(
+        rows,
+        format_args!(
+            ",{},{},{},{},",
+            hit.solid.name(),
+            hit.primitive,
+            hit.part.name(),
+            hit.crossing.name()
+        ),
+    );
+    for (level, placement) in hit.instance.iter().enumerate() {
+        let separator = if level == 0 { "" } else { "/" };
+        push(rows, format_args!("{separator}{placement}"));
+    }
+    for value in [hit.u, hit.v, hit.error] {
+        push_number(rows, value);
+    }
+    rows.push('\n');
+}
+
+/// Appends a comma and the shortest text that reads back as the same f64:
+/// decimal, or scientific where that would need many zeros.
+fn push_number(rows: &mut String, value: f64) {
+    push(rows, format_args!(",{value:?}"));
+    if rows.ends_with(".0") {
+        rows.truncate(rows.len() - 2);
+    }
+}
+
+/// Appends a cell, quoted where it has to be.
+fn push_text(rows: &mut String, text: &str) {
+    if text.contains([',', '"', '\n', '\r']) {
+        push(rows, format_args!("\"{}\"", text.replace('"', "\"\"")));
+    } else {
+        rows.push_str(text);
+    }
+}
+
+fn push(rows: &mut String, text: std::fmt::Arguments) {
+    rows.write_fmt(text).expect("a String takes any text");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn number_written_reads_back_and_is_short() {
+        for (value, text) in [
+            (1.0, ",1"),
+            (-0.0, ",-0"),
+            (0.1, ",0.1"),
+            (1e-300, ",1e-300"),
+            (1e300, ",1e300"),
+            (-2.5e17, ",-2.5e17"),
+            (1.0 / 3.0, ",0.3333333333333333"),
+            (5e-324, ",5e-324"),
+        ] {
+            let mut row = String::new();
+            push_number(&mut row, value);
+            assert_eq!(row, text);
+            let back: f64 = row[1..].parse().expect("a number");
+            assert_eq!(back.to_bits(), value.to_bits());
+        }
+    }
+
+    #[test]
+    fn miss_has_as_many_cells_as_the_header() {
+        let cells = format!("0,0,{MISS}").split(',').count();
+        assert_eq!(cells, HEADER.split(',').count());
+    }
+
+    #[test]
+    fn text_with_commas_and_quotes_is_quoted() {
+        let mut row = String::new();
+        push_text(&mut row, "a,\"b\"");
+        assert_eq!(row, "\"a,\"\"b\"\"\"");
+    }
+}

@@ -1,0 +1,94 @@
+//! `cyltrace info`.
+
+use std::time::Instant;
+
+use cyltrace::tracer::MemoryEstimate;
+use serde_json::json;
+
+use super::arguments::InfoArguments;
+use super::{json, memory};
+
+/// Says what the scene holds.
+pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
+    json::check(&arguments.common)?;
+    let start = Instant::now();
+    let scene = cyltrace::scene::load(&arguments.scene)?;
+    let load = start.elapsed().as_secs_f64();
+    let census = scene.census();
+    let estimate = MemoryEstimate::of(&census);
+    let (lower, upper) = (census.bounds.lower, census.bounds.upper);
+
+    if arguments.common.prints() {
+        println!("{}", arguments.scene.display());
+        println!(
+            "prototypes: {}, of which {} are placed",
+            census.prototypes, census.prototypes_used
+        );
+        println!(
+            "placements: {} stored, {} instances, {} levels deep",
+            census.placements, census.instances, census.depth
+        );
+        println!(
+            "cylinders: {} unique, {} instanced",
+            census.cylinders_unique, census.cylinders_instanced
+        );
+        if scene.skipped_rows > 0 {
+            println!("rows skipped as degenerate: {}", scene.skipped_rows);
+        }
+        println!(
+            "bounds: ({}, {}, {}) to ({}, {}, {})",
+            lower.x, lower.y, lower.z, upper.x, upper.y, upper.z
+        );
+        println!(
+            "memory, estimated: {} of records, {} in Embree",
+            memory::readable(estimate.records_bytes),
+            memory::readable(estimate.embree_bytes)
+        );
+        for material in &scene.materials {
+            let name = if material.name.is_empty() {
+                "(default)"
+            } else {
+                &material.name
+            };
+            let color = material.color;
+            println!(
+                "material {name}: diffuse ({}, {}, {})",
+                color.x, color.y, color.z
+            );
+        }
+    }
+
+    let materials: Vec<_> = scene
+        .materials
+        .iter()
+        .map(|material| {
+            json!({
+                "name": material.name,
+                "kind": "diffuse",
+                "color": material.color.to_array(),
+            })
+        })
+        .collect();
+    json::write(
+        &arguments.common,
+        &json!({
+            "scene": arguments.scene,
+            "load_s": load,
+            "prototypes": { "all": census.prototypes, "placed": census.prototypes_used },
+            "placements": census.placements,
+            "instances": json::count(census.instances),
+            "depth": census.depth,
+            "cylinders": {
+                "unique": census.cylinders_unique,
+                "instanced": json::count(census.cylinders_instanced),
+            },
+            "skipped_rows": scene.skipped_rows,
+            "bounds": { "lower": lower.to_array(), "upper": upper.to_array() },
+            "memory_estimate": {
+                "records_bytes": estimate.records_bytes,
+                "embree_bytes": estimate.embree_bytes,
+            },
+            "materials": materials,
+        }),
+    )
+}

@@ -1,0 +1,52 @@
+//! The figures of a run as JSON.
+
+use std::io::Write;
+
+use cyltrace::tracer::Statistics;
+use serde_json::{Value, json};
+
+use super::arguments::Common;
+use super::memory::peak_resident_bytes;
+use super::target::Target;
+
+/// Says before any work whether the figures can be written.
+pub fn check(common: &Common) -> anyhow::Result<()> {
+    match &common.json {
+        Some(path) => Ok(Target::check(path)?),
+        None => Ok(()),
+    }
+}
+
+/// Writes the figures where `--json` says, if it was given.
+pub fn write(common: &Common, figures: &Value) -> anyhow::Result<()> {
+    let Some(path) = &common.json else {
+        return Ok(());
+    };
+    let mut target = Target::create(path)?;
+    serde_json::to_writer_pretty(&mut target, figures)?;
+    writeln!(target)?;
+    target.finish()
+}
+
+/// A count; one beyond u64, which JSON readers round anyway, is given as a
+/// float.
+pub fn count(count: u128) -> Value {
+    u64::try_from(count).map_or_else(|_| json!(count as f64), |count| json!(count))
+}
+
+/// The memory a traced scene took.
+pub fn memory(statistics: &Statistics) -> Value {
+    json!({
+        "embree_bytes": statistics.embree_bytes,
+        "records_bytes": statistics.records_bytes,
+        "peak_rss_bytes": peak_resident_bytes(),
+    })
+}
+
+/// The cylinders of a traced scene.
+pub fn cylinders(statistics: &Statistics) -> Value {
+    json!({
+        "unique": statistics.cylinders_unique,
+        "instanced": count(statistics.cylinders_instanced),
+    })
+}

@@ -1,0 +1,164 @@
+//! `cyltrace render`.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use anyhow::Context;
+use cyltrace::render::{Output, Picture, RenderError, Settings};
+use cyltrace::tracer::{Options, Tracer};
+use serde_json::json;
+
+use super::arguments::{Common, RenderArguments, integrator_name};
+use super::{interrupt, json, memory, progress};
+
+/// How long the parts of the command took, in seconds.
+struct Times {
+    load: f64,
+    build: f64,
+    render: f64,
+}
+
+/// Renders the scene into the picture.
+pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
+    let common = &arguments.common;
+    Output::check(&arguments.output)?;
+    json::check(common)?;
+    interrupt::install()?;
+
+    let start = Instant::now();
+    let scene = Arc::new(cyltrace::scene::load(&arguments.scene)?);
+    let mut settings = Settings::of(&scene);
+    settings.seed = arguments.seed;
+    if let Some(size) = arguments.size {
+        settings.film = size;
+    }
+    if let Some(spp) = arguments.spp {
+        settings.spp = spp.get();
+    }
+    if let Some(integrator) = arguments.integrator {
+        settings.integrator = integrator.into();
+    }
+    settings.check()?;
+    let load = start.elapsed().as_secs_f64();
+
+    let start = Instant::now();
+    let tracer = build(common, &scene)?;
+    let build = start.elapsed().as_secs_f64();
+
+    let cancelled = interrupt::end_in_order();
+    let output = Output::create(&arguments.output)?;
+    let workers = cyltrace::render::workers(common.threads).context("cannot start threads")?;
+    let threads = workers.current_num_threads();
+    let film = settings.film;
+    let bar = progress::bar(
+        common,
+        u64::from(film.width) * u64::from(film.height),
+        "pixels",
+    );
+    let start = Instant::now();
+    let rendered = cyltrace::render::render(
+        &tracer,
+        &settings,
+        &workers,
+        &|pixels| bar.inc(pixels),
+        cancelled,
+    );
+    let render = start.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+    let picture = match rendered {
+        Err(RenderError::Cancelled) => return Err(interrupt::Interrupted.into()),
+        other => other?,
+    };
+    interrupt::check()?;
+    output.write(&picture.film)?;
+
+    let times = Times {
+        load,
+        build,
+        render,
+    };
+    report(arguments, &settings, &tracer, &picture, &times, threads)
+}
+
+/// Builds what is traced.
+pub fn build(common: &Common, scene: &Arc<cyltrace::scene::Scene>) -> anyhow::Result<Tracer> {
+    let spinner = progress::spinner(common, "building the scene");
+    let options = Options {
+        threads: common.threads,
+        max_isa: common.max_isa,
+    };
+    let tracer = Tracer::new(Arc::clone(scene), &options)?;
+    spinner.finish_and_clear();
+    Ok(tracer)
+}
+
+/// Prints the figures, and writes them where `--json` says.
+fn report(
+    arguments: &RenderArguments,
+    settings: &Settings,
+    tracer: &Tracer,
+    picture: &Picture,
+    times: &Times,
+    threads: usize,
+) -> anyhow::Result<()> {
+    let statistics = tracer.statistics();
+    let rays = picture.rays;
+    let rays_per_s = rays.total() as f64 / times.render;
+    let skipped: Vec<_> = picture.skipped.iter().chain(&statistics.skipped).collect();
+    if arguments.common.prints() {
+        println!(
+            "{}: {}x{}, {} samples a pixel, {}",
+            arguments.output.display(),
+            settings.film.width,
+            settings.film.height,
+            settings.spp,
+            integrator_name(settings.integrator)
+        );
+        println!(
+            "cylinders: {} unique, {} in {} instances",
+            statistics.cylinders_unique, statistics.cylinders_instanced, statistics.instances
+        );
+        println!(
+            "memory: {} of records, {} in Embree {} ({})",
+            memory::readable(statistics.records_bytes as u64),
+            memory::readable(statistics.embree_bytes as u64),
+            statistics.embree_version,
+            statistics.isa
+        );
+        println!(
+            "time: load {:.2} s, build {:.2} s, render {:.2} s on {threads} threads",
+            times.load, times.build, times.render
+        );
+        println!(
+            "rays: {}, {:.2} million a second",
+            rays.total(),
+            rays_per_s / 1e6
+        );
+        for reason in &skipped {
+            println!("skipped: {reason}");
+        }
+    }
+    json::write(
+        &arguments.common,
+        &json!({
+            "scene": arguments.scene,
+            "output": arguments.output,
+            "size": [settings.film.width, settings.film.height],
+            "spp": settings.spp,
+            "integrator": integrator_name(settings.integrator),
+            "seed": settings.seed,
+            "load_s": times.load,
+            "build_s": times.build,
+            "render_s": times.render,
+            "rays": { "camera": rays.camera, "shadow": rays.shadow, "ao": rays.ao },
+            "rays_per_s": rays_per_s,
+            "cylinders": json::cylinders(statistics),
+            "instances": json::count(statistics.instances),
+            "memory": json::memory(statistics),
+            "skipped": skipped,
+            "embree": statistics.embree_version,
+            "isa": statistics.isa,
+            "threads": threads,
+        }),
+    )
+}

@@ -1,0 +1,59 @@
+//! Where a table goes: standard output, or a file that is whole or absent.
+
+use std::io::{self, BufWriter, Stdout, Write};
+use std::path::Path;
+
+use cyltrace::render::{FileError, NewFile};
+
+/// Standard output, or a new file.
+pub enum Target {
+    StandardOutput(BufWriter<Stdout>),
+    File(NewFile),
+}
+
+impl Target {
+    /// Says before any work whether `path` could be written.
+    pub fn check(path: &Path) -> Result<(), FileError> {
+        if is_standard_output(path) {
+            return Ok(());
+        }
+        NewFile::check(path)
+    }
+
+    /// Opens `path`; `-` is standard output.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
+        if is_standard_output(path) {
+            return Ok(Self::StandardOutput(BufWriter::new(io::stdout())));
+        }
+        NewFile::create(path).map(Self::File)
+    }
+
+    /// Writes what is buffered and moves the file to its place.
+    pub fn finish(self) -> anyhow::Result<()> {
+        match self {
+            Self::StandardOutput(mut writer) => Ok(writer.flush()?),
+            Self::File(file) => Ok(file.finish()?),
+        }
+    }
+}
+
+impl Write for Target {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::StandardOutput(writer) => writer.write(bytes),
+            Self::File(file) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::StandardOutput(writer) => writer.flush(),
+            Self::File(file) => file.flush(),
+        }
+    }
+}
+
+/// Whether a file's name stands for standard output.
+pub fn is_standard_output(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}

@@ -1,0 +1,185 @@
+//! `cyltrace trace`.
+//!
+//! Rays are read, traced and written in batches of a few blocks a thread, so
+//! that a table of any length needs little memory and rows stay in order.
+
+use std::io::Write;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use anyhow::Context;
+use cyltrace::math::Ray;
+use cyltrace::tracer::Tracer;
+use rayon::prelude::*;
+use serde_json::json;
+
+use super::arguments::TraceArguments;
+use super::ray_table::{Block, RayTable};
+use super::target::{Target, is_standard_output};
+use super::{hit_table, interrupt, json, progress, render};
+
+/// Blocks that a thread gets of each batch: enough to even out slow ones.
+const BLOCKS_PER_THREAD: usize = 4;
+
+/// What the whole table came to.
+#[derive(Default)]
+struct Totals {
+    rays: u64,
+    hits: u64,
+}
+
+/// Traces the rays of a table.
+pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
+    let common = &arguments.common;
+    Target::check(&arguments.output)?;
+    json::check(common)?;
+    interrupt::install()?;
+    let workers = cyltrace::render::workers(common.threads).context("cannot start threads")?;
+    let threads = workers.current_num_threads();
+
+    // A bad row is to be found before anything is traced or written. A pipe
+    // can be read once only; its rows are checked on the way.
+    let start = Instant::now();
+    let rereadable = arguments.rays.metadata().is_ok_and(|file| file.is_file());
+    let rays = if rereadable {
+        Some(workers.install(|| count_rays(&arguments.rays))?)
+    } else {
+        None
+    };
+    let check = start.elapsed().as_secs_f64();
+
+    let start = Instant::now();
+    let scene = Arc::new(cyltrace::scene::load(&arguments.scene)?);
+    let load = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let tracer = render::build(common, &scene)?;
+    let build = start.elapsed().as_secs_f64();
+
+    interrupt::end_in_order();
+    let mut target = Target::create(&arguments.output)?;
+    let bar = progress::bar(common, rays.unwrap_or(0), "rays");
+    let start = Instant::now();
+    target.write_all(hit_table::HEADER.as_bytes())?;
+    let mut totals = Totals::default();
+    workers.install(|| {
+        for_each_batch(&arguments.rays, |blocks| {
+            let before = totals.rays;
+            trace_batch(&tracer, &blocks, &mut totals, &mut target)?;
+            bar.inc(totals.rays - before);
+            Ok(())
+        })
+    })?;
+    target.finish()?;
+    let trace = start.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+
+    let statistics = tracer.statistics();
+    let Totals { rays, hits } = totals;
+    let rays_per_s = rays as f64 / trace;
+    if common.prints() && !is_standard_output(&arguments.output) {
+        println!("{}: {hits} of {rays} rays hit", arguments.output.display());
+        println!(
+            "time: check {check:.2} s, load {load:.2} s, build {build:.2} s, trace {trace:.2} s on {threads} threads ({:.2} million rays a second, tables included)",
+            rays_per_s / 1e6
+        );
+    }
+    json::write(
+        common,
+        &json!({
+            "scene": arguments.scene,
+            "rays_file": arguments.rays,
+            "output": arguments.output,
+            "rays": rays,
+            "hits": hits,
+            "check_s": check,
+            "load_s": load,
+            "build_s": build,
+            "trace_s": trace,
+            "rays_per_s": rays_per_s,
+            "cylinders": json::cylinders(statistics),
+            "instances": json::count(statistics.instances),
+            "memory": json::memory(statistics),
+            "skipped": statistics.skipped,
+            "embree": statistics.embree_version,
+            "isa": statistics.isa,
+            "threads": threads,
+        }),
+    )
+}
+
+/// The number of rays in a table, all of them good.
+fn count_rays(path: &Path) -> anyhow::Result<u64> {
+    let mut count = 0;
+    for_each_batch(path, |blocks| {
+        count += blocks.iter().map(|rays| rays.len() as u64).sum::<u64>();
+        Ok(())
+    })?;
+    Ok(count)
+}
+
+/// Reads a table in the rayon pool that this is called in, and hands on the
+/// rays of some blocks at a time, in order.
+fn for_each_batch(
+    path: &Path,
+    mut action: impl FnMut(Vec<Vec<Ray>>) -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
+    let mut table = RayTable::open(path)?;
+    let columns = table.columns();
+    loop {
+        interrupt::check()?;
+        let mut blocks = Vec::new();
+        while blocks.len() < BLOCKS_PER_THREAD * rayon::current_num_threads() {
+            let Some(block) = table.next_block()? else {
+                break;
+            };
+            blocks.push(block);
+        }
+        if blocks.is_empty() {
+            return Ok(());
+        }
+        let parse = |block: &Block| RayTable::rays(path, &columns, block);
+        // Collected first, then searched for an error, so that the first bad
+        // row is the one that is reported.
+        let parsed: Vec<_> = blocks.par_iter().map(parse).collect();
+        action(parsed.into_iter().collect::<anyhow::Result<_>>()?)?;
+    }
+}
+
+/// Traces the rays of some blocks and writes their rows.
+fn trace_batch(
+    tracer: &Tracer,
+    blocks: &[Vec<Ray>],
+    totals: &mut Totals,
+    target: &mut Target,
+) -> anyhow::Result<()> {
+    let numbered: Vec<_> = blocks
+        .iter()
+        .map(|rays| {
+            let first = totals.rays;
+            totals.rays += rays.len() as u64;
+            (first, rays)
+        })
+        .collect();
+    let traced: Vec<(String, u64)> = numbered
+        .par_iter()
+        .map(|(first, rays)| trace_block(tracer, *first, rays))
+        .collect();
+    for (rows, hits) in traced {
+        target.write_all(rows.as_bytes())?;
+        totals.hits += hits;
+    }
+    Ok(())
+}
+
+/// The rows of a block whose rays count from `first`, and how many are hits.
+fn trace_block(tracer: &Tracer, first: u64, rays: &[Ray]) -> (String, u64) {
+    let mut rows = String::new();
+    let mut hits = 0;
+    for (number, ray) in (first..).zip(rays) {
+        let hit = tracer.closest(ray);
+        hits += u64::from(hit.is_some());
+        hit_table::push_row(&mut rows, number, hit.as_ref(), tracer.scene());
+    }
+    (rows, hits)
+}

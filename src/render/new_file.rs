@@ -1,0 +1,253 @@
+//! Files that appear only when they are complete.
+//!
+//! What is written goes to a temporary file beside the target, which is
+//! renamed at the end, so that whatever stood there stays whole until the new
+//! file is whole too. Devices and pipes, which cannot be replaced, are written
+//! to directly.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+/// Why a file cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum FileError {
+    /// The directory of the file does not exist, or is no directory.
+    #[error("cannot write {path:?}: there is no directory {directory:?}")]
+    NoDirectory {
+        /// The file as asked for.
+        path: PathBuf,
+        /// Its directory.
+        directory: PathBuf,
+    },
+    /// There is a directory in the file's place.
+    #[error("cannot write {path:?}: it is a directory")]
+    IsDirectory {
+        /// The file as asked for.
+        path: PathBuf,
+    },
+    /// The system refuses to create, write or rename the file.
+    #[error("cannot write {path:?}")]
+    System {
+        /// The file as asked for.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+}
+
+/// A file that will create or replace another. Unless [`NewFile::finish`] is
+/// reached, nothing of it stays.
+#[derive(Debug)]
+pub struct NewFile {
+    path: PathBuf,
+    writer: BufWriter<Sink>,
+}
+
+#[derive(Debug)]
+enum Sink {
+    Temporary(NamedTempFile),
+    Device(File),
+}
+
+impl NewFile {
+    /// Says whether a file could be written to `path`, as far as that can be
+    /// told without creating it.
+    ///
+    /// # Errors
+    /// When the directory does not exist, or `path` is a directory.
+    pub fn check(path: &Path) -> Result<(), FileError> {
+        let directory = directory_of(path);
+        if !directory.is_dir() {
+            return Err(FileError::NoDirectory {
+                path: path.into(),
+                directory: directory.into(),
+            });
+        }
+        if path.is_dir() {
+            return Err(FileError::IsDirectory { path: path.into() });
+        }
+        Ok(())
+    }
+
+    /// Opens a temporary file beside `path`. A symbolic link stays one: the
+    /// file that it names is the one to be replaced.
+    ///
+    /// # Errors
+    /// Those of [`NewFile::check`], or when the directory cannot be written
+    /// to.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
+        Self::check(path)?;
+        let system = |source| FileError::System {
+            path: path.into(),
+            source,
+        };
+        let is_device = fs::metadata(path).is_ok_and(|existing| !existing.is_file());
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.into());
+        let sink = if is_device {
+            Sink::Device(File::create(&path).map_err(system)?)
+        } else {
+            Sink::Temporary(temporary_in(directory_of(&path)).map_err(system)?)
+        };
+        Ok(Self {
+            path,
+            writer: BufWriter::with_capacity(1 << 16, sink),
+        })
+    }
+
+    /// Writes what is buffered and moves the file to its place.
+    ///
+    /// # Errors
+    /// When writing or renaming fails.
+    pub fn finish(self) -> Result<(), FileError> {
+        let Self { path, writer } = self;
+        let sink = writer.into_inner().map_err(io::IntoInnerError::into_error);
+        let renamed = match sink {
+            Ok(Sink::Temporary(file)) => file.persist(&path).map(|_| ()).map_err(|e| e.error),
+            Ok(Sink::Device(_)) => Ok(()),
+            Err(error) => Err(error),
+        };
+        renamed.map_err(|source| FileError::System { path, source })
+    }
+}
+
+impl Write for NewFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.writer.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
+    }
+}
+
+impl Seek for NewFile {
+    fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
+        self.writer.seek(position)
+    }
+}
+
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::Temporary(file) => file.write(bytes),
+            Self::Device(file) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::Temporary(file) => file.flush(),
+            Self::Device(file) => file.flush(),
+        }
+    }
+}
+
+impl Seek for Sink {
+    fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
+        match self {
+            Self::Temporary(file) => file.seek(position),
+            Self::Device(file) => file.seek(position),
+        }
+    }
+}
+
+/// The directory that a file lies in: `.` for a bare name.
+fn directory_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    }
+}
+
+fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".cyltrace-");
+    // Temporary files are private by default; this one is to be as readable
+    // as the user's umask lets any file be.
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(directory)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names_in(directory: &Path) -> Vec<PathBuf> {
+        let entries = fs::read_dir(directory).expect("readable directory");
+        entries.map(|entry| entry.expect("entry").path()).collect()
+    }
+
+    #[test]
+    fn new_file_dropped_unfinished_nothing_left_and_old_file_kept() {
+        let directory = tempfile::tempdir().expect("directory");
+        let path = directory.path().join("old");
+        fs::write(&path, "old").expect("written");
+        let mut file = NewFile::create(&path).expect("created");
+        file.write_all(b"new").expect("written");
+        drop(file);
+        assert_eq!(names_in(directory.path()), std::slice::from_ref(&path));
+        assert_eq!(fs::read(&path).expect("read"), b"old");
+    }
+
+    #[test]
+    fn new_file_finished_replaces_the_old_one() {
+        let directory = tempfile::tempdir().expect("directory");
+        let path = directory.path().join("old");
+        fs::write(&path, "old").expect("written");
+        let mut file = NewFile::create(&path).expect("created");
+        file.write_all(b"new").expect("written");
+        file.finish().expect("finished");
+        assert_eq!(names_in(directory.path()), std::slice::from_ref(&path));
+        assert_eq!(fs::read(&path).expect("read"), b"new");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn new_file_through_a_link_or_device_keeps_them() {
+        use std::os::unix::fs::{FileTypeExt, symlink};
+        let directory = tempfile::tempdir().expect("directory");
+        let (target, link) = (
+            directory.path().join("target"),
+            directory.path().join("link"),
+        );
+        fs::write(&target, "old").expect("written");
+        symlink(&target, &link).expect("linked");
+        let mut file = NewFile::create(&link).expect("created");
+        file.write_all(b"new").expect("written");
+        file.finish().expect("finished");
+        assert!(link.is_symlink());
+        assert_eq!(fs::read(&target).expect("read"), b"new");
+
+        let null = directory.path().join("null");
+        symlink("/dev/null", &null).expect("linked");
+        NewFile::create(&null)
+            .and_then(NewFile::finish)
+            .expect("written");
+        let null = fs::metadata("/dev/null").expect("there");
+        assert!(null.file_type().is_char_device());
+    }
+
+    #[test]
+    fn new_file_in_unusable_places_refused_by_name() {
+        let directory = tempfile::tempdir().expect("directory");
+        let missing = directory.path().join("missing/file");
+        let message = NewFile::create(&missing)
+            .expect_err("no directory")
+            .to_string();
+        assert!(
+            message.contains("no directory") && message.contains("missing"),
+            "{message}"
+        );
+        let message = NewFile::create(directory.path())
+            .expect_err("taken")
+            .to_string();
+        assert!(message.contains("is a directory"), "{message}");
+    }
+}
