@@ -77,5 +77,8 @@ EMBREE_INCLUDE_DIR=$prefix/include
 EMBREE_LIB_DIR=$prefix/lib
 EMBREE_MAJOR=4
 CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$prefix/build}
-export EMBREE_INCLUDE_DIR EMBREE_LIB_DIR EMBREE_MAJOR CARGO_TARGET_DIR
+# Programs find the library by the path that build.rs puts into them, doctests
+# only by this.
+LD_LIBRARY_PATH=$prefix/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+export EMBREE_INCLUDE_DIR EMBREE_LIB_DIR EMBREE_MAJOR CARGO_TARGET_DIR LD_LIBRARY_PATH
 exec "$@"

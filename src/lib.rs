@@ -3,6 +3,7 @@
 
 pub mod embree;
 pub mod math;
+pub mod oracle;
 pub mod render;
 pub mod scene;
 pub mod solid;

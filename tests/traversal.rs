@@ -4,14 +4,12 @@
 //! `CYLTRACE_RAYS=1000000 cargo test --release --test traversal` is the full
 //! run; the default is a tenth of it.
 
+mod support;
+
 use std::sync::Arc;
 
 use cyltrace::math::{Random, Ray};
-use cyltrace::scene::{
-    Camera, CylinderRecord, Film, Frame, MaterialIndex, Placement, Projection, Prototype,
-    PrototypeIndex, RenderSettings, Scene,
-};
-use cyltrace::solid::{Caps, Cylinder};
+use cyltrace::scene::{CylinderRecord, Placement, Prototype, PrototypeIndex};
 use cyltrace::tracer::{Options, Tracer};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
@@ -22,74 +20,58 @@ fn ray_count() -> u64 {
     std::env::var("CYLTRACE_RAYS").map_or(100_000, |count| count.parse().expect("a number"))
 }
 
-fn scene_of(prototypes: Vec<Prototype>) -> Arc<Scene> {
-    Arc::new(Scene {
-        prototypes,
-        materials: Vec::new(),
-        camera: Camera {
-            projection: Projection::Perspective { fov_degrees: 40.0 },
-            frame: Frame::Auto,
-        },
-        film: Film { width: 1, height: 1 },
-        render: RenderSettings { integrator: Default::default(), spp: 1 },
-        sun: None,
-        sky: None,
-        background: DVec3::ZERO,
-        skipped_rows: 0,
-    })
-}
-
-/// `count` cylinders in the unit cube: long and short, thick and thin, of all
-/// cap kinds, some of them twice.
-fn cylinders_in_a_box(count: u32) -> Vec<CylinderRecord> {
-    let mut random = Random::new(SEED, 1);
-    let mut records: Vec<CylinderRecord> = Vec::new();
-    for primitive in 0..count {
-        let p0 = DVec3::new(random.unit(), random.unit(), random.unit());
-        let p1 = p0 + random.direction() * random.log_uniform(1e-3, 0.5);
-        let radius = random.log_uniform(1e-5, 5e-2);
-        let caps = [Caps::None, Caps::P0, Caps::P1, Caps::Both][random.below(4) as usize];
-        let mut cylinder = Cylinder::new(p0, p1, radius, caps).unwrap();
-        if random.below(20) == 0 && primitive > 0 {
-            let twin = random.below(u64::from(primitive)) as usize;
-            cylinder = records[twin].cylinder();
-        }
-        records.push(CylinderRecord::new(&cylinder, primitive, MaterialIndex(0)));
-    }
-    records
-}
-
-/// A ray towards the box `lower..upper` from up to `reach` away, with any
+/// A ray at a cylinder of the unit cube from up to `reach` away, with any
 /// length of direction and any kind of range.
-fn ray_towards(random: &mut Random, lower: DVec3, upper: DVec3, reach: f64) -> Ray {
-    let mut inside = || {
-        lower + (upper - lower) * DVec3::new(random.unit(), random.unit(), random.unit())
+///
+/// Half of the rays graze: they pass just inside the wall where it comes
+/// nearest to a face of its box, which is where a box that is too small, or a
+/// rounding against it, loses them first.
+fn ray_at(random: &mut Random, cylinders: &[CylinderRecord], reach: f64) -> Ray {
+    let cylinder = cylinders[random.below(cylinders.len() as u64) as usize].cylinder();
+    let along = cylinder.p1() - cylinder.p0();
+    let axis = along.normalize();
+    let middle = cylinder.p0() + along * random.unit();
+    let coordinate = DVec3::AXES[random.below(3) as usize];
+    let towards_face = coordinate - axis * coordinate.dot(axis);
+    let grazes = random.below(2) == 0 && towards_face.length() > 1e-3;
+    let (target, heading) = if grazes {
+        let outward = towards_face.normalize();
+        let depth = 1.0 - random.log_uniform(1e-15, 1e-3);
+        let tangent = outward.cross(axis) + axis * random.uniform(-1.0, 1.0);
+        (middle + outward * (cylinder.radius() * depth), tangent)
+    } else {
+        (
+            middle + random.direction() * (cylinder.radius() * random.uniform(0.0, 1.2)),
+            random.direction(),
+        )
     };
-    let (target, other) = (inside(), inside());
-    let extent = (upper - lower).length();
-    let origin = match random.below(4) {
-        0 => other,
-        1 => target + random.direction() * (extent * random.log_uniform(1.0, 10.0)),
-        _ => target + random.direction() * (extent * random.log_uniform(1.0, reach)),
+    let heading = match random.below(8) {
+        0 => DVec3::AXES[random.below(3) as usize],
+        _ => heading.normalize(),
     };
-    let mut direction = target - origin;
-    if random.below(8) == 0 {
-        // Along an axis, exactly.
-        let axis = random.below(3) as usize;
-        direction = DVec3::ZERO;
-        direction[axis] = if random.below(2) == 0 { 1.0 } else { -1.0 };
-    }
-    let length = if direction.length() > 0.0 { direction.length() } else { 1.0 };
+    let distance = match random.below(4) {
+        0 => random.log_uniform(1e-3, 1.0),
+        1 => random.log_uniform(1.0, 10.0),
+        _ => random.log_uniform(1.0, reach),
+    };
+    let origin = target - heading * distance;
     let scale = random.log_uniform(1e-30, 1e30);
-    let direction = direction / length * scale;
-    let unit = length / scale;
+    let unit = distance / scale;
     let (t_min, t_max) = match random.below(4) {
         0 => (0.0, f64::INFINITY),
         1 => (-2.0 * unit, f64::INFINITY),
         2 => (0.0, unit * random.uniform(0.5, 1.5)),
-        _ => (unit * random.uniform(-1.5, 1.0), unit * random.uniform(1.0, 2.0)),
+        _ => (
+            unit * random.uniform(-1.5, 1.0),
+            unit * random.uniform(1.0, 2.0),
+        ),
     };
-    Ray { origin, direction, t_min, t_max }
+    Ray {
+        origin,
+        direction: heading * scale,
+        t_min,
+        t_max,
+    }
 }
 
 /// Compares both kinds of query with the exhaustive one.
@@ -100,18 +82,7 @@ fn assert_nothing_lost(name: &str, tracer: &Tracer, ray_of: impl Fn(&mut Random)
             let ray = ray_of(&mut Random::new(SEED, 1000 + number));
             let found = tracer.closest(&ray);
             let truth = tracer.closest_exhaustive(&ray);
-            let bits = |v: f64| format!("{:#018x}", v.to_bits());
-            let replay = || {
-                let numbers: Vec<String> = ray
-                    .origin
-                    .to_array()
-                    .into_iter()
-                    .chain(ray.direction.to_array())
-                    .chain([ray.t_min, ray.t_max])
-                    .map(bits)
-                    .collect();
-                format!("{name}, seed {SEED}, ray {number}: {}", numbers.join(" "))
-            };
+            let replay = || format!("{name}, seed {SEED}, ray {number}: {}", support::bits(&ray));
             assert_eq!(found, truth, "{}", replay());
             assert_eq!(tracer.occluded(&ray), truth.is_some(), "{}", replay());
             u64::from(truth.is_some())
@@ -119,26 +90,23 @@ fn assert_nothing_lost(name: &str, tracer: &Tracer, ray_of: impl Fn(&mut Random)
         .sum();
     let share = hits as f64 / ray_count() as f64;
     println!("{name}: {} rays, {hits} hits, none lost", ray_count());
-    assert!(share > 0.05, "{name}: only {hits} hits, the test sees nothing");
+    assert!(
+        share > 0.3,
+        "{name}: only {hits} hits, the test sees nothing"
+    );
 }
 
 #[test]
 fn box_of_cylinders_loses_no_hit() {
-    let root = Prototype { cylinders: cylinders_in_a_box(1000), ..Default::default() };
-    let tracer = Tracer::new(scene_of(vec![root]), &Options::default()).unwrap();
+    let cylinders = support::cylinders_in_a_box(SEED, 1000);
+    let root = Prototype {
+        cylinders: cylinders.clone(),
+        ..Default::default()
+    };
+    let tracer = Tracer::new(support::scene_of(vec![root]), &Options::default()).unwrap();
     for (name, reach) in [("near", 1e2), ("far", 1e8)] {
-        assert_nothing_lost(name, &tracer, |random| {
-            ray_towards(random, DVec3::ZERO, DVec3::ONE, reach)
-        });
+        assert_nothing_lost(name, &tracer, |random| ray_at(random, &cylinders, reach));
     }
-}
-
-fn random_rotation(random: &mut Random) -> DMat3 {
-    let axis = random.direction();
-    let across = axis.any_orthonormal_vector();
-    let (sin, cos) = libm::sincos(random.uniform(0.0, std::f64::consts::TAU));
-    let turned = across * cos + axis.cross(across) * sin;
-    DMat3::from_cols(axis, turned, axis.cross(turned))
 }
 
 /// Three levels of placements with translations up to 1e7 extents and scales
@@ -152,23 +120,34 @@ fn nested_placements_lose_no_hit() {
             0 => DVec3::ONE,
             _ => DVec3::new(1.0, random.uniform(0.2, 1.0), random.uniform(1.0, 5.0)),
         };
-        let matrix = random_rotation(&mut random)
+        let matrix = support::random_rotation(&mut random)
             * DMat3::from_diagonal(stretch * scale)
-            * random_rotation(&mut random);
+            * support::random_rotation(&mut random);
         let offset = random.direction() * (scale * translation);
         Placement {
             of: PrototypeIndex(of),
             parent_from_child: DAffine3::from_mat3_translation(matrix, offset),
         }
     };
-    let leaf = Prototype { cylinders: cylinders_in_a_box(100), ..Default::default() };
-    let middle =
-        Prototype { placements: (0..5).map(|_| place(3, 3.0)).collect(), ..Default::default() };
-    let outer =
-        Prototype { placements: vec![place(2, 1e3), place(3, 1e5)], ..Default::default() };
+    let cylinders = support::cylinders_in_a_box(SEED, 100);
+    let leaf = Prototype {
+        cylinders: cylinders.clone(),
+        ..Default::default()
+    };
+    let middle = Prototype {
+        placements: (0..5).map(|_| place(3, 3.0)).collect(),
+        ..Default::default()
+    };
+    let outer = Prototype {
+        placements: vec![place(2, 1e3), place(3, 1e5)],
+        ..Default::default()
+    };
     for translation in [1.0, 1e3, 1e7] {
-        let root = Prototype { placements: vec![place(1, translation)], ..Default::default() };
-        let scene = scene_of(vec![root, outer.clone(), middle.clone(), leaf.clone()]);
+        let root = Prototype {
+            placements: vec![place(1, translation)],
+            ..Default::default()
+        };
+        let scene = support::scene_of(vec![root, outer.clone(), middle.clone(), leaf.clone()]);
         let tracer = Tracer::new(Arc::clone(&scene), &Options::default()).unwrap();
         let bounds = tracer.bounds();
         // The placed prototypes are far apart and small against their distance:
@@ -183,14 +162,20 @@ fn nested_placements_lose_no_hit() {
                 if below.is_empty() {
                     vec![root_from_outer]
                 } else {
-                    below.iter().map(|inner| root_from_outer * inner.parent_from_child).collect()
+                    below
+                        .iter()
+                        .map(|inner| root_from_outer * inner.parent_from_child)
+                        .collect()
                 }
             })
             .collect();
-        let name = format!("nested, translated by {translation:e}, {:e}", bounds.extent().length());
+        let name = format!(
+            "nested, translated by {translation:e}, {:e}",
+            bounds.extent().length()
+        );
         assert_nothing_lost(&name, &tracer, |random| {
             let image = images[random.below(images.len() as u64) as usize];
-            let ray = ray_towards(random, DVec3::ZERO, DVec3::ONE, 1e6);
+            let ray = ray_at(random, &cylinders, 1e6);
             Ray {
                 origin: image.transform_point3(ray.origin),
                 direction: image.transform_vector3(ray.direction),

@@ -23,7 +23,7 @@ pub enum Error {
     Embree {
         /// The step, as it follows "could not".
         step: &'static str,
-        /// Embree's own message; empty if it gave none.
+        /// Embree's own message, or that it gave none.
         message: String,
         /// The kind of error.
         code: ErrorCode,
@@ -135,9 +135,13 @@ pub(super) fn check(device: sys::RTCDevice, step: &'static str) -> Result<(), Er
     if code == sys::RTC_ERROR_NONE {
         return Ok(());
     }
+    let mut message = MESSAGE.take();
+    if message.is_empty() {
+        message.push_str("it gives no reason");
+    }
     Err(Error::Embree {
         step,
-        message: MESSAGE.take(),
+        message,
         code: ErrorCode(code.0),
     })
 }

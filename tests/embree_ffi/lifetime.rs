@@ -4,9 +4,19 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
-use cyltrace::embree::{Box32, Device, DeviceOptions, Ray32, SceneBuilder, UserGeometry};
+use cyltrace::embree::{Box32, Device, DeviceOptions, Ray32, Scene, SceneBuilder, UserGeometry};
 
 use crate::balls::{Balls, random_balls};
+
+// Devices and scenes are for any thread, whatever the query is; builders may
+// move. That they can't be shared is a doctest of `SceneBuilder`.
+const _: fn() = || {
+    fn any_thread<T: Send + Sync>() {}
+    fn may_move<T: Send>() {}
+    any_thread::<Device>();
+    any_thread::<Scene<std::rc::Rc<()>>>();
+    may_move::<SceneBuilder<std::rc::Rc<()>>>();
+};
 
 /// Tells when it is dropped, and what Embree holds at that time.
 struct Witness {

@@ -3,7 +3,8 @@
 
 use std::hint::black_box;
 use std::num::NonZeroUsize;
-use std::sync::{Arc, Mutex};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::thread;
 
 use cyltrace::embree::{
@@ -249,6 +250,72 @@ fn nested_queries_64_levels_reach_the_innermost_scene() {
     // About 11 kB a level, and as much again in an unoptimised build.
     let thread = thread::Builder::new().stack_size(8 << 20).spawn(check);
     thread.unwrap().join().unwrap();
+}
+
+/// A scene that is built when a ray first touches its box.
+struct Lazy {
+    device: Device,
+    balls: Vec<Ball>,
+    inner: OnceLock<Scene<BallQuery>>,
+    builds: Arc<AtomicUsize>,
+}
+
+impl Lazy {
+    fn scene(&self) -> &Scene<BallQuery> {
+        self.inner.get_or_init(|| {
+            self.builds.fetch_add(1, Ordering::Relaxed);
+            scene_of(&self.device, &self.balls)
+        })
+    }
+}
+
+impl UserGeometry for Lazy {
+    type Query = BallQuery;
+
+    fn primitive_count(&self) -> u32 {
+        1
+    }
+
+    fn bounds(&self, _primitive: u32) -> Box32 {
+        Box32 {
+            lower: [-2.0; 3],
+            upper: [2.0; 3],
+        }
+    }
+
+    fn intersect(&self, _primitive: u32, query: &mut BallQuery) -> Option<f32> {
+        self.scene().closest(&query.ray(), query);
+        query.best.map(|(t, _)| (t as f32).next_up())
+    }
+
+    fn occluded(&self, _primitive: u32, query: &mut BallQuery) -> bool {
+        self.scene().any(&query.ray(), query)
+    }
+}
+
+#[test]
+fn scene_built_within_a_query_from_eight_threads_is_built_once_and_right() {
+    let device = device();
+    let balls = random_balls(SEED, 20_000);
+    let builds = Arc::new(AtomicUsize::new(0));
+    let lazy = Lazy {
+        device: device.clone(),
+        balls: balls.clone(),
+        inner: OnceLock::new(),
+        builds: Arc::clone(&builds),
+    };
+    let mut builder = SceneBuilder::new(&device).unwrap();
+    builder.attach_user(lazy).unwrap();
+    let scene = builder.commit().unwrap();
+    assert_eq!(builds.load(Ordering::Relaxed), 0);
+    thread::scope(|scope| {
+        for first in 0..8 {
+            let (scene, balls) = (&scene, &balls);
+            scope.spawn(move || check_against_brute_force(scene, balls, (first..80).step_by(8)));
+        }
+    });
+    assert_eq!(builds.load(Ordering::Relaxed), 1);
+    assert_eq!(flushes_denormals(), (false, false));
 }
 
 /// Whether denormal results, and denormal operands, are taken for zero.

@@ -1,0 +1,15 @@
+//! Exact truth about rays and cylinders.
+//!
+//! Everything here is computed in exact binary arithmetic of any length, with
+//! formulas that the solvers do not use, and shares no code with them. It is
+//! some thousand times slower than a solver and decides what is right.
+
+mod affine;
+mod cylinder;
+mod distance;
+mod number;
+
+pub use affine::{ExactAffine, ExactMatrix};
+pub use cylinder::{CylinderTruth, TrueHit, first_hit, placed_first_hit};
+pub use distance::distance_to_part;
+pub use number::{Exact, ExactVector, exact, to_f64};
