@@ -65,6 +65,8 @@ impl ChildFromParent {
 pub struct PlacementErrors {
     /// At least the factor by which `L` lengthens any vector.
     pub stretch: f64,
+    /// At most the factor by which `L` shortens any vector.
+    pub shrink: f64,
     /// At least `‖L‖ ‖L⁻¹‖`, in Frobenius norms; 3 for a rotation.
     pub condition: f64,
     /// A computed child's point is the exact image of a parent's point that
@@ -75,25 +77,28 @@ pub struct PlacementErrors {
 
 impl PlacementErrors {
     /// The bounds for a placement and its computed way back.
-    ///
-    /// The stretch is `√‖Lᵀ L‖∞`, an upper bound of the spectral norm that is
-    /// tight for rotations with one scale, so that it does not grow with depth.
     #[must_use]
     pub fn new(parent_from_child: &DAffine3, child_from_parent: &ChildFromParent) -> Self {
         let matrix = parent_from_child.matrix3;
         let inverse = child_from_parent.inverse;
-        let gram = matrix.transpose() * matrix;
-        let rows = gram.abs() * DVec3::ONE;
-        let stretch = rows.max_element().sqrt() * (1.0 + 8.0 * UNIT_ROUNDOFF);
         let condition =
             frobenius_norm(&matrix) * frobenius_norm(&inverse) * (1.0 + 16.0 * UNIT_ROUNDOFF);
         let residual = frobenius_norm(&(matrix * inverse - DMat3::IDENTITY));
         Self {
-            stretch,
+            stretch: spectral_norm_bound(&matrix),
+            shrink: 1.0 / spectral_norm_bound(&inverse),
             condition,
             inverse_error: residual + UNIT_ROUNDOFF * (1.0 + 7.0 * condition),
         }
     }
+}
+
+/// `√‖Lᵀ L‖∞`, an upper bound of the spectral norm that is tight for rotations
+/// with one scale, so that products of it do not grow with depth.
+fn spectral_norm_bound(matrix: &DMat3) -> f64 {
+    let gram = matrix.transpose() * *matrix;
+    let rows = gram.abs() * DVec3::ONE;
+    rows.max_element().sqrt() * (1.0 + 8.0 * UNIT_ROUNDOFF)
 }
 
 /// The root of the sum of the squares of the entries.
