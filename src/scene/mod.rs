@@ -1,10 +1,34 @@
 //! The scene as the user states it, in f64, and the files it is read from.
+//!
+//! [`load`] reads a scene file in TOML (`docs/scene-file.md`) in three steps:
+//! `document` holds the keys as they stand there, with their places; the
+//! entries are lowered one kind a file (`solids`, `swc`, `placing`, `scatter`,
+//! `camera`, `settings`), streaming the rows of `table`s; `graph` checks
+//! how prototypes place each other. The result is a [`Scene`] that needs no
+//! further checks and knows nothing of files.
 
+mod camera;
 mod census;
 mod description;
+mod document;
+mod error;
+mod graph;
+mod load;
+mod names;
+mod placing;
+mod scatter;
+mod settings;
+mod solids;
+mod source;
+mod swc;
+mod table;
+mod transform;
+mod values;
 
 pub use census::Census;
 pub use description::{
     Camera, CylinderRecord, Film, Frame, Integrator, Material, MaterialIndex, Placement,
     Projection, Prototype, PrototypeIndex, RenderSettings, Scene, Sky, Sun,
 };
+pub use error::{SceneError, Statement};
+pub use load::load;

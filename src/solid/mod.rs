@@ -3,6 +3,7 @@
 mod chord;
 mod cylinder;
 mod surface;
+pub mod tessellation;
 pub mod triple_product;
 
 pub use chord::{Chord, ChordEnd, Meeting};

@@ -96,7 +96,7 @@ pub fn surface_point(cylinder: &Cylinder, part: Part, from_p0: DVec3) -> Surface
 
 /// The two unit vectors perpendicular to `axis` from which angles are counted:
 /// direction 0 and direction a quarter turn on.
-fn angle_frame(axis: DVec3) -> (DVec3, DVec3) {
+pub(super) fn angle_frame(axis: DVec3) -> (DVec3, DVec3) {
     let size = axis.abs();
     let coordinate_axis = if size.x <= size.y && size.x <= size.z {
         DVec3::X

@@ -1,0 +1,178 @@
+//! What must hold of prototypes that place each other: no cycles, no level too
+//! many, solids at the end of every branch, and numbers that stay in range all
+//! the way down.
+
+use super::description::Prototype;
+use super::error::SceneError;
+use super::names::quoted;
+use super::placing::Edge;
+use super::source::Source;
+use crate::math::power_of_two;
+use crate::solid::Cylinder;
+
+/// Most placements inside each other. A level takes some 11 kB of a thread's
+/// stack while a ray passes it.
+pub(super) const DEEPEST: u32 = 64;
+
+/// The greatest factor by which nested placements together may stretch a
+/// vector on its way inward. The solvers square it.
+const GREATEST_SQUEEZE: f64 = power_of_two(150);
+
+/// A prototype and the entries that place others in it.
+pub(super) struct Node<'a> {
+    pub prototype: &'a Prototype,
+    pub edges: &'a [Edge],
+    /// At least the size of every coordinate of its own solids.
+    pub reach: f64,
+}
+
+/// What a prototype and all that is placed in it come to.
+#[derive(Clone, Copy, Default)]
+struct Summary {
+    has_solids: bool,
+    /// Placements inside each other.
+    levels: u32,
+    /// At least the size of every coordinate.
+    reach: f64,
+    /// At least the factor by which vectors grow on their way inward.
+    squeeze: f64,
+}
+
+/// Checks all prototypes; the first is the root.
+pub(super) fn check(source: &Source, nodes: &[Node]) -> Result<(), SceneError> {
+    let mut summaries = vec![Summary::default(); nodes.len()];
+    for index in children_first(source, nodes)? {
+        summaries[index] = summary(source, nodes, &summaries, index)?;
+    }
+    if summaries.first().is_none_or(|root| !root.has_solids) {
+        return Err(source.error_with_help(
+            0..0,
+            "the scene is empty: it holds no solids",
+            "add a [[cylinder]], a [[cylinder_table]] or an [[swc]], or place a prototype with an [[instance]]",
+        ));
+    }
+    Ok(())
+}
+
+fn summary(
+    source: &Source,
+    nodes: &[Node],
+    summaries: &[Summary],
+    index: usize,
+) -> Result<Summary, SceneError> {
+    let node = &nodes[index];
+    let mut total = Summary {
+        has_solids: !node.prototype.cylinders.is_empty(),
+        levels: 0,
+        reach: node.reach,
+        squeeze: 1.0,
+    };
+    for edge in node.edges {
+        let of = edge.of.0 as usize;
+        let child = summaries[of];
+        let name = quoted(&nodes[of].prototype.name);
+        let wrong = |message: String| Err(source.error(edge.place.clone(), message));
+        if !child.has_solids {
+            return wrong(format!(
+                "the prototype {name} holds no solids: there is nothing to place"
+            ));
+        }
+        total.has_solids = true;
+        total.levels = total.levels.max(child.levels + 1);
+        if total.levels > DEEPEST {
+            return wrong(format!(
+                "placements are nested {} levels deep: at most {DEEPEST} are supported",
+                total.levels
+            ));
+        }
+        // |L x| is at most three times the greatest entry times |x|, axis by axis.
+        let reach = 3.0 * edge.reach.stretch * child.reach + edge.reach.translation;
+        if reach > Cylinder::GREATEST {
+            return wrong(format!(
+                "placed here, {name} may reach coordinates of {reach:.1e}: at most {:.1e} are supported",
+                Cylinder::GREATEST
+            ));
+        }
+        total.reach = total.reach.max(reach);
+        let squeeze = edge.reach.squeeze * child.squeeze;
+        if squeeze > GREATEST_SQUEEZE {
+            return wrong(format!(
+                "nested placements shrink {name} to {:.1e} of its size: at least {:.1e} is supported",
+                1.0 / squeeze,
+                1.0 / GREATEST_SQUEEZE
+            ));
+        }
+        total.squeeze = total.squeeze.max(squeeze);
+    }
+    Ok(total)
+}
+
+/// An order in which every prototype comes after those placed in it.
+///
+/// A depth-first search with a stack of its own: a chain of placements may be
+/// as long as the file.
+fn children_first(source: &Source, nodes: &[Node]) -> Result<Vec<usize>, SceneError> {
+    #[derive(Clone, Copy, PartialEq)]
+    enum State {
+        Unseen,
+        OnPath,
+        Done,
+    }
+    let mut states = vec![State::Unseen; nodes.len()];
+    let mut order = Vec::with_capacity(nodes.len());
+    for start in 0..nodes.len() {
+        if states[start] != State::Unseen {
+            continue;
+        }
+        states[start] = State::OnPath;
+        // The prototypes on the path, each with its next edge.
+        let mut path = vec![(start, 0)];
+        while let Some(&(index, next)) = path.last() {
+            let Some(edge) = nodes[index].edges.get(next) else {
+                states[index] = State::Done;
+                order.push(index);
+                path.pop();
+                continue;
+            };
+            if let Some(top) = path.last_mut() {
+                top.1 += 1;
+            }
+            let child = edge.of.0 as usize;
+            match states[child] {
+                State::Done => {}
+                State::Unseen => {
+                    states[child] = State::OnPath;
+                    path.push((child, 0));
+                }
+                State::OnPath => {
+                    let indices: Vec<usize> = path.iter().map(|&(index, _)| index).collect();
+                    return Err(cycle(source, nodes, &indices, child, edge));
+                }
+            }
+        }
+    }
+    Ok(order)
+}
+
+/// That the end of `path` places `child`, which is on the path.
+fn cycle(source: &Source, nodes: &[Node], path: &[usize], child: usize, edge: &Edge) -> SceneError {
+    const MOST_SHOWN: usize = 12;
+    let start = path.iter().position(|&index| index == child).unwrap_or(0);
+    let round = &path[start..];
+    let mut names: Vec<String> = round
+        .iter()
+        .take(MOST_SHOWN)
+        .map(|&index| quoted(&nodes[index].prototype.name))
+        .collect();
+    if round.len() > MOST_SHOWN {
+        names.push(format!("({} more)", round.len() - MOST_SHOWN));
+    }
+    names.push(quoted(&nodes[child].prototype.name));
+    source.error(
+        edge.place.clone(),
+        format!(
+            "prototypes place each other in a cycle: {}",
+            names.join(" -> ")
+        ),
+    )
+}

@@ -1,0 +1,119 @@
+//! Names that users type: choices between a few words, and suggestions when
+//! a name is not known.
+
+use std::fmt::Write;
+
+/// Longest piece of a user's text that a message repeats, in characters.
+const LONGEST_QUOTE: usize = 60;
+/// Most names that a message lists.
+const MOST_LISTED: usize = 40;
+
+/// The text in double quotes, control characters escaped, the end of a long
+/// one left out.
+pub(super) fn quoted(text: &str) -> String {
+    match text.char_indices().nth(LONGEST_QUOTE) {
+        None => format!("{text:?}"),
+        Some((end, _)) => format!("{:?}...", &text[..end]),
+    }
+}
+
+/// What to say after "there is no such name": the nearest of the names, and
+/// all of them. `what` is their plural.
+pub(super) fn suggestion<'n>(
+    wrong: &str,
+    names: impl IntoIterator<Item = &'n str>,
+    what: &str,
+) -> String {
+    let names: Vec<&str> = names.into_iter().collect();
+    if names.is_empty() {
+        return format!("there are no {what}");
+    }
+    let mut text = String::new();
+    if let Some(near) = nearest(wrong, &names) {
+        let _ = write!(text, "did you mean {}? ", quoted(near));
+    }
+    let listed: Vec<String> = names
+        .iter()
+        .take(MOST_LISTED)
+        .map(|name| quoted(name))
+        .collect();
+    let _ = write!(text, "the {what} are {}", listed.join(", "));
+    if names.len() > MOST_LISTED {
+        let _ = write!(text, " and {} more", names.len() - MOST_LISTED);
+    }
+    text
+}
+
+/// The name that takes the fewest edits to reach, when that is at most a third
+/// of the letters, and at least one is allowed: more would be another word.
+fn nearest<'n>(wrong: &str, names: &[&'n str]) -> Option<&'n str> {
+    let wrong: Vec<char> = wrong.chars().take(LONGEST_QUOTE).collect();
+    let allowed = (wrong.len() / 3).max(1);
+    names
+        .iter()
+        .map(|name| (edits(&wrong, name), *name))
+        .filter(|(count, _)| *count <= allowed)
+        .min_by_key(|(count, _)| *count)
+        .map(|(_, name)| name)
+}
+
+/// The least number of letters put in, left out, replaced or swapped with the
+/// next one ("optimal string alignment"), upper and lower case taken as the
+/// same letter.
+fn edits(wrong: &[char], name: &str) -> usize {
+    let name: Vec<char> = name.chars().take(2 * LONGEST_QUOTE).collect();
+    let same =
+        |row: usize, column: usize| name[row].to_lowercase().eq(wrong[column].to_lowercase());
+    // costs[row][column] changes the first `column` letters of `wrong` into
+    // the first `row` letters of `name`.
+    let mut costs = vec![vec![0; wrong.len() + 1]; name.len() + 1];
+    costs[0] = (0..=wrong.len()).collect();
+    for row in 1..=name.len() {
+        costs[row][0] = row;
+        for column in 1..=wrong.len() {
+            let replaced = costs[row - 1][column - 1] + usize::from(!same(row - 1, column - 1));
+            let mut cost = replaced
+                .min(costs[row - 1][column] + 1)
+                .min(costs[row][column - 1] + 1);
+            if row > 1 && column > 1 && same(row - 1, column - 2) && same(row - 2, column - 1) {
+                cost = cost.min(costs[row - 2][column - 2] + 1);
+            }
+            costs[row][column] = cost;
+        }
+    }
+    costs[name.len()][wrong.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn suggestion_near_name_is_offered_first() {
+        let text = suggestion("raduis", ["length", "radius"], "columns");
+        assert_eq!(
+            text,
+            "did you mean \"radius\"? the columns are \"length\", \"radius\""
+        );
+        let case = suggestion("startx", ["startX"], "columns");
+        assert!(case.contains("did you mean \"startX\""), "{case}");
+        let swapped = suggestion("brak", ["bark"], "materials");
+        assert!(swapped.contains("did you mean \"bark\""), "{swapped}");
+    }
+
+    #[test]
+    fn suggestion_far_names_are_only_listed() {
+        assert_eq!(
+            suggestion("oak", ["pine"], "trees"),
+            "the trees are \"pine\""
+        );
+        assert_eq!(suggestion("oak", [], "trees"), "there are no trees");
+    }
+
+    #[test]
+    fn quoted_long_text_is_cut_between_characters() {
+        let text = quoted(&"é".repeat(1000));
+        assert_eq!(text, format!("\"{}\"...", "é".repeat(60)));
+        assert_eq!(quoted("a\u{1b}[0m\n"), "\"a\\u{1b}[0m\\n\"");
+    }
+}

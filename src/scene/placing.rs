@@ -1,0 +1,294 @@
+//! Gathers the placements of one prototype: single ones, the rows of tables,
+//! and those scattered by rule.
+
+use std::ops::Range;
+
+use glam::{DAffine3, DMat3, DVec3};
+use toml::Spanned;
+
+use super::description::{Placement, PrototypeIndex};
+use super::document::{InstanceColumns, InstanceKeys, InstanceTableKeys, RotationKeys};
+use super::error::SceneError;
+use super::scatter::Scatter;
+use super::settings::vector;
+use super::solids::three;
+use super::source::Source;
+use super::table::{Column, Table};
+use super::transform::{Reach, checked, quaternion_rotation, rotation, sin_cos_degrees, unit};
+use super::values::{Keys, NameOrList, NumberOrList};
+
+/// The placements of one prototype.
+#[derive(Default)]
+pub(super) struct Placements {
+    pub list: Vec<Placement>,
+    /// The entries that placed something.
+    pub edges: Vec<Edge>,
+}
+
+/// One entry of a scene file that places a prototype, once or often.
+#[derive(Clone, Debug)]
+pub(super) struct Edge {
+    pub of: PrototypeIndex,
+    /// Where the scene file says so.
+    pub place: Range<usize>,
+    pub reach: Reach,
+}
+
+impl Placements {
+    /// Adds an `[[instance]]`.
+    pub fn add_instance(
+        &mut self,
+        source: &Source,
+        keys: &InstanceKeys,
+        of: PrototypeIndex,
+    ) -> Result<(), SceneError> {
+        let parent_from_child = composed(source, keys)?;
+        let blame = match (&keys.matrix, &keys.scale, &keys.translate) {
+            (Some(matrix), ..) => matrix.span(),
+            (_, Some(scale), _) => scale.span(),
+            (_, _, Some(translate)) => translate.span(),
+            _ => keys.of.span(),
+        };
+        let reach =
+            checked(&parent_from_child).map_err(|error| source.error(blame, error.to_string()))?;
+        self.make_room(source, &keys.of, 1)?;
+        self.list.push(Placement {
+            of,
+            parent_from_child,
+        });
+        self.placed(of, keys.of.span(), reach);
+        Ok(())
+    }
+
+    /// Adds the rows of an `[[instance_table]]`.
+    pub fn add_table(
+        &mut self,
+        source: &Source,
+        keys: &InstanceTableKeys,
+        of: PrototypeIndex,
+    ) -> Result<(), SceneError> {
+        let mut table = Table::open(source, &keys.file)?;
+        let layout = Layout::new(source, &table, &keys.columns)?;
+        let mut reach = Reach::default();
+        let before = self.list.len();
+        while table.next_row()? {
+            let parent_from_child = layout.placement(&table)?;
+            let row_reach = checked(&parent_from_child)
+                .map_err(|error| table.row_error(None, error.to_string()))?;
+            reach = reach.union(row_reach);
+            self.make_room(source, &keys.of, 1)?;
+            self.list.push(Placement {
+                of,
+                parent_from_child,
+            });
+        }
+        if self.list.len() == before {
+            return Err(source.error(keys.file.span(), "the table has a header but no rows"));
+        }
+        self.placed(of, keys.of.span(), reach);
+        Ok(())
+    }
+
+    /// Adds the items of a `[[scatter]]`.
+    pub fn add_scatter(
+        &mut self,
+        source: &Source,
+        of_name: &Spanned<String>,
+        of: PrototypeIndex,
+        scatter: &Scatter,
+    ) -> Result<(), SceneError> {
+        self.make_room(source, of_name, scatter.count as usize)?;
+        self.list
+            .extend(scatter.items().map(|parent_from_child| Placement {
+                of,
+                parent_from_child,
+            }));
+        self.placed(of, of_name.span(), scatter.reach());
+        Ok(())
+    }
+
+    /// Makes sure that `more` placements have numbers and memory.
+    fn make_room(
+        &mut self,
+        source: &Source,
+        of: &Spanned<String>,
+        more: usize,
+    ) -> Result<(), SceneError> {
+        let total = self.list.len() as u64 + more as u64;
+        if total > u64::from(u32::MAX) {
+            let message = format!(
+                "this makes {total} placements: a prototype holds at most {}",
+                u32::MAX
+            );
+            return Err(source.error(of.span(), message));
+        }
+        let reserved = match more {
+            1 => self.list.try_reserve(1),
+            // Exactly as many as there are: doubling would double the memory.
+            _ => self.list.try_reserve_exact(more),
+        };
+        reserved.map_err(|_| {
+            let bytes = total * size_of::<Placement>() as u64;
+            let message = format!(
+                "there is no memory for {total} placements: they take {:.1} GB",
+                bytes as f64 / 1e9
+            );
+            source.error(of.span(), message)
+        })
+    }
+
+    fn placed(&mut self, of: PrototypeIndex, place: Range<usize>, reach: Reach) {
+        self.edges.push(Edge { of, place, reach });
+    }
+}
+
+/// The placement that an `[[instance]]` states.
+fn composed(source: &Source, keys: &InstanceKeys) -> Result<DAffine3, SceneError> {
+    if let Some(matrix) = &keys.matrix {
+        if keys.scale.is_some() || keys.rotate.is_some() || keys.translate.is_some() {
+            return Err(source.error(
+                matrix.span(),
+                "matrix excludes scale, rotate and translate: state one or the others",
+            ));
+        }
+        let rows = &matrix.get_ref().0;
+        let column =
+            |index: usize| DVec3::new(rows[0].0[index].0, rows[1].0[index].0, rows[2].0[index].0);
+        return Ok(DAffine3::from_cols(
+            column(0),
+            column(1),
+            column(2),
+            column(3),
+        ));
+    }
+    let scale = keys
+        .scale
+        .as_ref()
+        .map_or(DVec3::ONE, |scale| match scale.get_ref() {
+            NumberOrList::One(scale) => DVec3::splat(*scale),
+            NumberOrList::Many(scale) => DVec3::from(*scale),
+        });
+    let mut matrix = DMat3::from_diagonal(scale);
+    for Keys(turn) in keys.rotate.iter().flatten() {
+        matrix = turned(source, turn)? * matrix;
+    }
+    let translation = keys.translate.as_ref().map_or(DVec3::ZERO, vector);
+    Ok(DAffine3::from_mat3_translation(matrix, translation))
+}
+
+fn turned(source: &Source, turn: &RotationKeys) -> Result<DMat3, SceneError> {
+    let axis = unit(vector(&turn.axis)).ok_or_else(|| {
+        source.error(
+            turn.axis.span(),
+            "the rotation axis is zero: it needs a direction, of any length",
+        )
+    })?;
+    Ok(rotation(axis, sin_cos_degrees(turn.degrees.0)))
+}
+
+/// Where a placement's numbers stand in a row.
+struct Layout {
+    position: [Column; 3],
+    turn: Turn,
+    scale: Scale,
+}
+
+enum Turn {
+    None,
+    About { axis: [Column; 3], degrees: Column },
+    Quaternion([Column; 4]),
+}
+
+enum Scale {
+    None,
+    One(Column),
+    Three([Column; 3]),
+}
+
+impl Layout {
+    fn new(
+        source: &Source,
+        table: &Table,
+        columns: &Spanned<Keys<InstanceColumns>>,
+    ) -> Result<Self, SceneError> {
+        let names = &columns.get_ref().0;
+        let position = three(source, table, &names.position)?;
+        let turn = match (&names.axis, &names.degrees, &names.quaternion) {
+            (None, None, None) => Turn::None,
+            (Some(axis), Some(degrees), None) => Turn::About {
+                axis: three(source, table, axis)?,
+                degrees: table.column(source, degrees)?,
+            },
+            (None, None, Some(quaternion)) => {
+                let [x, y, z, w] = &quaternion.0;
+                Turn::Quaternion([
+                    table.column(source, x)?,
+                    table.column(source, y)?,
+                    table.column(source, z)?,
+                    table.column(source, w)?,
+                ])
+            }
+            _ => {
+                return Err(source.error(
+                    columns.span(),
+                    "columns must name both axis and degrees, or quaternion, or none of them",
+                ));
+            }
+        };
+        let scale = match &names.scale {
+            None => Scale::None,
+            Some(scale) => {
+                let column = |name: &String| {
+                    table.find(name).map_err(|(message, help)| {
+                        source.error_with_help(scale.span(), message, help)
+                    })
+                };
+                match scale.get_ref() {
+                    NameOrList::One(name) => Scale::One(column(name)?),
+                    NameOrList::Many([x, y, z]) => {
+                        Scale::Three([column(x)?, column(y)?, column(z)?])
+                    }
+                }
+            }
+        };
+        Ok(Self {
+            position,
+            turn,
+            scale,
+        })
+    }
+
+    /// The placement of the current row.
+    fn placement(&self, table: &Table) -> Result<DAffine3, SceneError> {
+        let scale = match &self.scale {
+            Scale::None => DVec3::ONE,
+            Scale::One(column) => DVec3::splat(table.number(*column)?),
+            Scale::Three(columns) => DVec3::from(table.numbers(*columns)?),
+        };
+        let turn = match &self.turn {
+            Turn::None => DMat3::IDENTITY,
+            Turn::About { axis, degrees } => {
+                let direction = unit(DVec3::from(table.numbers(*axis)?)).ok_or_else(|| {
+                    table.row_error(
+                        Some(axis[0]),
+                        "the rotation axis is zero: it needs a direction, of any length",
+                    )
+                })?;
+                rotation(direction, sin_cos_degrees(table.number(*degrees)?))
+            }
+            Turn::Quaternion(columns) => {
+                quaternion_rotation(table.numbers(*columns)?).ok_or_else(|| {
+                    table.row_error(
+                        Some(columns[0]),
+                        "the quaternion is zero: it needs a direction, of any length",
+                    )
+                })?
+            }
+        };
+        let position = DVec3::from(table.numbers(self.position)?);
+        Ok(DAffine3::from_mat3_translation(
+            turn * DMat3::from_diagonal(scale),
+            position,
+        ))
+    }
+}

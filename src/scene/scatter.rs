@@ -1,0 +1,199 @@
+//! Placements by rule: many copies of a prototype on a plane.
+//!
+//! Item `k` of a scatter depends on `k`, the keys and the seed only: its
+//! random numbers are stream `k` of the seed, first the yaw, then the scale,
+//! both drawn whether used or not.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::transform::{Reach, rotation};
+use crate::math::Random;
+
+/// 2^64 divided by the square of the golden ratio, rounded: the golden angle
+/// as a fraction of a turn.
+const GOLDEN_TURN: u64 = 0x61C8_8646_80B5_83EB;
+
+/// How the items are spread on the plane z = 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Pattern {
+    /// A square grid about the origin, row by row from the least x and y.
+    Grid,
+    /// A sunflower: item k at distance `spacing · √((k + 1/2)/π)`, a golden
+    /// angle further than the last. The area per item is `spacing²`.
+    Disc,
+}
+
+/// A `[[scatter]]` whose values have been checked.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scatter {
+    pub pattern: Pattern,
+    /// At least 1.
+    pub count: u32,
+    /// Positive.
+    pub spacing: f64,
+    pub random_yaw: bool,
+    /// Limits of the scale, positive, in order.
+    pub scale: [f64; 2],
+    pub seed: u64,
+}
+
+impl Scatter {
+    /// What holds for all items.
+    pub fn reach(&self) -> Reach {
+        // A grid's last item is at most (√count + 1)/2 spacings away on each
+        // axis, a disc's at most √(count/π).
+        let farthest = self.spacing * (f64::from(self.count).sqrt() + 1.0);
+        Reach {
+            stretch: self.scale[1],
+            squeeze: 1.0 / self.scale[0],
+            translation: farthest,
+        }
+    }
+
+    /// The items' placements, in the order of their numbers.
+    pub fn items(&self) -> impl ExactSizeIterator<Item = DAffine3> {
+        let scatter = *self;
+        let columns = columns(scatter.count);
+        (0..scatter.count).map(move |item| scatter.item(item, columns))
+    }
+
+    fn item(&self, item: u32, columns: u32) -> DAffine3 {
+        let mut random = Random::new(self.seed, u64::from(item));
+        let yaw = random.unit();
+        let [low, high] = self.scale;
+        let scale = random.uniform(low, high).min(high);
+        let matrix = if self.random_yaw {
+            rotation(DVec3::Z, libm::sincos(yaw * TAU)) * scale
+        } else {
+            DMat3::from_diagonal(DVec3::splat(scale))
+        };
+        DAffine3::from_mat3_translation(matrix, self.position(item, columns))
+    }
+
+    fn position(&self, item: u32, columns: u32) -> DVec3 {
+        match self.pattern {
+            Pattern::Grid => {
+                let rows = self.count.div_ceil(columns);
+                let along = |place: u32, places: u32| {
+                    (f64::from(place) - 0.5 * f64::from(places - 1)) * self.spacing
+                };
+                DVec3::new(
+                    along(item % columns, columns),
+                    along(item / columns, rows),
+                    0.0,
+                )
+            }
+            Pattern::Disc => {
+                let turn = u64::from(item).wrapping_mul(GOLDEN_TURN);
+                let turn = (turn >> 11) as f64 * (f64::EPSILON / 2.0);
+                let (sin, cos) = libm::sincos(turn * TAU);
+                let distance = self.spacing * ((f64::from(item) + 0.5) / PI).sqrt();
+                DVec3::new(distance * cos, distance * sin, 0.0)
+            }
+        }
+    }
+}
+
+/// The side of the least square that holds `count` items.
+fn columns(count: u32) -> u32 {
+    let side = count.isqrt();
+    if side * side == count { side } else { side + 1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCATTER: Scatter = Scatter {
+        pattern: Pattern::Grid,
+        count: 7,
+        spacing: 2.0,
+        random_yaw: false,
+        scale: [1.0, 1.0],
+        seed: 1,
+    };
+
+    #[test]
+    fn grid_is_centred_and_counts_row_by_row() {
+        let positions: Vec<DVec3> = SCATTER.items().map(|item| item.translation).collect();
+        let expected = [
+            [-2.0, -2.0, 0.0],
+            [0.0, -2.0, 0.0],
+            [2.0, -2.0, 0.0],
+            [-2.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0],
+            [2.0, 0.0, 0.0],
+            [-2.0, 2.0, 0.0],
+        ]
+        .map(DVec3::from);
+        assert_eq!(positions, expected);
+        assert!(SCATTER.items().all(|item| item.matrix3 == DMat3::IDENTITY));
+    }
+
+    #[test]
+    fn columns_hold_all_items_with_the_least_square() {
+        for (count, side) in [(1, 1), (2, 2), (4, 2), (5, 3), (9, 3), (10, 4)] {
+            assert_eq!(columns(count), side, "{count}");
+        }
+        assert_eq!(columns(u32::MAX), 65_536);
+    }
+
+    #[test]
+    fn disc_spreads_items_evenly_and_apart() {
+        let scatter = Scatter {
+            pattern: Pattern::Disc,
+            count: 2_000,
+            ..SCATTER
+        };
+        let positions: Vec<DVec3> = scatter.items().map(|item| item.translation).collect();
+        let radius = 2.0 * (2_000.0 / PI).sqrt();
+        let mean: DVec3 = positions.iter().sum::<DVec3>() / 2_000.0;
+        assert!(mean.length() < 0.02 * radius, "{mean:?}");
+        // A disc of 1/√2 of the radius has half of the area.
+        let inside = positions
+            .iter()
+            .filter(|position| position.length() < radius * 0.5_f64.sqrt());
+        assert!(inside.count().abs_diff(1_000) <= 1);
+        let mut nearest = f64::INFINITY;
+        for (index, first) in positions.iter().enumerate() {
+            for second in &positions[..index] {
+                nearest = nearest.min(first.distance(*second));
+            }
+        }
+        assert!(nearest > 0.75 * 2.0, "{nearest}");
+    }
+
+    #[test]
+    fn random_items_keep_their_numbers_and_limits() {
+        let scatter = Scatter {
+            count: 500,
+            random_yaw: true,
+            scale: [0.5, 2.0],
+            ..SCATTER
+        };
+        let longer = Scatter {
+            count: 1_000,
+            ..scatter
+        };
+        let reach = scatter.reach();
+        let mut mean_heading = DVec3::ZERO;
+        for (first, second) in scatter.items().zip(longer.items()) {
+            assert_eq!(first.matrix3, second.matrix3);
+            let scale = first.matrix3.z_axis.z;
+            assert!((0.5..=2.0).contains(&scale), "{scale}");
+            assert!((first.matrix3.x_axis.length() - scale).abs() < 1e-15 * 4.0);
+            assert!(first.translation.abs().max_element() <= reach.translation);
+            mean_heading += first.matrix3.x_axis / scale / 500.0;
+        }
+        assert!(mean_heading.length() < 0.15, "{mean_heading:?}");
+        let other = Scatter { seed: 2, ..scatter };
+        assert!(
+            scatter
+                .items()
+                .zip(other.items())
+                .all(|(first, second)| first != second)
+        );
+    }
+}

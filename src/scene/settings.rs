@@ -1,0 +1,279 @@
+//! What a scene file says about the picture: film, lights and materials.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+use toml::Spanned;
+
+use super::description::{Film, Integrator, Material, MaterialIndex, RenderSettings, Sky, Sun};
+use super::document::{FilmKeys, MaterialKeys, RenderKeys, SkyKeys, SunKeys, Triple};
+use super::error::SceneError;
+use super::names::{quoted, suggestion};
+use super::source::Source;
+use super::transform::{sin_cos_degrees, unit};
+use super::values::{Keys, Number, Whole};
+
+/// Most pixels across and down: more would be 51 GB of film.
+const GREATEST_SIDE: u32 = 65_536;
+/// The reflectance of solids that name no material.
+const DEFAULT_REFLECTANCE: f64 = 0.8;
+
+const DEFAULT_BACKGROUND: DVec3 = DVec3::new(0.8, 0.9, 1.0);
+const DEFAULT_SUN_COLOR: DVec3 = DVec3::new(1.0, 0.95, 0.9);
+const DEFAULT_SUN_STRENGTH: f64 = 3.0;
+const DEFAULT_SUN_DEGREES: (f64, f64) = (40.0, 135.0);
+const DEFAULT_SKY: Sky = Sky {
+    color: DVec3::new(0.5, 0.7, 1.0),
+    strength: 1.0,
+};
+
+/// Everything that shines.
+pub(super) struct Lights {
+    pub sun: Option<Sun>,
+    pub sky: Option<Sky>,
+    pub background: DVec3,
+}
+
+/// The lights. A scene that states neither sun nor sky gets the default sun;
+/// one that states no background either gets the default sky too.
+pub(super) fn lights(
+    source: &Source,
+    sun: Option<&SunKeys>,
+    sky: Option<&SkyKeys>,
+    background: Option<&Triple>,
+) -> Result<Lights, SceneError> {
+    let dark = sun.is_none() && sky.is_none();
+    Ok(Lights {
+        sun: match sun {
+            Some(keys) => Some(self::sun(source, keys)?),
+            None if dark => Some(self::sun(source, &SunKeys::default())?),
+            None => None,
+        },
+        sky: match sky {
+            Some(keys) => Some(Sky {
+                color: color(source, keys.color.as_ref(), DEFAULT_SKY.color)?,
+                strength: strength(source, keys.strength.as_ref(), DEFAULT_SKY.strength)?,
+            }),
+            None => (dark && background.is_none()).then_some(DEFAULT_SKY),
+        },
+        background: color(source, background, DEFAULT_BACKGROUND)?,
+    })
+}
+
+fn sun(source: &Source, keys: &SunKeys) -> Result<Sun, SceneError> {
+    let direction = match &keys.direction {
+        Some(direction) => {
+            if keys.elevation_degrees.is_some() || keys.azimuth_degrees.is_some() {
+                return Err(source.error(
+                    direction.span(),
+                    "direction excludes elevation_degrees and azimuth_degrees: state one or the others",
+                ));
+            }
+            unit(vector(direction)).ok_or_else(|| {
+                source.error(
+                    direction.span(),
+                    "the sun's direction is zero: it must point towards the sun",
+                )
+            })?
+        }
+        None => {
+            let elevation = number(keys.elevation_degrees.as_ref(), DEFAULT_SUN_DEGREES.0);
+            if let Some(key) = &keys.elevation_degrees
+                && elevation.abs() > 90.0
+            {
+                return Err(source.error(
+                    key.span(),
+                    format!("elevation_degrees is {elevation}: it must be between -90 and 90"),
+                ));
+            }
+            let azimuth = number(keys.azimuth_degrees.as_ref(), DEFAULT_SUN_DEGREES.1);
+            let (up, level) = sin_cos_degrees(elevation);
+            let (y, x) = sin_cos_degrees(azimuth);
+            DVec3::new(level * x, level * y, up)
+        }
+    };
+    Ok(Sun {
+        direction,
+        color: color(source, keys.color.as_ref(), DEFAULT_SUN_COLOR)?,
+        strength: strength(source, keys.strength.as_ref(), DEFAULT_SUN_STRENGTH)?,
+    })
+}
+
+/// The picture's size.
+pub(super) fn film(source: &Source, keys: &FilmKeys) -> Result<Film, SceneError> {
+    let side = |name, key| count(source, name, key, GREATEST_SIDE);
+    Ok(Film {
+        width: side("width", keys.width.as_ref())?.unwrap_or(1280),
+        height: side("height", keys.height.as_ref())?.unwrap_or(720),
+    })
+}
+
+/// What `render` computes.
+pub(super) fn render(source: &Source, keys: &RenderKeys) -> Result<RenderSettings, SceneError> {
+    const INTEGRATORS: [(&str, Integrator); 3] = [
+        ("sun", Integrator::Sun),
+        ("normal", Integrator::Normal),
+        ("ao", Integrator::Ao),
+    ];
+    Ok(RenderSettings {
+        integrator: match &keys.integrator {
+            Some(word) => source.choose("integrator", word, &INTEGRATORS)?,
+            None => Integrator::default(),
+        },
+        spp: count(source, "spp", keys.spp.as_ref(), u32::MAX)?.unwrap_or(4),
+    })
+}
+
+/// A whole number from 1 to `most`, where it is stated.
+fn count(
+    source: &Source,
+    name: &str,
+    key: Option<&Spanned<Whole>>,
+    most: u32,
+) -> Result<Option<u32>, SceneError> {
+    let Some(key) = key else {
+        return Ok(None);
+    };
+    let value = key.get_ref().0;
+    match u32::try_from(value) {
+        Ok(value) if (1..=most).contains(&value) => Ok(Some(value)),
+        _ => Err(source.error(
+            key.span(),
+            format!("{name} is {value}: it must be between 1 and {most}"),
+        )),
+    }
+}
+
+/// The materials of a scene and their names.
+pub(super) struct Materials {
+    pub list: Vec<Material>,
+    index: HashMap<String, MaterialIndex>,
+}
+
+impl Materials {
+    /// The default material and all `[[material]]`s.
+    pub fn new(source: &Source, entries: &[Keys<MaterialKeys>]) -> Result<Self, SceneError> {
+        let mut materials = Self {
+            list: vec![Material {
+                name: String::new(),
+                color: DVec3::splat(DEFAULT_REFLECTANCE),
+            }],
+            index: HashMap::new(),
+        };
+        check_names(
+            source,
+            "material",
+            entries.iter().map(|Keys(keys)| &keys.name),
+        )?;
+        for Keys(keys) in entries {
+            materials.add(source, keys)?;
+        }
+        Ok(materials)
+    }
+
+    fn add(&mut self, source: &Source, keys: &MaterialKeys) -> Result<(), SceneError> {
+        let name = keys.name.get_ref();
+        if let Some(kind) = &keys.kind {
+            source.choose("kind", kind, &[("diffuse", ())])?;
+        }
+        let color = vector(&keys.color);
+        if !(color.cmpge(DVec3::ZERO) & color.cmple(DVec3::ONE)).all() {
+            return Err(source.error(
+                keys.color.span(),
+                "a material reflects between 0 and 1 of each color: no number may be outside [0, 1]",
+            ));
+        }
+        let index = u16::try_from(self.list.len()).map_err(|_| {
+            source.error(
+                keys.name.span(),
+                format!("a scene holds at most {} materials", u16::MAX),
+            )
+        })?;
+        self.index.insert(name.clone(), MaterialIndex(index));
+        self.list.push(Material {
+            name: name.clone(),
+            color,
+        });
+        Ok(())
+    }
+
+    /// The material of a name; the default one where no name is stated.
+    pub fn find(
+        &self,
+        source: &Source,
+        name: Option<&Spanned<String>>,
+    ) -> Result<MaterialIndex, SceneError> {
+        let Some(name) = name else {
+            return Ok(MaterialIndex::default());
+        };
+        self.index.get(name.get_ref()).copied().ok_or_else(|| {
+            let names = self.list[1..].iter().map(|material| material.name.as_str());
+            source.error_with_help(
+                name.span(),
+                format!("there is no material {}", quoted(name.get_ref())),
+                suggestion(name.get_ref(), names, "materials"),
+            )
+        })
+    }
+}
+
+/// That no name is empty and no two are the same.
+pub(super) fn check_names<'n>(
+    source: &Source,
+    what: &str,
+    names: impl Iterator<Item = &'n Spanned<String>>,
+) -> Result<(), SceneError> {
+    let mut lines = HashMap::new();
+    for name in names {
+        if name.get_ref().is_empty() {
+            return Err(source.error(name.span(), format!("the name of a {what} is empty")));
+        }
+        if let Some(first) = lines.insert(name.get_ref(), name.span()) {
+            return Err(source.error(
+                name.span(),
+                format!(
+                    "there is a {what} {} already, on line {}: names must differ",
+                    quoted(name.get_ref()),
+                    source.line(&first)
+                ),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Linear RGB of light, none of it negative.
+fn color(source: &Source, key: Option<&Triple>, default: DVec3) -> Result<DVec3, SceneError> {
+    let Some(key) = key else {
+        return Ok(default);
+    };
+    let color = vector(key);
+    if color.cmplt(DVec3::ZERO).any() {
+        return Err(source.error(key.span(), "a color of light must not be negative"));
+    }
+    Ok(color)
+}
+
+fn strength(
+    source: &Source,
+    key: Option<&Spanned<Number>>,
+    default: f64,
+) -> Result<f64, SceneError> {
+    let strength = number(key, default);
+    match key {
+        Some(key) if strength < 0.0 => Err(source.error(
+            key.span(),
+            format!("strength is {strength}: it must not be negative"),
+        )),
+        _ => Ok(strength),
+    }
+}
+
+fn number(key: Option<&Spanned<Number>>, default: f64) -> f64 {
+    key.map_or(default, |key| key.get_ref().0)
+}
+
+/// The three numbers of a key.
+pub(super) fn vector(triple: &Triple) -> DVec3 {
+    DVec3::from(triple.get_ref().0.map(|number| number.0))
+}

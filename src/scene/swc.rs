@@ -1,0 +1,184 @@
+//! Neurons in SWC: one sample a line (`id type x y z radius parent`), and a
+//! cylinder for every sample that has a parent, from the parent's point to the
+//! sample's own, with the sample's radius.
+//!
+//! That holds for the soma too: segments between its samples are made like all
+//! others, so a soma of one sample has no segment of its own and is not drawn.
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+
+use super::document::SwcKeys;
+use super::error::SceneError;
+use super::names::quoted;
+use super::solids::{Degenerate, Look, SKIP_HELP, Solids, is_degenerate};
+use super::source::Source;
+use crate::solid::{Cylinder, CylinderError};
+
+const COLUMNS: [&str; 7] = ["id", "type", "x", "y", "z", "radius", "parent"];
+/// The parent of a sample that has none.
+const NO_PARENT: i64 = -1;
+
+/// A line of the file.
+#[derive(Clone, Debug)]
+struct Sample {
+    line: u64,
+    id: i64,
+    point: DVec3,
+    radius: f64,
+    parent: i64,
+}
+
+/// Adds the segments of an `[[swc]]`, in the order of their samples.
+pub(super) fn add_swc(
+    solids: &mut Solids,
+    source: &Source,
+    keys: &SwcKeys,
+    look: Look,
+    degenerate: Degenerate,
+) -> Result<(), SceneError> {
+    let file = SwcFile {
+        path: source.resolve(keys.file.get_ref()),
+    };
+    let samples = file
+        .samples()
+        .map_err(|error| source.unreadable(&keys.file, error))?;
+    let index = file.index(&samples)?;
+    for sample in &samples {
+        if sample.parent == NO_PARENT {
+            continue;
+        }
+        let parent = file.parent(&samples, &index, sample)?;
+        match Cylinder::new(parent.point, sample.point, sample.radius, look.caps) {
+            Ok(cylinder) => solids.push(&cylinder, look.material),
+            Err(error) if is_degenerate(&error) && degenerate == Degenerate::Skip => solids.skip(),
+            Err(error) => {
+                let column = matches!(error, CylinderError::Radius { .. }).then_some("radius");
+                let help = is_degenerate(&error).then_some(SKIP_HELP);
+                return Err(file.error(sample.line, column, error.to_string(), help));
+            }
+        }
+        .map_err(|message| source.error(keys.file.span(), message))?;
+    }
+    Ok(())
+}
+
+/// A file that is being read.
+struct SwcFile {
+    path: PathBuf,
+}
+
+impl SwcFile {
+    fn error(
+        &self,
+        line: u64,
+        column: Option<&str>,
+        message: impl Into<String>,
+        help: Option<&str>,
+    ) -> SceneError {
+        SceneError::Row {
+            path: self.path.clone(),
+            line,
+            column: column.map(str::to_owned),
+            message: message.into(),
+            help: help.map(str::to_owned),
+        }
+    }
+
+    /// All samples, in the order of the file.
+    fn samples(&self) -> Result<Vec<Sample>, SceneError> {
+        let path: &Path = &self.path;
+        let unreadable = |source| SceneError::Unreadable {
+            path: path.to_owned(),
+            source,
+        };
+        let mut reader = BufReader::new(File::open(path).map_err(unreadable)?);
+        let mut samples = Vec::new();
+        let mut bytes = Vec::new();
+        let mut line = 0;
+        while reader.read_until(b'\n', &mut bytes).map_err(unreadable)? > 0 {
+            line += 1;
+            let row = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+            let row = row.trim_ascii();
+            if !row.is_empty() && !row.starts_with(b"#") {
+                let text = std::str::from_utf8(row).map_err(|_| SceneError::Encoding {
+                    path: path.to_owned(),
+                    line,
+                    column: None,
+                    utf16: line == 1 && (row[0] == 0xff || row[0] == 0xfe),
+                })?;
+                samples.push(self.sample(line, text)?);
+            }
+            bytes.clear();
+        }
+        if samples.is_empty() {
+            return Err(self.error(line.max(1), None, "the file holds no samples", None));
+        }
+        Ok(samples)
+    }
+
+    fn sample(&self, line: u64, text: &str) -> Result<Sample, SceneError> {
+        let cells: Vec<&str> = text.split_whitespace().collect();
+        let Ok(cells) = <[&str; 7]>::try_from(cells.as_slice()) else {
+            let count = cells.len();
+            let message =
+                format!("the row has {count} cells, SWC has 7: id type x y z radius parent");
+            return Err(self.error(line, None, message, None));
+        };
+        let whole = |index: usize| {
+            cells[index].parse::<i64>().map_err(|_| {
+                let message = format!("{} is not a whole number", quoted(cells[index]));
+                self.error(line, Some(COLUMNS[index]), message, None)
+            })
+        };
+        let number = |index: usize| match cells[index].parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => {
+                let message = format!("{} is not a finite number", quoted(cells[index]));
+                Err(self.error(line, Some(COLUMNS[index]), message, None))
+            }
+        };
+        whole(1)?;
+        Ok(Sample {
+            line,
+            id: whole(0)?,
+            point: DVec3::new(number(2)?, number(3)?, number(4)?),
+            radius: number(5)?,
+            parent: whole(6)?,
+        })
+    }
+
+    /// Where each id stands in the list of samples.
+    fn index(&self, samples: &[Sample]) -> Result<HashMap<i64, usize>, SceneError> {
+        let mut index = HashMap::with_capacity(samples.len());
+        for (place, sample) in samples.iter().enumerate() {
+            if let Some(first) = index.insert(sample.id, place) {
+                let (id, line) = (sample.id, samples[first].line);
+                let message = format!("the id {id} stands on line {line} already");
+                return Err(self.error(sample.line, Some("id"), message, None));
+            }
+        }
+        Ok(index)
+    }
+
+    fn parent<'s>(
+        &self,
+        samples: &'s [Sample],
+        index: &HashMap<i64, usize>,
+        sample: &Sample,
+    ) -> Result<&'s Sample, SceneError> {
+        let message = match index.get(&sample.parent) {
+            Some(_) if sample.parent == sample.id => "the sample is its own parent".to_owned(),
+            Some(&place) => return Ok(&samples[place]),
+            None => format!(
+                "there is no sample {}: the parent must be the id of a sample, or -1 for none",
+                sample.parent
+            ),
+        };
+        Err(self.error(sample.line, Some("parent"), message, None))
+    }
+}

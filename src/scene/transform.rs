@@ -1,0 +1,257 @@
+//! Placements: composed from scale, rotations and translation, and checked.
+//!
+//! Everything here is additions, products, square roots and `libm`, so that a
+//! scene is the same numbers on every machine; glam's own rotations call the
+//! platform's sine.
+
+use std::f64::consts::PI;
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+use crate::math::power_of_two;
+
+/// The greatest size of an entry of a placement and of its inverse: 2^100.
+/// Beyond it, rays that pass a few levels would overflow.
+pub(super) const GREATEST_ENTRY: f64 = power_of_two(100);
+
+/// Least `|det L|` relative to the product of the lengths of L's columns:
+/// 2^-40. Rounding makes some 2^-50 of a singular matrix; below 2^-40 fewer
+/// than a dozen bits of an inverse would be right.
+const LEAST_RELATIVE_DETERMINANT: f64 = power_of_two(-40);
+
+/// Why numbers are not a placement.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub(super) enum TransformError {
+    #[error("the placement has the entry {entry}: the size of each must be at most 2^100")]
+    Entry { entry: f64 },
+    #[error(
+        "the placement shrinks a direction to {length:e} of its length: it must keep at least 2^-100"
+    )]
+    Shrinks { length: f64 },
+    #[error(
+        "the placement is singular, it makes volumes flat: its determinant is {relative:e} of the product of its columns' lengths, at least 2^-40 is needed"
+    )]
+    Singular { relative: f64 },
+}
+
+/// How far a placement may take numbers, for the check of nested ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Reach {
+    /// At least the greatest size of an entry of L.
+    pub stretch: f64,
+    /// At least the greatest size of an entry of L's inverse.
+    pub squeeze: f64,
+    /// At least the greatest size of a coordinate of the translation.
+    pub translation: f64,
+}
+
+impl Reach {
+    /// What holds for either placement.
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            stretch: self.stretch.max(other.stretch),
+            squeeze: self.squeeze.max(other.squeeze),
+            translation: self.translation.max(other.translation),
+        }
+    }
+}
+
+/// The unit vector along `vector`, or `None` of the zero vector. Any finite
+/// size will do: it is divided out before anything is squared.
+pub(super) fn unit(vector: DVec3) -> Option<DVec3> {
+    let size = vector.abs().max_element();
+    (size > 0.0 && size.is_finite()).then(|| {
+        let scaled = vector / size;
+        scaled / scaled.length()
+    })
+}
+
+/// Sine and cosine of an angle in degrees, exact at multiples of 90.
+///
+/// The angle is reduced to [-45, 45] degrees, which is exact, and the quarter
+/// turns are put back by swapping and negating.
+pub(super) fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
+    let turned = degrees % 360.0;
+    let quarters = libm::round(turned / 90.0);
+    let (sin, cos) = libm::sincos((turned - 90.0 * quarters) * (PI / 180.0));
+    match (quarters as i64).rem_euclid(4) {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+/// The rotation about a unit axis by an angle given by its sine and cosine
+/// (Rodrigues' formula).
+pub(super) fn rotation(axis: DVec3, (sin, cos): (f64, f64)) -> DMat3 {
+    let across = DMat3::from_cols(
+        DVec3::new(0.0, axis.z, -axis.y),
+        DVec3::new(-axis.z, 0.0, axis.x),
+        DVec3::new(axis.y, -axis.x, 0.0),
+    );
+    let along = DMat3::from_cols(axis * axis.x, axis * axis.y, axis * axis.z);
+    DMat3::from_diagonal(DVec3::splat(cos)) + across * sin + along * (1.0 - cos)
+}
+
+/// The rotation of a quaternion of any length (x, y, z, w), or `None` of zero.
+pub(super) fn quaternion_rotation(quaternion: [f64; 4]) -> Option<DMat3> {
+    let size = quaternion
+        .iter()
+        .fold(0.0, |size: f64, entry| size.max(entry.abs()));
+    (size > 0.0).then(|| {
+        let scaled = DQuat::from_array(quaternion.map(|entry| entry / size));
+        DMat3::from_quat(DQuat::from_vec4(
+            glam::DVec4::from(scaled) / glam::DVec4::from(scaled).length(),
+        ))
+    })
+}
+
+/// What a placement does to the size of numbers.
+///
+/// # Errors
+/// When an entry of the placement or of its inverse is too large, or the
+/// matrix is as good as singular.
+pub(super) fn checked(parent_from_child: &DAffine3) -> Result<Reach, TransformError> {
+    let matrix = parent_from_child.matrix3;
+    let translation = parent_from_child.translation;
+    for entry in matrix
+        .to_cols_array()
+        .into_iter()
+        .chain(translation.to_array())
+    {
+        if entry.is_nan() || entry.abs() > GREATEST_ENTRY {
+            return Err(TransformError::Entry { entry });
+        }
+    }
+    let lengths = DVec3::new(
+        matrix.x_axis.length(),
+        matrix.y_axis.length(),
+        matrix.z_axis.length(),
+    );
+    let shortest = lengths.min_element();
+    if shortest == 0.0 {
+        return Err(TransformError::Singular { relative: 0.0 });
+    }
+    if shortest < 1.0 / GREATEST_ENTRY {
+        return Err(TransformError::Shrinks { length: shortest });
+    }
+    let relative = DMat3::from_cols(
+        matrix.x_axis / lengths.x,
+        matrix.y_axis / lengths.y,
+        matrix.z_axis / lengths.z,
+    )
+    .determinant();
+    if relative.abs() < LEAST_RELATIVE_DETERMINANT {
+        return Err(TransformError::Singular { relative });
+    }
+    let squeeze = greatest_entry(&matrix.inverse());
+    if squeeze > GREATEST_ENTRY {
+        return Err(TransformError::Shrinks {
+            length: 1.0 / squeeze,
+        });
+    }
+    Ok(Reach {
+        stretch: greatest_entry(&matrix),
+        squeeze,
+        translation: translation.abs().max_element(),
+    })
+}
+
+fn greatest_entry(matrix: &DMat3) -> f64 {
+    matrix
+        .to_cols_array()
+        .into_iter()
+        .fold(0.0, |greatest, entry| greatest.max(entry.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Random;
+
+    #[test]
+    fn sin_cos_quarter_turns_are_exact() {
+        let expected = [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)];
+        for turn in -9_i32..=9 {
+            let degrees = 90.0 * f64::from(turn);
+            let found = sin_cos_degrees(degrees);
+            assert_eq!(found, expected[turn.rem_euclid(4) as usize], "{degrees}");
+        }
+        assert_eq!(
+            sin_cos_degrees(90.0 + 360.0 * (1_u64 << 40) as f64),
+            (1.0, 0.0)
+        );
+    }
+
+    #[test]
+    fn sin_cos_random_angles_agree_with_radians() {
+        let mut random = Random::new(11, 0);
+        for _ in 0..10_000 {
+            let degrees = random.uniform(-720.0, 720.0);
+            let (sin, cos) = sin_cos_degrees(degrees);
+            let (sin_radians, cos_radians) = libm::sincos(degrees * (PI / 180.0));
+            let error = (sin - sin_radians).abs().max((cos - cos_radians).abs());
+            assert!(error < 3e-15, "{:#x}: {error:e}", degrees.to_bits());
+        }
+    }
+
+    #[test]
+    fn rotation_of_a_quarter_about_z_takes_x_to_y_exactly() {
+        let axis = unit(DVec3::new(0.0, 0.0, 7.0)).expect("an axis");
+        let matrix = rotation(axis, sin_cos_degrees(90.0));
+        assert_eq!(matrix * DVec3::X, DVec3::Y);
+        assert_eq!(matrix * DVec3::Y, DVec3::NEG_X);
+    }
+
+    #[test]
+    fn rotation_random_axis_agrees_with_its_quaternion() {
+        let mut random = Random::new(12, 0);
+        for case in 0..2_000 {
+            let axis = random.direction();
+            let degrees = random.uniform(-360.0, 360.0);
+            let matrix = rotation(unit(axis).expect("an axis"), sin_cos_degrees(degrees));
+            let (sin, cos) = sin_cos_degrees(degrees / 2.0);
+            let length = random.log_uniform(1e-100, 1e100);
+            let half = axis * sin * length;
+            let other =
+                quaternion_rotation([half.x, half.y, half.z, cos * length]).expect("a quaternion");
+            let error = greatest_entry(&(matrix - other));
+            assert!(error < 2e-15, "case {case}: {axis:?} {degrees} {error:e}");
+            let gram = greatest_entry(&(matrix.transpose() * matrix - DMat3::IDENTITY));
+            assert!(gram < 2e-15, "case {case}: {axis:?} {degrees} {gram:e}");
+        }
+    }
+
+    #[test]
+    fn checked_extreme_and_singular_matrices_are_refused() {
+        let scaled = |x, y, z| DAffine3::from_scale(DVec3::new(x, y, z));
+        assert!(checked(&scaled(1e30, 1e-30, -1.0)).is_ok());
+        assert!(matches!(
+            checked(&scaled(1e31, 1.0, 1.0)),
+            Err(TransformError::Entry { .. })
+        ));
+        assert!(matches!(
+            checked(&scaled(1e-31, 1.0, 1.0)),
+            Err(TransformError::Shrinks { .. })
+        ));
+        assert!(matches!(
+            checked(&scaled(0.0, 1.0, 1.0)),
+            Err(TransformError::Singular { relative: 0.0 })
+        ));
+        let flat = DMat3::from_cols(
+            DVec3::new(1.0, 2.0, 3.0),
+            DVec3::new(4.0, 5.0, 6.0),
+            DVec3::new(7.0, 8.0, 9.0),
+        );
+        assert!(matches!(
+            checked(&DAffine3::from_mat3(flat)),
+            Err(TransformError::Singular { .. })
+        ));
+        let moved = DAffine3::from_translation(DVec3::new(0.0, f64::NAN, 0.0));
+        assert!(matches!(
+            checked(&moved),
+            Err(TransformError::Entry { entry }) if entry.is_nan()
+        ));
+    }
+}
