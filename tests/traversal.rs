@@ -8,8 +8,9 @@ mod support;
 
 use std::sync::Arc;
 
+use cyltrace::embree::MaxIsa;
 use cyltrace::math::{Random, Ray};
-use cyltrace::scene::{CylinderRecord, Placement, Prototype, PrototypeIndex};
+use cyltrace::scene::{CylinderRecord, Placement, Prototype, PrototypeIndex, Scene};
 use cyltrace::tracer::{Options, Tracer};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
@@ -75,8 +76,13 @@ fn ray_at(random: &mut Random, cylinders: &[CylinderRecord], reach: f64) -> Ray 
 }
 
 /// Compares both kinds of query with the exhaustive one.
-fn assert_nothing_lost(name: &str, tracer: &Tracer, ray_of: impl Fn(&mut Random) -> Ray + Sync) {
-    let hits: u64 = (0..ray_count())
+fn assert_nothing_lost(
+    name: &str,
+    tracer: &Tracer,
+    rays: u64,
+    ray_of: impl Fn(&mut Random) -> Ray + Sync,
+) {
+    let hits: u64 = (0..rays)
         .into_par_iter()
         .map(|number| {
             let ray = ray_of(&mut Random::new(SEED, 1000 + number));
@@ -88,12 +94,32 @@ fn assert_nothing_lost(name: &str, tracer: &Tracer, ray_of: impl Fn(&mut Random)
             u64::from(truth.is_some())
         })
         .sum();
-    let share = hits as f64 / ray_count() as f64;
-    println!("{name}: {} rays, {hits} hits, none lost", ray_count());
+    let share = hits as f64 / rays as f64;
+    println!("{name}: {rays} rays, {hits} hits, none lost");
     assert!(
         share > 0.3,
         "{name}: only {hits} hits, the test sees nothing"
     );
+}
+
+/// The scene built for every instruction set of this machine, and how many rays
+/// it gets: all for the best, a fifth for the others.
+fn tracers(scene: &Arc<Scene>) -> Vec<(String, u64, Tracer)> {
+    let build = |max_isa: Option<MaxIsa>| {
+        let options = Options {
+            max_isa,
+            ..Default::default()
+        };
+        let tracer = Tracer::new(Arc::clone(scene), &options).unwrap();
+        let isa = tracer.statistics().isa.clone();
+        let rays = ray_count() / if max_isa == MaxIsa::best() { 1 } else { 5 };
+        (isa, rays, tracer)
+    };
+    let available = MaxIsa::available();
+    if available.is_empty() {
+        return vec![build(None)];
+    }
+    available.into_iter().map(|isa| build(Some(isa))).collect()
 }
 
 #[test]
@@ -103,9 +129,12 @@ fn box_of_cylinders_loses_no_hit() {
         cylinders: cylinders.clone(),
         ..Default::default()
     };
-    let tracer = Tracer::new(support::scene_of(vec![root]), &Options::default()).unwrap();
-    for (name, reach) in [("near", 1e2), ("far", 1e8)] {
-        assert_nothing_lost(name, &tracer, |random| ray_at(random, &cylinders, reach));
+    for (isa, rays, tracer) in tracers(&support::scene_of(vec![root])) {
+        for (name, reach) in [("near", 1e2), ("far", 1e8)] {
+            assert_nothing_lost(&format!("{isa}, {name}"), &tracer, rays, |random| {
+                ray_at(random, &cylinders, reach)
+            });
+        }
     }
 }
 
@@ -148,8 +177,6 @@ fn nested_placements_lose_no_hit() {
             ..Default::default()
         };
         let scene = support::scene_of(vec![root, outer.clone(), middle.clone(), leaf.clone()]);
-        let tracer = Tracer::new(Arc::clone(&scene), &Options::default()).unwrap();
-        let bounds = tracer.bounds();
         // The placed prototypes are far apart and small against their distance:
         // rays are aimed at their images.
         let images: Vec<DAffine3> = scene.prototypes[1]
@@ -169,18 +196,17 @@ fn nested_placements_lose_no_hit() {
                 }
             })
             .collect();
-        let name = format!(
-            "nested, translated by {translation:e}, {:e}",
-            bounds.extent().length()
-        );
-        assert_nothing_lost(&name, &tracer, |random| {
-            let image = images[random.below(images.len() as u64) as usize];
-            let ray = ray_at(random, &cylinders, 1e6);
-            Ray {
-                origin: image.transform_point3(ray.origin),
-                direction: image.transform_vector3(ray.direction),
-                ..ray
-            }
-        });
+        for (isa, rays, tracer) in tracers(&scene) {
+            let name = format!("{isa}, nested, translated by {translation:e}");
+            assert_nothing_lost(&name, &tracer, rays, |random| {
+                let image = images[random.below(images.len() as u64) as usize];
+                let ray = ray_at(random, &cylinders, 1e6);
+                Ray {
+                    origin: image.transform_point3(ray.origin),
+                    direction: image.transform_vector3(ray.direction),
+                    ..ray
+                }
+            });
+        }
     }
 }
