@@ -65,6 +65,8 @@ impl ChildFromParent {
 pub struct PlacementErrors {
     /// At least the factor by which `L` lengthens any vector.
     pub stretch: f64,
+    /// At least the factor by which `L⁻¹` lengthens any vector.
+    pub squeeze: f64,
     /// At least `‖L‖ ‖L⁻¹‖`, in Frobenius norms; 3 for a rotation.
     pub condition: f64,
     /// A computed child's point is the exact image of a parent's point that
@@ -77,23 +79,30 @@ impl PlacementErrors {
     /// The bounds for a placement and its computed way back.
     ///
     /// The stretch is `√‖Lᵀ L‖∞`, an upper bound of the spectral norm that is
-    /// tight for rotations with one scale, so that it does not grow with depth.
+    /// tight for rotations with one scale, so that it does not grow with depth;
+    /// the squeeze is that of the computed inverse, and covers its error as
+    /// long as `‖L G - I‖` is below 1/2.
     #[must_use]
     pub fn new(parent_from_child: &DAffine3, child_from_parent: &ChildFromParent) -> Self {
         let matrix = parent_from_child.matrix3;
         let inverse = child_from_parent.inverse;
-        let gram = matrix.transpose() * matrix;
-        let rows = gram.abs() * DVec3::ONE;
-        let stretch = rows.max_element().sqrt() * (1.0 + 8.0 * UNIT_ROUNDOFF);
         let condition =
             frobenius_norm(&matrix) * frobenius_norm(&inverse) * (1.0 + 16.0 * UNIT_ROUNDOFF);
         let residual = frobenius_norm(&(matrix * inverse - DMat3::IDENTITY));
         Self {
-            stretch,
+            stretch: spectral_norm_bound(&matrix),
+            squeeze: spectral_norm_bound(&inverse) * (1.0 + 2.0 * residual),
             condition,
             inverse_error: residual + UNIT_ROUNDOFF * (1.0 + 7.0 * condition),
         }
     }
+}
+
+/// At least the factor by which the matrix lengthens any vector.
+fn spectral_norm_bound(matrix: &DMat3) -> f64 {
+    let gram = matrix.transpose() * matrix;
+    let rows = gram.abs() * DVec3::ONE;
+    rows.max_element().sqrt() * (1.0 + 8.0 * UNIT_ROUNDOFF)
 }
 
 /// The root of the sum of the squares of the entries.
@@ -108,6 +117,21 @@ fn frobenius_norm(matrix: &DMat3) -> f64 {
 mod tests {
     use super::*;
     use crate::math::Random;
+
+    /// Nested placements multiply their bounds: what a rotation adds counts.
+    #[test]
+    fn rotations_neither_stretch_nor_squeeze() {
+        let mut random = Random::new(5, 0);
+        for case in 0..1_000 {
+            let x = random.direction();
+            let y = x.cross(random.direction()).normalize();
+            let scale = random.log_uniform(1e-3, 1e3);
+            let affine = DAffine3::from_mat3(DMat3::from_cols(x, y, x.cross(y)) * scale);
+            let errors = PlacementErrors::new(&affine, &ChildFromParent::new(&affine));
+            assert!((errors.stretch / scale - 1.0).abs() < 1e-14, "case {case}");
+            assert!((errors.squeeze * scale - 1.0).abs() < 1e-14, "case {case}");
+        }
+    }
 
     /// Goes into the child and back in higher precision, and measures how far
     /// the round trip misses.
@@ -144,6 +168,10 @@ mod tests {
             );
             assert!(
                 (matrix * point).length() <= errors.stretch * point.length(),
+                "case {case}"
+            );
+            assert!(
+                child.length() <= errors.squeeze * (point - affine.translation).length(),
                 "case {case}"
             );
         }
