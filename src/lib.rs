@@ -8,3 +8,8 @@ pub mod render;
 pub mod scene;
 pub mod solid;
 pub mod tracer;
+
+// Compiles and runs the README's Rust examples.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -6,13 +6,13 @@ use cyltrace::tracer::MemoryEstimate;
 use serde_json::json;
 
 use super::arguments::InfoArguments;
-use super::{json, memory};
+use super::{json, memory, scene};
 
 /// Says what the scene holds.
 pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
     json::check(&arguments.common)?;
     let start = Instant::now();
-    let scene = cyltrace::scene::load(&arguments.scene)?;
+    let scene = scene::load(&arguments.common, &arguments.scene)?;
     let load = start.elapsed().as_secs_f64();
     let census = scene.census();
     let estimate = MemoryEstimate::of(&census);

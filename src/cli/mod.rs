@@ -12,6 +12,7 @@ mod memory;
 mod progress;
 mod ray_table;
 mod render;
+mod scene;
 mod target;
 mod trace;
 

@@ -5,11 +5,11 @@ use std::time::Instant;
 
 use anyhow::Context;
 use cyltrace::render::{Output, Picture, RenderError, Settings};
-use cyltrace::tracer::{Options, Tracer};
+use cyltrace::tracer::Tracer;
 use serde_json::json;
 
-use super::arguments::{Common, RenderArguments, integrator_name};
-use super::{interrupt, json, memory, progress};
+use super::arguments::{RenderArguments, integrator_name};
+use super::{interrupt, json, memory, progress, scene};
 
 /// How long the parts of the command took, in seconds.
 struct Times {
@@ -26,7 +26,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     interrupt::install()?;
 
     let start = Instant::now();
-    let scene = Arc::new(cyltrace::scene::load(&arguments.scene)?);
+    let scene = Arc::new(scene::load(common, &arguments.scene)?);
     let mut settings = Settings::of(&scene);
     settings.seed = arguments.seed;
     if let Some(size) = arguments.size {
@@ -42,7 +42,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let load = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
-    let tracer = build(common, &scene)?;
+    let tracer = scene::build(common, &scene)?;
     let build = start.elapsed().as_secs_f64();
 
     let cancelled = interrupt::end_in_order();
@@ -78,18 +78,6 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         render,
     };
     report(arguments, &settings, &tracer, &picture, &times, threads)
-}
-
-/// Builds what is traced.
-pub fn build(common: &Common, scene: &Arc<cyltrace::scene::Scene>) -> anyhow::Result<Tracer> {
-    let spinner = progress::spinner(common, "building the scene");
-    let options = Options {
-        threads: common.threads,
-        max_isa: common.max_isa,
-    };
-    let tracer = Tracer::new(Arc::clone(scene), &options)?;
-    spinner.finish_and_clear();
-    Ok(tracer)
 }
 
 /// Prints the figures, and writes them where `--json` says.

@@ -17,7 +17,7 @@ use serde_json::json;
 use super::arguments::TraceArguments;
 use super::ray_table::{Block, RayTable};
 use super::target::{Target, is_standard_output};
-use super::{hit_table, interrupt, json, progress, render};
+use super::{hit_table, interrupt, json, progress, scene};
 
 /// Blocks that a thread gets of each batch: enough to even out slow ones.
 const BLOCKS_PER_THREAD: usize = 4;
@@ -50,10 +50,10 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     let check = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
-    let scene = Arc::new(cyltrace::scene::load(&arguments.scene)?);
+    let scene = Arc::new(scene::load(common, &arguments.scene)?);
     let load = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let tracer = render::build(common, &scene)?;
+    let tracer = scene::build(common, &scene)?;
     let build = start.elapsed().as_secs_f64();
 
     interrupt::end_in_order();

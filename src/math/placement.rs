@@ -65,8 +65,8 @@ impl ChildFromParent {
 pub struct PlacementErrors {
     /// At least the factor by which `L` lengthens any vector.
     pub stretch: f64,
-    /// At least the factor by which `L⁻¹` lengthens any vector.
-    pub squeeze: f64,
+    /// At most the factor by which `L` shortens any vector.
+    pub shrink: f64,
     /// At least `‖L‖ ‖L⁻¹‖`, in Frobenius norms; 3 for a rotation.
     pub condition: f64,
     /// A computed child's point is the exact image of a parent's point that
@@ -77,11 +77,6 @@ pub struct PlacementErrors {
 
 impl PlacementErrors {
     /// The bounds for a placement and its computed way back.
-    ///
-    /// The stretch is `√‖Lᵀ L‖∞`, an upper bound of the spectral norm that is
-    /// tight for rotations with one scale, so that it does not grow with depth;
-    /// the squeeze is that of the computed inverse, and covers its error as
-    /// long as `‖L G - I‖` is below 1/2.
     #[must_use]
     pub fn new(parent_from_child: &DAffine3, child_from_parent: &ChildFromParent) -> Self {
         let matrix = parent_from_child.matrix3;
@@ -91,16 +86,18 @@ impl PlacementErrors {
         let residual = frobenius_norm(&(matrix * inverse - DMat3::IDENTITY));
         Self {
             stretch: spectral_norm_bound(&matrix),
-            squeeze: spectral_norm_bound(&inverse) * (1.0 + 2.0 * residual),
+            // L⁻¹ = G (L G)⁻¹, and |(L G)⁻¹| <= 1 / (1 - |L G - I|).
+            shrink: (1.0 - residual) / spectral_norm_bound(&inverse),
             condition,
             inverse_error: residual + UNIT_ROUNDOFF * (1.0 + 7.0 * condition),
         }
     }
 }
 
-/// At least the factor by which the matrix lengthens any vector.
+/// `√‖Lᵀ L‖∞`, an upper bound of the spectral norm that is tight for rotations
+/// with one scale, so that products of it do not grow with depth.
 fn spectral_norm_bound(matrix: &DMat3) -> f64 {
-    let gram = matrix.transpose() * matrix;
+    let gram = matrix.transpose() * *matrix;
     let rows = gram.abs() * DVec3::ONE;
     rows.max_element().sqrt() * (1.0 + 8.0 * UNIT_ROUNDOFF)
 }
@@ -120,7 +117,7 @@ mod tests {
 
     /// Nested placements multiply their bounds: what a rotation adds counts.
     #[test]
-    fn rotations_neither_stretch_nor_squeeze() {
+    fn rotations_neither_stretch_nor_shrink() {
         let mut random = Random::new(5, 0);
         for case in 0..1_000 {
             let x = random.direction();
@@ -129,7 +126,7 @@ mod tests {
             let affine = DAffine3::from_mat3(DMat3::from_cols(x, y, x.cross(y)) * scale);
             let errors = PlacementErrors::new(&affine, &ChildFromParent::new(&affine));
             assert!((errors.stretch / scale - 1.0).abs() < 1e-14, "case {case}");
-            assert!((errors.squeeze * scale - 1.0).abs() < 1e-14, "case {case}");
+            assert!((errors.shrink / scale - 1.0).abs() < 1e-14, "case {case}");
         }
     }
 
@@ -171,7 +168,7 @@ mod tests {
                 "case {case}"
             );
             assert!(
-                child.length() <= errors.squeeze * (point - affine.translation).length(),
+                child.length() * errors.shrink <= (point - affine.translation).length(),
                 "case {case}"
             );
         }

@@ -14,9 +14,10 @@ use crate::scene::{self, Film, Frame, Projection};
 /// enough to see that nothing is cut, too little to waste the picture.
 const MARGIN: f64 = 0.04;
 
-/// From the scene towards the eye of an automatic frame: a three-quarter view
-/// from the front right, about 28 degrees above the horizon.
-const AUTO_EYE: DVec3 = DVec3::new(0.5, -0.75, 0.48);
+/// From the scene towards the eye of an automatic frame: a three-quarter view,
+/// 28 degrees above the horizon. A sun at azimuth 135 degrees, where scenes
+/// have it by default, then shines from the left and from behind the viewer.
+const AUTO_EYE: DVec3 = DVec3::new(-0.8, -0.4, 0.48);
 
 /// The least distance from the eye of an automatic perspective to the nearest
 /// corner of the scene's box, in diagonals of the box. Without it a wide

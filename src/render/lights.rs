@@ -5,16 +5,18 @@ use glam::DVec3;
 use crate::scene::{Scene, Sky, Sun};
 
 /// The sun of a scene that states no light: from the left of an automatic
-/// frame, behind the viewer, 45 degrees high, slightly warm.
+/// frame, behind the viewer, 45 degrees high, slightly warm. With the sky
+/// below, a surface of reflectance 0.8 that faces it comes out just at white,
+/// and the default material, 0.5, stands out against a light background.
 const DEFAULT_SUN: (DVec3, DVec3, f64) = (
-    DVec3::new(-0.35, -0.615, std::f64::consts::FRAC_1_SQRT_2),
-    DVec3::new(1.0, 0.95, 0.86),
-    2.6,
+    DVec3::new(-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2),
+    DVec3::new(1.0, 0.92, 0.8),
+    3.0,
 );
 
 /// The sky of a scene that states no light: a clear one, far weaker than the
 /// sun, so that shadows show.
-const DEFAULT_SKY: (DVec3, f64) = (DVec3::new(0.7, 0.83, 1.0), 0.45);
+const DEFAULT_SKY: (DVec3, f64) = (DVec3::new(0.65, 0.8, 1.0), 0.3);
 
 /// What shines on a scene; lights without effect are left out.
 #[derive(Clone, Debug)]

@@ -16,7 +16,7 @@ use super::values::{Keys, Number, Whole};
 /// Most pixels across and down: more would be 51 GB of film.
 const GREATEST_SIDE: u32 = 65_536;
 /// The reflectance of solids that name no material.
-const DEFAULT_REFLECTANCE: f64 = 0.8;
+const DEFAULT_REFLECTANCE: f64 = 0.5;
 
 const DEFAULT_BACKGROUND: DVec3 = DVec3::new(0.8, 0.9, 1.0);
 const DEFAULT_SUN_COLOR: DVec3 = DVec3::new(1.0, 0.95, 0.9);
@@ -34,28 +34,23 @@ pub(super) struct Lights {
     pub background: DVec3,
 }
 
-/// The lights. A scene that states neither sun nor sky gets the default sun;
-/// one that states no background either gets the default sky too.
+/// The lights that the scene states. What shines where it states none is the
+/// renderer's business.
 pub(super) fn lights(
     source: &Source,
     sun: Option<&SunKeys>,
-    sky: Option<&SkyKeys>,
+    sky_keys: Option<&SkyKeys>,
     background: Option<&Triple>,
 ) -> Result<Lights, SceneError> {
-    let dark = sun.is_none() && sky.is_none();
+    let sky = |keys: &SkyKeys| {
+        Ok(Sky {
+            color: color(source, keys.color.as_ref(), DEFAULT_SKY.color)?,
+            strength: strength(source, keys.strength.as_ref(), DEFAULT_SKY.strength)?,
+        })
+    };
     Ok(Lights {
-        sun: match sun {
-            Some(keys) => Some(self::sun(source, keys)?),
-            None if dark => Some(self::sun(source, &SunKeys::default())?),
-            None => None,
-        },
-        sky: match sky {
-            Some(keys) => Some(Sky {
-                color: color(source, keys.color.as_ref(), DEFAULT_SKY.color)?,
-                strength: strength(source, keys.strength.as_ref(), DEFAULT_SKY.strength)?,
-            }),
-            None => (dark && background.is_none()).then_some(DEFAULT_SKY),
-        },
+        sun: sun.map(|keys| self::sun(source, keys)).transpose()?,
+        sky: sky_keys.map(sky).transpose()?,
         background: color(source, background, DEFAULT_BACKGROUND)?,
     })
 }

@@ -157,7 +157,7 @@ pub(super) fn checked(parent_from_child: &DAffine3) -> Result<Reach, TransformEr
     }
     Ok(Reach {
         stretch: errors.stretch,
-        squeeze: errors.squeeze,
+        squeeze: 1.0 / errors.shrink,
         translation: translation.abs().max_element(),
     })
 }

@@ -113,7 +113,7 @@ impl Plan {
                 });
             }
             let greatest = child.greatest * errors.stretch;
-            let least = child.least / errors.squeeze;
+            let least = child.least * errors.shrink;
             for stretch in [least, greatest] {
                 if !(1.0 / GREATEST_STRETCH..=GREATEST_STRETCH).contains(&stretch) {
                     return Err(TracerError::Stretch {

@@ -76,7 +76,7 @@ pub(crate) struct Window {
 impl Window {
     /// `t` counted from the nearest point, moved by `outward` times the
     /// rounding of the differences.
-    fn from_nearest(&self, t: f64, outward: f64) -> f64 {
+    fn past_nearest(&self, t: f64, outward: f64) -> f64 {
         let slack = 4.0 * UNIT_ROUNDOFF * (t.abs() + self.shift.abs() + self.nearest.abs());
         let difference = (t - self.shift) - self.nearest;
         if difference.is_finite() {
@@ -89,7 +89,7 @@ impl Window {
     /// The end of the f32 ray for hits up to `t`; never too small.
     #[inline]
     pub fn t_far(&self, t: f64) -> f32 {
-        self.length_to(self.from_nearest(t, 1.0))
+        self.length_to(self.past_nearest(t, 1.0))
     }
 
     /// The length of the f32 ray up to `end`, counted from the nearest point.
@@ -213,8 +213,8 @@ impl Frame {
             start: 0.0,
             rate,
         };
-        window.start = window.from_nearest(t_min, -1.0).max(-half_chord);
-        let end = window.from_nearest(t_max, 1.0).min(half_chord);
+        window.start = window.past_nearest(t_min, -1.0).max(-half_chord);
+        let end = window.past_nearest(t_max, 1.0).min(half_chord);
         if !(window.start <= end) {
             return None;
         }

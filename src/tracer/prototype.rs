@@ -22,7 +22,7 @@ pub(crate) struct Prototype {
     reach: Bounds,
     pub frame: Frame,
     scene: embree::Scene<Query>,
-    cylinders: Arc<CylinderGeometry>,
+    cylinders: CylinderGeometry,
     placements: Arc<PlacementGeometry>,
 }
 
@@ -36,6 +36,7 @@ pub(crate) struct PlacementRecord {
 /// The child of a placement of a prototype that holds nothing.
 const NO_CHILD: u32 = u32::MAX;
 
+#[derive(Clone)]
 struct CylinderGeometry {
     description: Arc<Scene>,
     prototype: PrototypeIndex,
@@ -104,11 +105,11 @@ impl Prototype {
         };
         let records = prototype.placements.iter().map(record_of).collect();
 
-        let cylinders = Arc::new(CylinderGeometry {
+        let cylinders = CylinderGeometry {
             description: Arc::clone(description),
             prototype: index,
             frame: frame.clone(),
-        });
+        };
         let placements = Arc::new(PlacementGeometry {
             description: Arc::clone(description),
             prototype: index,
@@ -119,7 +120,7 @@ impl Prototype {
         });
         let mut builder = SceneBuilder::new(device)?;
         if !prototype.cylinders.is_empty() {
-            builder.attach_user(Arc::clone(&cylinders))?;
+            builder.attach_user(cylinders.clone())?;
         }
         if !placements.children.is_empty() {
             builder.attach_user(Arc::clone(&placements))?;
@@ -200,7 +201,7 @@ impl CylinderGeometry {
     }
 }
 
-impl UserGeometry for Arc<CylinderGeometry> {
+impl UserGeometry for CylinderGeometry {
     type Query = Query;
 
     fn primitive_count(&self) -> u32 {

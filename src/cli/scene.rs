@@ -1,0 +1,32 @@
+//! Scenes, as every command gets them.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use anyhow::anyhow;
+use cyltrace::scene::Scene;
+use cyltrace::tracer::{Options, Tracer};
+
+use super::arguments::Common;
+use super::progress;
+
+/// Loads a scene file.
+pub fn load(common: &Common, path: &Path) -> anyhow::Result<Scene> {
+    let spinner = progress::spinner(common, "loading the scene");
+    // The error's text is the whole message; its source would repeat a part.
+    let scene = cyltrace::scene::load(path).map_err(|error| anyhow!("{error}"));
+    spinner.finish_and_clear();
+    scene
+}
+
+/// Builds what is traced.
+pub fn build(common: &Common, scene: &Arc<Scene>) -> anyhow::Result<Tracer> {
+    let spinner = progress::spinner(common, "building the scene");
+    let options = Options {
+        threads: common.threads,
+        max_isa: common.max_isa,
+    };
+    let tracer = Tracer::new(Arc::clone(scene), &options);
+    spinner.finish_and_clear();
+    Ok(tracer?)
+}

@@ -1,0 +1,49 @@
+//! The sample scenes load, and hold what their header comments say.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use cyltrace::tracer::{Options, Tracer};
+
+/// Loads and builds a scene; answers with the cylinders stored, those in the
+/// scene, and its placements.
+fn counts(name: &str) -> (u64, u128, u128) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("scenes")
+        .join(name);
+    let scene = cyltrace::scene::load(&path).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(scene.skipped_rows, 0, "{name} skips rows");
+    let tracer = Tracer::new(Arc::new(scene), &Options::default())
+        .unwrap_or_else(|error| panic!("{name}: {error}"));
+    let statistics = tracer.statistics();
+    assert!(
+        statistics.skipped.is_empty(),
+        "{name}: {:?}",
+        statistics.skipped
+    );
+    (
+        statistics.cylinders_unique,
+        statistics.cylinders_instanced,
+        statistics.instances,
+    )
+}
+
+#[test]
+fn forest_counted_holds_ten_thousand_trees() {
+    assert_eq!(counts("forest.toml"), (59_355, 129_004_045, 10_000));
+}
+
+#[test]
+fn lattice_counted_holds_sixty_thousand_struts() {
+    assert_eq!(counts("lattice.toml"), (13_749, 61_061, 7));
+}
+
+#[test]
+fn minimal_counted_holds_four_cylinders() {
+    assert_eq!(counts("minimal.toml"), (4, 4, 0));
+}
+
+#[test]
+fn pathological_counted_holds_what_its_header_says() {
+    assert_eq!(counts("pathological.toml"), (41, 44, 5));
+}
