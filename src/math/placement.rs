@@ -86,7 +86,8 @@ impl PlacementErrors {
         let residual = frobenius_norm(&(matrix * inverse - DMat3::IDENTITY));
         Self {
             stretch: spectral_norm_bound(&matrix),
-            shrink: 1.0 / spectral_norm_bound(&inverse),
+            // L⁻¹ = G (L G)⁻¹, and |(L G)⁻¹| <= 1 / (1 - |L G - I|).
+            shrink: (1.0 - residual) / spectral_norm_bound(&inverse),
             condition,
             inverse_error: residual + UNIT_ROUNDOFF * (1.0 + 7.0 * condition),
         }
@@ -113,6 +114,21 @@ fn frobenius_norm(matrix: &DMat3) -> f64 {
 mod tests {
     use super::*;
     use crate::math::Random;
+
+    /// Nested placements multiply their bounds: what a rotation adds counts.
+    #[test]
+    fn rotations_neither_stretch_nor_shrink() {
+        let mut random = Random::new(5, 0);
+        for case in 0..1_000 {
+            let x = random.direction();
+            let y = x.cross(random.direction()).normalize();
+            let scale = random.log_uniform(1e-3, 1e3);
+            let affine = DAffine3::from_mat3(DMat3::from_cols(x, y, x.cross(y)) * scale);
+            let errors = PlacementErrors::new(&affine, &ChildFromParent::new(&affine));
+            assert!((errors.stretch / scale - 1.0).abs() < 1e-14, "case {case}");
+            assert!((errors.shrink / scale - 1.0).abs() < 1e-14, "case {case}");
+        }
+    }
 
     /// Goes into the child and back in higher precision, and measures how far
     /// the round trip misses.
@@ -149,6 +165,10 @@ mod tests {
             );
             assert!(
                 (matrix * point).length() <= errors.stretch * point.length(),
+                "case {case}"
+            );
+            assert!(
+                child.length() * errors.shrink <= (point - affine.translation).length(),
                 "case {case}"
             );
         }

@@ -4,19 +4,11 @@
 
 use super::description::Prototype;
 use super::error::SceneError;
+use super::limits::{GREATEST_DEPTH, GREATEST_STRETCH};
 use super::names::quoted;
 use super::placing::Edge;
 use super::source::Source;
-use crate::math::power_of_two;
 use crate::solid::Cylinder;
-
-/// Most placements inside each other. A level takes some 11 kB of a thread's
-/// stack while a ray passes it.
-pub(super) const DEEPEST: u32 = 64;
-
-/// The greatest factor by which nested placements together may stretch a
-/// vector on its way inward. The solvers square it.
-const GREATEST_SQUEEZE: f64 = power_of_two(150);
 
 /// A prototype and the entries that place others in it.
 pub(super) struct Node<'a> {
@@ -31,10 +23,12 @@ pub(super) struct Node<'a> {
 struct Summary {
     has_solids: bool,
     /// Placements inside each other.
-    levels: u32,
+    levels: usize,
     /// At least the size of every coordinate.
     reach: f64,
-    /// At least the factor by which vectors grow on their way inward.
+    /// At least the factor by which vectors grow on their way outward.
+    stretch: f64,
+    /// At least the factor by which they grow on their way inward.
     squeeze: f64,
 }
 
@@ -65,6 +59,7 @@ fn summary(
         has_solids: !node.prototype.cylinders.is_empty(),
         levels: 0,
         reach: node.reach,
+        stretch: 1.0,
         squeeze: 1.0,
     };
     for edge in node.edges {
@@ -79,14 +74,14 @@ fn summary(
         }
         total.has_solids = true;
         total.levels = total.levels.max(child.levels + 1);
-        if total.levels > DEEPEST {
+        if total.levels > GREATEST_DEPTH {
             return wrong(format!(
-                "placements are nested {} levels deep: at most {DEEPEST} are supported",
+                "placements are nested {} levels deep: at most {GREATEST_DEPTH} are supported",
                 total.levels
             ));
         }
-        // |L x| is at most three times the greatest entry times |x|, axis by axis.
-        let reach = 3.0 * edge.reach.stretch * child.reach + edge.reach.translation;
+        // A point is at most √3 times as far away as its greatest coordinate.
+        let reach = 2.0 * edge.reach.stretch * child.reach + edge.reach.translation;
         if reach > Cylinder::GREATEST {
             return wrong(format!(
                 "placed here, {name} may reach coordinates of {reach:.1e}: at most {:.1e} are supported",
@@ -94,14 +89,17 @@ fn summary(
             ));
         }
         total.reach = total.reach.max(reach);
+        let stretch = edge.reach.stretch * child.stretch;
         let squeeze = edge.reach.squeeze * child.squeeze;
-        if squeeze > GREATEST_SQUEEZE {
+        if stretch.max(squeeze) > GREATEST_STRETCH {
             return wrong(format!(
-                "nested placements shrink {name} to {:.1e} of its size: at least {:.1e} is supported",
+                "nested placements scale what is in {name} by factors from {:.1e} to {stretch:.1e}: supported are {:.1e} to {:.1e}",
                 1.0 / squeeze,
-                1.0 / GREATEST_SQUEEZE
+                1.0 / GREATEST_STRETCH,
+                GREATEST_STRETCH
             ));
         }
+        total.stretch = total.stretch.max(stretch);
         total.squeeze = total.squeeze.max(squeeze);
     }
     Ok(total)

@@ -13,6 +13,7 @@ mod description;
 mod document;
 mod error;
 mod graph;
+mod limits;
 mod load;
 mod names;
 mod placing;
@@ -31,4 +32,5 @@ pub use description::{
     Projection, Prototype, PrototypeIndex, RenderSettings, Scene, Sky, Sun,
 };
 pub use error::{SceneError, Statement};
+pub use limits::{GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_STRETCH};
 pub use load::load;

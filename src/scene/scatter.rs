@@ -15,6 +15,9 @@ use crate::math::Random;
 /// as a fraction of a turn.
 const GOLDEN_TURN: u64 = 0x61C8_8646_80B5_83EB;
 
+/// More than the roundings of a rotation and of its norms can add.
+const ROUNDING_FACTOR: f64 = 1.0 + 64.0 * f64::EPSILON;
+
 /// How the items are spread on the plane z = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Pattern {
@@ -46,8 +49,8 @@ impl Scatter {
         // axis, a disc's at most √(count/π).
         let farthest = self.spacing * (f64::from(self.count).sqrt() + 1.0);
         Reach {
-            stretch: self.scale[1],
-            squeeze: 1.0 / self.scale[0],
+            stretch: self.scale[1] * ROUNDING_FACTOR,
+            squeeze: ROUNDING_FACTOR / self.scale[0],
             translation: farthest,
         }
     }

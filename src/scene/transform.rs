@@ -8,10 +8,11 @@ use std::f64::consts::PI;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-use crate::math::power_of_two;
+use super::limits::GREATEST_CONDITION;
+use crate::math::{ChildFromParent, PlacementErrors, power_of_two};
 
-/// The greatest size of an entry of a placement and of its inverse: 2^100.
-/// Beyond it, rays that pass a few levels would overflow.
+/// The greatest size of an entry of a placement: 2^100, so that products of a
+/// few of them stay within f64.
 pub(super) const GREATEST_ENTRY: f64 = power_of_two(100);
 
 /// Least `|det L|` relative to the product of the lengths of L's columns:
@@ -32,14 +33,18 @@ pub(super) enum TransformError {
         "the placement is singular, it makes volumes flat: its determinant is {relative:e} of the product of its columns' lengths, at least 2^-40 is needed"
     )]
     Singular { relative: f64 },
+    #[error(
+        "the placement is too uneven: |L| |L^-1| is {condition:.1e} (Frobenius norms; 3 for a rotation), at most 2^27 is supported"
+    )]
+    Uneven { condition: f64 },
 }
 
 /// How far a placement may take numbers, for the check of nested ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Reach {
-    /// At least the greatest size of an entry of L.
+    /// At least the factor by which L lengthens any vector.
     pub stretch: f64,
-    /// At least the greatest size of an entry of L's inverse.
+    /// At least the factor by which L's inverse lengthens any vector.
     pub squeeze: f64,
     /// At least the greatest size of a coordinate of the translation.
     pub translation: f64,
@@ -110,8 +115,8 @@ pub(super) fn quaternion_rotation(quaternion: [f64; 4]) -> Option<DMat3> {
 /// What a placement does to the size of numbers.
 ///
 /// # Errors
-/// When an entry of the placement or of its inverse is too large, or the
-/// matrix is as good as singular.
+/// When an entry of the placement is too large, or the matrix is singular or
+/// close to it.
 pub(super) fn checked(parent_from_child: &DAffine3) -> Result<Reach, TransformError> {
     let matrix = parent_from_child.matrix3;
     let translation = parent_from_child.translation;
@@ -145,30 +150,29 @@ pub(super) fn checked(parent_from_child: &DAffine3) -> Result<Reach, TransformEr
     if relative.abs() < LEAST_RELATIVE_DETERMINANT {
         return Err(TransformError::Singular { relative });
     }
-    let squeeze = greatest_entry(&matrix.inverse());
-    if squeeze > GREATEST_ENTRY {
-        return Err(TransformError::Shrinks {
-            length: 1.0 / squeeze,
-        });
+    let errors = PlacementErrors::new(parent_from_child, &ChildFromParent::new(parent_from_child));
+    let condition = errors.condition;
+    if condition > GREATEST_CONDITION {
+        return Err(TransformError::Uneven { condition });
     }
     Ok(Reach {
-        stretch: greatest_entry(&matrix),
-        squeeze,
+        stretch: errors.stretch,
+        squeeze: 1.0 / errors.shrink,
         translation: translation.abs().max_element(),
     })
-}
-
-fn greatest_entry(matrix: &DMat3) -> f64 {
-    matrix
-        .to_cols_array()
-        .into_iter()
-        .fold(0.0, |greatest, entry| greatest.max(entry.abs()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::math::Random;
+
+    fn greatest_entry(matrix: &DMat3) -> f64 {
+        matrix
+            .to_cols_array()
+            .into_iter()
+            .fold(0.0, |greatest, entry| greatest.max(entry.abs()))
+    }
 
     #[test]
     fn sin_cos_quarter_turns_are_exact() {
@@ -226,7 +230,12 @@ mod tests {
     #[test]
     fn checked_extreme_and_singular_matrices_are_refused() {
         let scaled = |x, y, z| DAffine3::from_scale(DVec3::new(x, y, z));
-        assert!(checked(&scaled(1e30, 1e-30, -1.0)).is_ok());
+        assert!(checked(&scaled(1e30, 1e30, -1e30)).is_ok());
+        assert!(checked(&scaled(7e7, 1.0, -1.0)).is_ok());
+        assert!(matches!(
+            checked(&scaled(2e8, 1.0, -1.0)),
+            Err(TransformError::Uneven { .. })
+        ));
         assert!(matches!(
             checked(&scaled(1e31, 1.0, 1.0)),
             Err(TransformError::Entry { .. })

@@ -49,7 +49,7 @@ pub struct Cylinder {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CylinderError {
     /// A coordinate of an endpoint is NaN, infinite or beyond [`Cylinder::GREATEST`].
-    #[error("{which} is ({}, {}, {}): every coordinate must be finite and at most {:.1e} in size", point.x, point.y, point.z, Cylinder::GREATEST)]
+    #[error("{which} is ({:?}, {:?}, {:?}): every coordinate must be finite and at most {:.1e} in size", point.x, point.y, point.z, Cylinder::GREATEST)]
     Endpoint {
         /// `"p0"` or `"p1"`.
         which: &'static str,
@@ -58,7 +58,7 @@ pub enum CylinderError {
     },
     /// The radius is not a number in [`Cylinder::LEAST`, `Cylinder::GREATEST`].
     #[error(
-        "radius is {radius}: it must be a positive number between {:.1e} and {:.1e}",
+        "radius is {radius:?}: it must be a positive number between {:.1e} and {:.1e}",
         Cylinder::LEAST,
         Cylinder::GREATEST
     )]
@@ -68,7 +68,7 @@ pub enum CylinderError {
     },
     /// The endpoints are the same, or nearer than [`Cylinder::LEAST`].
     #[error(
-        "p0 and p1 are {length:e} apart: a cylinder needs a length of at least {:.1e}",
+        "p0 and p1 are {length:?} apart: a cylinder needs a length of at least {:.1e}",
         Cylinder::LEAST
     )]
     Length {

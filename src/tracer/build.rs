@@ -3,18 +3,9 @@
 use std::sync::Arc;
 
 use super::prototype::Prototype;
-use super::query::GREATEST_DEPTH;
 use crate::embree::{self, Device};
-use crate::math::{ChildFromParent, PlacementErrors, power_of_two};
-use crate::scene::{PrototypeIndex, Scene};
-
-/// The greatest `‖L‖ ‖L⁻¹‖` of a placement, 2^27: flattening by more would
-/// leave less than half of the digits of f64, and grow the boxes without end.
-pub const GREATEST_CONDITION: f64 = power_of_two(27);
-
-/// The greatest factor by which all placements on a path together may stretch
-/// or shrink, 2^64: beyond it the solvers' products could leave f64.
-pub const GREATEST_STRETCH: f64 = power_of_two(64);
+use crate::math::{ChildFromParent, PlacementErrors};
+use crate::scene::{GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_STRETCH, PrototypeIndex, Scene};
 
 /// Why a scene cannot be traced.
 #[derive(Debug, thiserror::Error)]

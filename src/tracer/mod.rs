@@ -18,10 +18,9 @@ mod resolve;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
-pub use build::{GREATEST_CONDITION, GREATEST_STRETCH, TracerError};
+pub use build::TracerError;
 pub use estimate::MemoryEstimate;
 pub use hit::Hit;
-pub use query::GREATEST_DEPTH;
 
 use crate::embree::{Device, DeviceOptions, MaxIsa};
 use crate::math::{Bounds, Ray, power_of_two, power_of_two_below};
@@ -171,7 +170,7 @@ impl Tracer {
 }
 
 /// Directions whose largest component is within these need no scaling: with
-/// [`GREATEST_STRETCH`] they stay within what the solvers can square.
+/// [`crate::scene::GREATEST_STRETCH`] they stay within what the solvers can square.
 const USUAL_LENGTHS: std::ops::Range<f64> = power_of_two(-32)..power_of_two(32);
 
 /// The ray with a direction of a size that the solvers can square, and the two

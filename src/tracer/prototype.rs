@@ -302,7 +302,7 @@ impl UserGeometry for Arc<PlacementGeometry> {
 /// Both are relative to the distance of the ray's origin from the child's. The
 /// origin is less than `√3` [`FAR`] units of the parent's frame from the
 /// parent's centre, or was moved nearer; a unit is at most the radius of the
-/// parent's reach, which the bound on [`GREATEST_CONDITION`] keeps below twice
+/// parent's reach, which [`crate::scene::GREATEST_CONDITION`] keeps below twice
 /// that of its bounds.
 fn placement_reach(placement: &Placement, child: &Prototype, parent: &Bounds) -> Bounds {
     let image = child.reach.transformed(&placement.parent_from_child);

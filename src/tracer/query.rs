@@ -9,12 +9,8 @@ use arrayvec::ArrayVec;
 use super::frame::{Frame, Level, LocalRay};
 use crate::embree::Ray32;
 use crate::math::Ray;
-use crate::scene::{CylinderRecord, PrototypeIndex};
+use crate::scene::{CylinderRecord, GREATEST_DEPTH, PrototypeIndex};
 use crate::solid::{Meeting, triple_product};
-
-/// The deepest nesting of placements. A nested trace takes about 11 kB of
-/// stack a level.
-pub const GREATEST_DEPTH: usize = 64;
 
 /// The placements on the way from the root to a prototype, outermost first.
 pub(crate) type InstancePath = ArrayVec<u32, GREATEST_DEPTH>;

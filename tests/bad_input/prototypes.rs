@@ -78,20 +78,30 @@ pub fn cases() -> Vec<Case> {
         ),
         Case::new(
             "nesting_that_grows_out_of_range",
-            nested(4, "scale = 1e20\n"),
+            nested(4, "scale = 1e9\n"),
             &[
-                "may reach coordinates of",
-                "are supported",
+                "scale what is in \"level 2\" by factors from",
+                "to 1.0e27",
                 "scene.toml:20:6",
             ],
         ),
         Case::new(
             "nesting_that_shrinks_out_of_range",
-            nested(4, "scale = 1e-20\n"),
+            nested(4, "scale = 1e-9\n"),
+            &["by factors from 1.0e-27", "scene.toml:20:6"],
+        ),
+        Case::new(
+            "placement_that_takes_coordinates_out_of_range",
+            nested(1, "scale = 1e2\n").replace("p0 = [0", "p0 = [1e44"),
             &[
-                "nested placements shrink \"level 2\" to 1.0e-60",
-                "scene.toml:20:6",
+                "placed here, \"a\" may reach coordinates of 2.0e46",
+                "scene.toml:8:6",
             ],
+        ),
+        with_a(
+            "scale_too_uneven",
+            "[[instance]]\nof = \"a\"\nscale = [1e9, 1, 1]\n",
+            &["scene.toml:9:9", "too uneven", "at most 2^27"],
         ),
         with_a(
             "scale_zero",

@@ -134,7 +134,7 @@ pub fn cases() -> Vec<Case> {
             "row_with_zero_length",
             "0,0,1,0,0,1,1",
             &[
-                "tree.csv: line 5: p0 and p1 are 0e0 apart",
+                "tree.csv: line 5: p0 and p1 are 0.0 apart",
                 "degenerate = \"skip\"",
             ],
         ),
@@ -231,7 +231,7 @@ pub fn cases() -> Vec<Case> {
             "sample_at_its_parent",
             "2 3 0 0 0 1 1\n",
             &[
-                "neuron.swc: line 3: p0 and p1 are 0e0 apart",
+                "neuron.swc: line 3: p0 and p1 are 0.0 apart",
                 "degenerate = \"skip\"",
             ],
         ),

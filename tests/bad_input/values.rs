@@ -51,12 +51,12 @@ pub fn cases() -> Vec<Case> {
         cylinder(
             "length_zero",
             "p0 = [1, 2, 3]\np1 = [1, 2, 3]\nradius = 1",
-            &["scene.toml:3:6", "p0 and p1 are 0e0 apart"],
+            &["scene.toml:3:6", "p0 and p1 are 0.0 apart"],
         ),
         cylinder(
             "coordinate_too_large",
             "p0 = [1e100, 0, 0]\np1 = [0, 0, 1]\nradius = 1",
-            &["scene.toml:2:6", "p0 is (", "at most"],
+            &["scene.toml:2:6", "p0 is (1e100, 0.0, 0.0)", "at most"],
         ),
         with_solid(
             "film_width_zero",

@@ -1,0 +1,16 @@
+//! How far placements may go. The tracer's proofs rest on these limits.
+
+use crate::math::power_of_two;
+
+/// Most placements inside each other. A level takes some 11 kB of a thread's
+/// stack while a ray passes it.
+pub const GREATEST_DEPTH: usize = 64;
+
+/// The greatest `‖L‖ ‖L⁻¹‖` of a placement (Frobenius norms), 2^27: flattening
+/// by more would leave less than half of the digits of f64, and grow the boxes
+/// without end.
+pub const GREATEST_CONDITION: f64 = power_of_two(27);
+
+/// The greatest factor by which all placements on a path together may stretch
+/// or shrink, 2^64: beyond it the solvers' products could leave f64.
+pub const GREATEST_STRETCH: f64 = power_of_two(64);
