@@ -2,6 +2,7 @@
 
 mod chord;
 mod cylinder;
+pub mod formulations;
 mod surface;
 pub mod tessellation;
 pub mod triple_product;
