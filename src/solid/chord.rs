@@ -29,8 +29,7 @@ pub struct ChordEnd {
 pub struct Chord {
     /// Where the ray goes in.
     pub enter: ChordEnd,
-    /// Where the ray comes out; its `t` is not less than that of `enter`, but
-    /// for rounding.
+    /// Where the ray comes out; its `t` is not less than that of `enter`.
     pub leave: ChordEnd,
     /// The part within which the whole chord runs, if it does.
     pub lies_on: Option<Part>,
@@ -39,8 +38,10 @@ pub struct Chord {
 /// A point where a ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meeting {
-    /// The parameter, counted as the chord's.
+    /// The parameter of the whole ray.
     pub t: f64,
+    /// The parameter counted as the chord's, before it was shifted.
+    pub t_local: f64,
     /// The part of the surface.
     pub part: Part,
     /// The direction of the crossing.
@@ -48,36 +49,55 @@ pub struct Meeting {
 }
 
 impl Chord {
-    /// The first point at which the ray is on the surface that has the discs
-    /// `caps`, among those with `t_min <= t + shift <= t_max`.
+    /// The points, at most two, at which the ray is on the surface that has the
+    /// discs `caps`, among those with `t_min <= t + shift <= t_max`, in order.
     ///
     /// The range is the whole ray's; `shift` is where the chord's `t` starts
-    /// on it, 0 unless the solver was given a point farther along the ray.
+    /// on it, 0 unless the solver was given a point farther along the ray. A
+    /// tangent is an entry and an exit at the same `t`.
     #[inline]
-    #[must_use]
-    pub fn first(&self, caps: Caps, shift: f64, t_min: f64, t_max: f64) -> Option<Meeting> {
-        if let Some(part) = self.lies_on
-            && exists(part, caps)
-            && self.enter.t + shift < t_min
-            && t_min <= self.leave.t + shift
-            && t_min <= t_max
-        {
-            return Some(Meeting {
-                t: t_min - shift,
-                part,
-                crossing: Crossing::Enter,
-            });
-        }
+    pub fn meetings(
+        &self,
+        caps: Caps,
+        shift: f64,
+        t_min: f64,
+        t_max: f64,
+    ) -> impl Iterator<Item = Meeting> + use<> {
         let meet = |end: &ChordEnd, crossing| {
             let part = end.present(caps)?;
             let t = end.t + shift;
             (t_min <= t && t <= t_max).then_some(Meeting {
-                t: end.t,
+                t,
+                t_local: end.t,
                 part,
                 crossing,
             })
         };
-        meet(&self.enter, Crossing::Enter).or_else(|| meet(&self.leave, Crossing::Leave))
+        let enter = match self.lies_on {
+            Some(part) if exists(part, caps) && self.holds(t_min - shift) && t_min <= t_max => {
+                Some(Meeting {
+                    t: t_min,
+                    t_local: t_min - shift,
+                    part,
+                    crossing: Crossing::Enter,
+                })
+            }
+            _ => meet(&self.enter, Crossing::Enter),
+        };
+        let leave = meet(&self.leave, Crossing::Leave);
+        enter.into_iter().chain(leave)
+    }
+
+    /// The first of [`Chord::meetings`].
+    #[inline]
+    #[must_use]
+    pub fn first(&self, caps: Caps, shift: f64, t_min: f64, t_max: f64) -> Option<Meeting> {
+        self.meetings(caps, shift, t_min, t_max).next()
+    }
+
+    /// Whether `t` is behind the entry and not behind the exit.
+    fn holds(&self, t: f64) -> bool {
+        self.enter.t < t && t <= self.leave.t
     }
 }
 

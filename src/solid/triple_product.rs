@@ -131,6 +131,11 @@ pub fn chord(cylinder: &Cylinder, from_p0: DVec3, direction: DVec3) -> Option<Ch
     } else {
         cap0(y1)
     };
+    // At an edge the two may come out in the wrong order by a rounding.
+    let leave = ChordEnd {
+        t: leave.t.max(enter.t),
+        ..leave
+    };
     Some(Chord {
         enter,
         leave,
