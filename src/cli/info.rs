@@ -1,16 +1,17 @@
 //! `cyltrace info`.
 
+use std::fmt::Write as _;
 use std::time::Instant;
 
 use cyltrace::tracer::MemoryEstimate;
 use serde_json::json;
 
 use super::arguments::InfoArguments;
-use super::{json, memory, scene};
+use super::{json, memory, print, scene};
 
 /// Says what the scene holds.
 pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
-    json::check(&arguments.common)?;
+    json::check(&arguments.common, None)?;
     let start = Instant::now();
     let scene = scene::load(&arguments.common, &arguments.scene)?;
     let load = start.elapsed().as_secs_f64();
@@ -18,32 +19,38 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
     let estimate = MemoryEstimate::of(&census);
     let (lower, upper) = (census.bounds.lower, census.bounds.upper);
 
+    let mut text = String::new();
     if arguments.common.prints() {
-        println!("{}", arguments.scene.display());
-        println!(
+        writeln!(text, "{}", arguments.scene.display())?;
+        writeln!(
+            text,
             "prototypes: {}, of which {} are placed",
             census.prototypes, census.prototypes_used
-        );
-        println!(
+        )?;
+        writeln!(
+            text,
             "placements: {} stored, {} instances, {} levels deep",
             census.placements, census.instances, census.depth
-        );
-        println!(
+        )?;
+        writeln!(
+            text,
             "cylinders: {} unique, {} instanced",
             census.cylinders_unique, census.cylinders_instanced
-        );
+        )?;
         if scene.skipped_rows > 0 {
-            println!("rows skipped as degenerate: {}", scene.skipped_rows);
+            writeln!(text, "rows skipped as degenerate: {}", scene.skipped_rows)?;
         }
-        println!(
+        writeln!(
+            text,
             "bounds: ({}, {}, {}) to ({}, {}, {})",
             lower.x, lower.y, lower.z, upper.x, upper.y, upper.z
-        );
-        println!(
+        )?;
+        writeln!(
+            text,
             "memory, estimated: {} of records, {} in Embree",
             memory::readable(estimate.records_bytes),
             memory::readable(estimate.embree_bytes)
-        );
+        )?;
         for material in &scene.materials {
             let name = if material.name.is_empty() {
                 "(default)"
@@ -51,10 +58,11 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
                 &material.name
             };
             let color = material.color;
-            println!(
+            writeln!(
+                text,
                 "material {name}: diffuse ({}, {}, {})",
                 color.x, color.y, color.z
-            );
+            )?;
         }
     }
 
@@ -90,5 +98,6 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
             },
             "materials": materials,
         }),
-    )
+    )?;
+    print(&text)
 }

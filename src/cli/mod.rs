@@ -16,8 +16,10 @@ mod scene;
 mod target;
 mod trace;
 
+use std::io::Write as _;
 use std::process::ExitCode;
 
+use anyhow::Context as _;
 use clap::Parser;
 
 use arguments::{Arguments, Command};
@@ -49,6 +51,16 @@ pub fn run() -> ExitCode {
             ExitCode::from(COULD_NOT_RUN)
         }
     }
+}
+
+/// Prints the lines meant for people, after all files are written: `println!`
+/// would panic where standard output is full or closed.
+fn print(text: &str) -> anyhow::Result<()> {
+    let mut output = std::io::stdout().lock();
+    output
+        .write_all(text.as_bytes())
+        .and_then(|()| output.flush())
+        .context("cannot write to standard output")
 }
 
 /// Whether the reader of a pipe had enough, as in `cyltrace trace ... | head`.

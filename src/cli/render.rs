@@ -1,5 +1,6 @@
 //! `cyltrace render`.
 
+use std::fmt::Write as _;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -9,7 +10,7 @@ use cyltrace::tracer::Tracer;
 use serde_json::json;
 
 use super::arguments::{RenderArguments, integrator_name};
-use super::{interrupt, json, memory, progress, scene};
+use super::{interrupt, json, memory, print, progress, scene};
 
 /// How long the parts of the command took, in seconds.
 struct Times {
@@ -22,7 +23,7 @@ struct Times {
 pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
     Output::check(&arguments.output)?;
-    json::check(common)?;
+    json::check(common, Some(&arguments.output))?;
     interrupt::install()?;
 
     let start = Instant::now();
@@ -93,37 +94,43 @@ fn report(
     let rays = picture.rays;
     let rays_per_s = rays.total() as f64 / times.render;
     let skipped: Vec<_> = picture.skipped.iter().chain(&statistics.skipped).collect();
+    let mut text = String::new();
     if arguments.common.prints() {
-        println!(
+        writeln!(
+            text,
             "{}: {}x{}, {} samples a pixel, {}",
             arguments.output.display(),
             settings.film.width,
             settings.film.height,
             settings.spp,
             integrator_name(settings.integrator)
-        );
-        println!(
+        )?;
+        writeln!(
+            text,
             "cylinders: {} unique, {} in {} instances",
             statistics.cylinders_unique, statistics.cylinders_instanced, statistics.instances
-        );
-        println!(
+        )?;
+        writeln!(
+            text,
             "memory: {} of records, {} in Embree {} ({})",
             memory::readable(statistics.records_bytes as u64),
             memory::readable(statistics.embree_bytes as u64),
             statistics.embree_version,
             statistics.isa
-        );
-        println!(
+        )?;
+        writeln!(
+            text,
             "time: load {:.2} s, build {:.2} s, render {:.2} s on {threads} threads",
             times.load, times.build, times.render
-        );
-        println!(
+        )?;
+        writeln!(
+            text,
             "rays: {}, {:.2} million a second",
             rays.total(),
             rays_per_s / 1e6
-        );
+        )?;
         for reason in &skipped {
-            println!("skipped: {reason}");
+            writeln!(text, "skipped: {reason}")?;
         }
     }
     json::write(
@@ -148,5 +155,6 @@ fn report(
             "isa": statistics.isa,
             "threads": threads,
         }),
-    )
+    )?;
+    print(&text)
 }

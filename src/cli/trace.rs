@@ -3,7 +3,8 @@
 //! Rays are read, traced and written in batches of a few blocks a thread, so
 //! that a table of any length needs little memory and rows stay in order.
 
-use std::io::Write;
+use std::fmt::Write as _;
+use std::io::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -17,7 +18,7 @@ use serde_json::json;
 use super::arguments::TraceArguments;
 use super::ray_table::{Block, RayTable};
 use super::target::{Target, is_standard_output};
-use super::{hit_table, interrupt, json, progress, scene};
+use super::{hit_table, interrupt, json, print, progress, scene};
 
 /// Blocks that a thread gets of each batch: enough to even out slow ones.
 const BLOCKS_PER_THREAD: usize = 4;
@@ -36,7 +37,7 @@ struct Totals {
 pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
     Target::check(&arguments.output)?;
-    json::check(common)?;
+    json::check(common, Some(&arguments.output))?;
     interrupt::install()?;
     let workers = cyltrace::render::workers(common.threads).context("cannot start threads")?;
     let threads = workers.current_num_threads();
@@ -84,17 +85,20 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
         hits,
     } = totals;
     let rays_per_s = rays as f64 / trace;
+    let mut text = String::new();
     if common.prints() && !is_standard_output(&arguments.output) {
         let output = arguments.output.display();
-        if arguments.all {
-            println!("{output}: {hit_rays} of {rays} rays hit, {hits} hits");
+        let more = if arguments.all {
+            format!(", {hits} hits")
         } else {
-            println!("{output}: {hit_rays} of {rays} rays hit");
-        }
-        println!(
+            String::new()
+        };
+        writeln!(text, "{output}: {hit_rays} of {rays} rays hit{more}")?;
+        writeln!(
+            text,
             "time: check {check:.2} s, load {load:.2} s, build {build:.2} s, trace {trace:.2} s on {threads} threads ({:.2} million rays a second, tables included)",
             rays_per_s / 1e6
-        );
+        )?;
     }
     json::write(
         common,
@@ -118,7 +122,8 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
             "isa": statistics.isa,
             "threads": threads,
         }),
-    )
+    )?;
+    print(&text)
 }
 
 /// The number of rays in a table, all of them good.
