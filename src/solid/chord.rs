@@ -12,12 +12,13 @@
 //! wall) touches it all the way; its least `t` may be the start of the range.
 
 use super::{Caps, Crossing, Part};
+use crate::math::Real;
 
 /// One end of a [`Chord`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ChordEnd {
+pub struct ChordEnd<S = f64> {
     /// The ray's parameter.
-    pub t: f64,
+    pub t: S,
     /// The part of the solid's boundary, whether or not the surface has it.
     pub part: Part,
     /// Whether the point is on a rim, that is on the wall too.
@@ -26,28 +27,28 @@ pub struct ChordEnd {
 
 /// The interval in which a line is inside a closed convex solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Chord {
+pub struct Chord<S = f64> {
     /// Where the ray goes in.
-    pub enter: ChordEnd,
+    pub enter: ChordEnd<S>,
     /// Where the ray comes out; its `t` is not less than that of `enter`, but
     /// for rounding.
-    pub leave: ChordEnd,
+    pub leave: ChordEnd<S>,
     /// The part within which the whole chord runs, if it does.
     pub lies_on: Option<Part>,
 }
 
 /// A point where a ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Meeting {
+pub struct Meeting<S = f64> {
     /// The parameter, counted as the chord's.
-    pub t: f64,
+    pub t: S,
     /// The part of the surface.
     pub part: Part,
     /// The direction of the crossing.
     pub crossing: Crossing,
 }
 
-impl Chord {
+impl<S: Real> Chord<S> {
     /// The first point at which the ray is on the surface that has the discs
     /// `caps`, among those with `t_min <= t + shift <= t_max`.
     ///
@@ -55,7 +56,7 @@ impl Chord {
     /// on it, 0 unless the solver was given a point farther along the ray.
     #[inline]
     #[must_use]
-    pub fn first(&self, caps: Caps, shift: f64, t_min: f64, t_max: f64) -> Option<Meeting> {
+    pub fn first(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> Option<Meeting<S>> {
         if let Some(part) = self.lies_on
             && exists(part, caps)
             && self.enter.t + shift < t_min
@@ -68,7 +69,7 @@ impl Chord {
                 crossing: Crossing::Enter,
             });
         }
-        let meet = |end: &ChordEnd, crossing| {
+        let meet = |end: &ChordEnd<S>, crossing| {
             let part = end.present(caps)?;
             let t = end.t + shift;
             (t_min <= t && t <= t_max).then_some(Meeting {
@@ -81,7 +82,7 @@ impl Chord {
     }
 }
 
-impl ChordEnd {
+impl<S: Real> ChordEnd<S> {
     /// The part of the surface this end lies on, if the surface has one there.
     #[inline]
     fn present(&self, caps: Caps) -> Option<Part> {
