@@ -1,0 +1,2 @@
+//! Formulations against textbook answers, exact arithmetic and their known
+//! failures.
