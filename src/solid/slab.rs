@@ -66,9 +66,16 @@ impl<S: Real> Slab<S> {
             part: if is_side { Part::Side } else { cap },
             on_rim: !is_side & (y == plane),
         };
+        let enter = end(y_enter > S::ZERO, t0, y0, near, near_part);
+        let leave = end(y_leave < self.height, t1, y1, far, far_part);
+        // At an edge the two may come out in the wrong order by a rounding.
+        let leave = ChordEnd {
+            t: if leave.t < enter.t { enter.t } else { leave.t },
+            ..leave
+        };
         Some(Chord {
-            enter: end(y_enter > S::ZERO, t0, y0, near, near_part),
-            leave: end(y_leave < self.height, t1, y1, far, far_part),
+            enter,
+            leave,
             lies_on: None,
         })
     }
