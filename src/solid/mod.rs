@@ -4,6 +4,7 @@ mod chord;
 mod cylinder;
 pub mod exact;
 pub mod formulations;
+mod slab;
 mod surface;
 pub mod tessellation;
 pub mod triple_product;
