@@ -27,8 +27,10 @@ unsafe impl Sync for SceneHandle {}
 
 impl Drop for SceneHandle {
     fn drop(&mut self) {
-        // SAFETY: invariant 1: the one reference that `SceneBuilder::new` made.
-        unsafe { sys::rtcReleaseScene(self.0) }
+        if !self.0.is_null() {
+            // SAFETY: invariant 1: the one reference that `SceneBuilder::new` made.
+            unsafe { sys::rtcReleaseScene(self.0) }
+        }
     }
 }
 
@@ -124,9 +126,12 @@ impl<Q: 'static> SceneBuilder<Q> {
     {
         // Declared before the handle, hence dropped after it on an error.
         let (data, handle) = new_user_geometry(&self.parts.device, geometry)?;
-        let id = self.attach(&handle)?;
-        self.parts.user_data.push((id, data));
-        Ok(id)
+        let id = self.attach(&handle);
+        // Kept with the scene also after an error: the geometry may have been
+        // attached all the same.
+        let kept_for = *id.as_ref().unwrap_or(&GeometryId(u32::MAX));
+        self.parts.user_data.push((kept_for, data));
+        id
     }
 
     pub(super) fn device(&self) -> &Device {

@@ -77,7 +77,7 @@ impl Plan {
             instances: vec![0; count],
         };
         let mut nesting = vec![None; count];
-        plan.visit(scene, PrototypeIndex::ROOT, &mut nesting)?;
+        plan.visit(scene, PrototypeIndex::ROOT, 0, &mut nesting)?;
         Ok(plan)
     }
 
@@ -87,8 +87,12 @@ impl Plan {
         &mut self,
         scene: &Scene,
         index: PrototypeIndex,
+        level: usize,
         known: &mut [Option<Nesting>],
     ) -> Result<Nesting, TracerError> {
+        if level > GREATEST_DEPTH {
+            return Err(TracerError::Depth { depth: level });
+        }
         if let Some(nesting) = known[index.0 as usize] {
             return Ok(nesting);
         }
@@ -101,7 +105,7 @@ impl Plan {
         let mut cylinders = prototype.cylinders.len() as u128;
         let mut instances = prototype.placements.len() as u128;
         for (number, placement) in prototype.placements.iter().enumerate() {
-            let child = self.visit(scene, placement.of, known)?;
+            let child = self.visit(scene, placement.of, level + 1, known)?;
             let way = ChildFromParent::new(&placement.parent_from_child);
             let errors = PlacementErrors::new(&placement.parent_from_child, &way);
             let of = &scene.prototypes[placement.of.0 as usize].name;

@@ -156,8 +156,10 @@ impl Frame {
     }
 
     /// The ray as the solvers of this prototype get it, and its point nearest
-    /// to the centre, in the frame: the ray's parameter and the place.
+    /// to the centre, in the frame: the ray's parameter and the place. A ray
+    /// that comes to a prototype has not been moved in it: its base is zero.
     pub fn approach(&self, ray: &LocalRay) -> (LocalRay, f64, DVec3) {
+        debug_assert_eq!(ray.base, DVec3::ZERO, "the ray was moved before");
         let origin = ray.origin_from(self.centre) * self.scale;
         let direction = ray.direction * self.scale;
         let squared = direction.length_squared();

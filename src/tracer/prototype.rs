@@ -47,8 +47,7 @@ struct PlacementGeometry {
     description: Arc<Scene>,
     prototype: PrototypeIndex,
     frame: Frame,
-    /// [`Prototype::bounds`] of the prototype that holds the placements.
-    bounds: Bounds,
+    sight: Sight,
     records: Vec<PlacementRecord>,
     children: Vec<Arc<Prototype>>,
 }
@@ -72,20 +71,20 @@ impl Prototype {
             .fold(Bounds::EMPTY, |sum, record| {
                 sum.union(&record.cylinder().bounds())
             });
-        let with_placements = |of: &dyn Fn(&Placement, &Self) -> Bounds| {
-            prototype
-                .placements
-                .iter()
-                .filter_map(|placement| Some(of(placement, child(placement)?)))
-                .fold(cylinders, |sum, bounds| sum.union(&bounds))
+        let placed = || {
+            let placements = prototype.placements.iter();
+            placements.filter_map(|placement| Some((placement, child(placement)?)))
         };
-        let bounds = with_placements(&|placement, child| {
-            child.bounds.transformed(&placement.parent_from_child)
+        let bounds = placed().fold(cylinders, |sum, (placement, child)| {
+            sum.union(&child.bounds.transformed(&placement.parent_from_child))
         });
         if bounds.is_empty() {
             return Ok(None);
         }
-        let reach = with_placements(&|placement, child| placement_reach(placement, child, &bounds));
+        let sight = Sight::new(&bounds, placed().map(|(placement, _)| placement));
+        let reach = placed().fold(cylinders, |sum, (placement, child)| {
+            sum.union(&sight.placement_reach(placement, child))
+        });
         let frame = Frame::new(&reach);
 
         let mut children: Vec<Arc<Self>> = Vec::new();
@@ -114,7 +113,7 @@ impl Prototype {
             description: Arc::clone(description),
             prototype: index,
             frame: frame.clone(),
-            bounds,
+            sight,
             records,
             children,
         });
@@ -280,7 +279,7 @@ impl UserGeometry for Arc<PlacementGeometry> {
             .get(self.records[primitive as usize].child as usize);
         // Where nothing is placed any box will do; the least is best.
         let reach = child.map_or(Bounds::at(self.frame.centre()), |child| {
-            placement_reach(placement, child, &self.bounds)
+            self.sight.placement_reach(placement, child)
         });
         self.frame.grown_box(&reach)
     }
@@ -296,21 +295,61 @@ impl UserGeometry for Arc<PlacementGeometry> {
     }
 }
 
-/// Where hits in a placed child may be, in the space of its parent, whose
-/// bounds are `parent`: the image of the child's reach, grown by what the
-/// roundings of the child's ray and of the solvers that get it can displace.
+/// From how far the rays come that a prototype hands on to what it places.
 ///
-/// Both are relative to the distance of the ray's origin from the child's. The
-/// origin is less than `√3` [`FAR`] units of the parent's frame from the
-/// parent's centre, or was moved nearer; a unit is at most the radius of the
-/// parent's reach, which [`crate::scene::GREATEST_CONDITION`] keeps below twice
-/// that of its bounds.
-fn placement_reach(placement: &Placement, child: &Prototype, parent: &Bounds) -> Bounds {
-    let image = child.reach.transformed(&placement.parent_from_child);
+/// The roundings of a child's ray, and of the solvers that get it, displace its
+/// hits in proportion to the distance of the ray's origin from the child's. The
+/// origin is at most `√3` [`FAR`] units of the prototype's frame from the centre, or
+/// the ray was moved nearer; a unit is at most the radius of the prototype's
+/// reach, which in turn holds the displacements:
+///
+/// ```text
+/// reach <= radius + √3 max (displacement · (√3 FAR reach + offset))
+/// ```
+///
+/// with `offset` the distance of a child's origin from the centre. As
+/// [`GREATEST_CONDITION`](crate::scene::GREATEST_CONDITION) keeps `displacement`
+/// below `60 u 2^27`, the factor of `reach` on the right is below 1/5, and
+/// `reach` below 5/4 of the rest.
+#[derive(Clone, Copy)]
+struct Sight {
+    centre: DVec3,
+    /// The bound of the radius of the reach.
+    reach: f64,
+}
+
+impl Sight {
+    fn new<'a>(bounds: &Bounds, placements: impl Iterator<Item = &'a Placement>) -> Self {
+        let centre = bounds.centre();
+        let offset = placements
+            .map(|placement| displacement(placement) * offset(centre, placement))
+            .fold(0.0, f64::max);
+        let radius = 0.5 * bounds.extent().length();
+        Self {
+            centre,
+            reach: 1.25 * (radius + 2.0 * offset),
+        }
+    }
+
+    /// Where hits in a placed child may be: the image of the child's reach,
+    /// grown by the displacement.
+    fn placement_reach(&self, placement: &Placement, child: &Prototype) -> Bounds {
+        let distance = 2.0 * FAR * self.reach + offset(self.centre, placement);
+        let image = child.reach.transformed(&placement.parent_from_child);
+        image.grown(displacement(placement) * distance)
+    }
+}
+
+/// The distance of a child's origin from a point of its parent.
+fn offset(centre: DVec3, placement: &Placement) -> f64 {
+    (centre - placement.parent_from_child.translation).length()
+}
+
+/// By how much a child's hits are displaced in its parent, as a share of the
+/// distance of the ray's origin from the child's: by the roundings of the
+/// child's origin and direction and, behind `condition`, of the solver.
+fn displacement(placement: &Placement) -> f64 {
     let way = ChildFromParent::new(&placement.parent_from_child);
     let errors = PlacementErrors::new(&placement.parent_from_child, &way);
-    let displacement = 2.0 * errors.inverse_error + 16.0 * UNIT_ROUNDOFF * errors.condition;
-    let from_centre = (parent.centre() - way.translation()).length();
-    let distance = 4.0 * FAR * (0.5 * parent.extent().length()) + from_centre;
-    image.grown(displacement * distance)
+    2.0 * errors.inverse_error + 16.0 * UNIT_ROUNDOFF * errors.condition
 }
