@@ -113,10 +113,10 @@ impl Target {
         }
     }
 
-    /// A line at `angle` to the plane of a disc, through the disc.
+    /// A line at `angle` to the plane of a disc, through or beside the disc.
     pub fn cap_plane(&self, random: &mut Random, angle: f64) -> Aim {
         let share = if random.below(2) == 0 { 0.0 } else { 1.0 };
-        let off = self.across(random) * (self.radius * random.unit().sqrt());
+        let off = self.across(random) * (self.radius * 1.3 * random.unit().sqrt());
         let heading = self.across(random) + self.axis * (angle * sign(random));
         Aim {
             point: self.point(share, off),

@@ -45,7 +45,7 @@ pub enum Family {
     DirectionScale,
     /// Rays that pass the edge of a disc at 1e-7 to 1e-2 radii.
     Rim,
-    /// Rays at 1e-7 to 1e-2 to the plane of a disc, through the disc.
+    /// Rays at 1e-7 to 1e-2 to the plane of a disc, through or beside the disc.
     CapGraze,
     /// Cylinders 1e-6 to 1e-3 radii long.
     Coin,
