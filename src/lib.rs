@@ -6,8 +6,10 @@ pub mod embree;
 pub mod math;
 pub mod oracle;
 pub mod render;
+pub mod report;
 pub mod scene;
 pub mod solid;
+pub mod stress;
 pub mod tracer;
 
 // Compiles and runs the README's Rust examples.
