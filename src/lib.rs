@@ -1,12 +1,15 @@
 //! cyltrace traces analytic cylinders through Embree: exact hits, no meshes,
 //! and the proof beside them.
 
+pub mod cases;
 pub mod embree;
 pub mod math;
 pub mod oracle;
 pub mod render;
+pub mod report;
 pub mod scene;
 pub mod solid;
+pub mod stress;
 pub mod tracer;
 
 // Compiles and runs the README's Rust examples.
