@@ -10,7 +10,7 @@
 //! | inputs | hit and part | `t` on the wall | `t` on a disc |
 //! |---|---|---|---|
 //! | f32 | right | `8 u (t + (r + |x|) |a| / (|n| √g))` | `8 u (t s + (|x| + |a|) |a| / |a·d|)` |
-//! | f64 | right for `g > 16 u (1 + |x|/r + k)` | `8 u (t k + (r + |x| + t |d|) |a| / (|n| √g))` | the same |
+//! | f64 | right for `g > 20 u (1 + |x|/r + k)` | `10 u (t k + (r + |x| + t |d|) |a| / (|n| √g))` | the same |
 //!
 //! with `s = |a| |d| / |a·d|` and `k = |a| |d| / |n|`: products of f64 inputs
 //! round, which is as if the direction were off by a few u.
@@ -152,7 +152,7 @@ fn judge(inputs: Inputs, cylinder: &Cylinder, ray: &Ray, row: Option<&Row>, tall
     if found != expected {
         let promised = match inputs {
             Inputs::F32 => true,
-            Inputs::F64 => truth.wall_gap > 16.0 * UNIT * (1.0 + x_size / r + k),
+            Inputs::F64 => truth.wall_gap > 20.0 * UNIT * (1.0 + x_size / r + k),
         };
         assert!(
             !promised,
@@ -175,16 +175,16 @@ fn judge(inputs: Inputs, cylinder: &Cylinder, ray: &Ray, row: Option<&Row>, tall
         Part::Side => {
             let reach = a_size / (n * truth.wall_gap.sqrt());
             match inputs {
-                Inputs::F32 => t.abs() + (r + x_size) * reach,
-                Inputs::F64 => t.abs() * k + (r + x_size + t.abs() * d_size) * reach,
+                Inputs::F32 => 8.0 * (t.abs() + (r + x_size) * reach),
+                Inputs::F64 => 10.0 * (t.abs() * k + (r + x_size + t.abs() * d_size) * reach),
             }
         }
         Part::Cap0 | Part::Cap1 => {
             let ad = a.dot(d).abs();
-            (t.abs() * a_size * d_size + (x_size + a_size) * a_size) / ad
+            8.0 * (t.abs() * a_size * d_size + (x_size + a_size) * a_size) / ad
         }
     };
-    let used = off / (8.0 * UNIT * bound);
+    let used = off / (UNIT * bound);
     assert!(
         used <= 1.0,
         "t = {:e} is off by {off:e}, {used} of the bound: {}",

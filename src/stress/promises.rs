@@ -124,7 +124,7 @@ impl fmt::Display for Claim {
         match self {
             Self::Right => f.write_str("no wrong hit, miss or part"),
             Self::RightWhereDecided => f.write_str(
-                "no wrong hit, miss or part where wall gap > 16 u (1 + |x|/r + k) and gap > 64 u",
+                "no wrong hit, miss or part where wall gap > 20 u (1 + |x|/r + k) and gap > 64 u",
             ),
             Self::ThousandthF32Ulps(most) => {
                 write!(f, "99.9 % of t within {most} f32 ulps")

@@ -67,7 +67,7 @@ impl Witness {
         let is_decided = match inputs {
             Inputs::F32 => true,
             Inputs::F64 => {
-                truth.wall_gap > 16.0 * UNIT_ROUNDOFF * (1.0 + x / r + k)
+                truth.wall_gap > 20.0 * UNIT_ROUNDOFF * (1.0 + x / r + k)
                     && gap > LEAST_GAP * UNIT_ROUNDOFF
             }
         };
@@ -78,18 +78,18 @@ impl Witness {
             let bound = if hit.part == Part::Side {
                 let reach = k / (d.length() * truth.wall_gap.sqrt());
                 match inputs {
-                    Inputs::F32 => t + (r + x) * reach,
-                    Inputs::F64 => t * k + (r + x + t * d.length()) * reach,
+                    Inputs::F32 => 8.0 * (t + (r + x) * reach),
+                    Inputs::F64 => 10.0 * (t * k + (r + x + t * d.length()) * reach),
                 }
             } else {
                 let along = a.dot(d).abs() / a.length();
-                (t * d.length() + x + a.length()) / along
+                8.0 * (t * d.length() + x + a.length()) / along
             };
             TrueAnswer {
                 t: DoubleDouble { high, low },
                 part: hit.part,
                 normal: oracle::outward_normal(cylinder, ray, hit),
-                t_bound: 8.0 * UNIT_ROUNDOFF * bound,
+                t_bound: UNIT_ROUNDOFF * bound,
             }
         });
         Self {

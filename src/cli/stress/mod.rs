@@ -30,7 +30,7 @@ pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
         replay::run(word, &formulations)?;
         return Ok(GOOD);
     }
-    json::check(common)?;
+    json::check(common, None)?;
     if let Some(directory) = &arguments.report {
         std::fs::create_dir_all(directory)
             .with_context(|| format!("cannot create {}", directory.display()))?;
