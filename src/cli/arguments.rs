@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{Film, Integrator};
 
-use super::target::is_standard_output;
+use super::target::is_standard_stream;
 
 /// Traces analytic cylinders through Embree: exact hits, no meshes.
 #[derive(Debug, Parser)]
@@ -49,7 +49,7 @@ impl Common {
             && self
                 .json
                 .as_deref()
-                .is_none_or(|path| !is_standard_output(path))
+                .is_none_or(|path| !is_standard_stream(path))
     }
 }
 

@@ -6,13 +6,19 @@ use cyltrace::tracer::MemoryEstimate;
 use serde_json::json;
 
 use super::arguments::InfoArguments;
+use super::outputs::Files;
 use super::{json, memory, scene};
 
 /// Says what the scene holds.
 pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
-    json::check(&arguments.common)?;
+    let common = &arguments.common;
+    let files = Files::new(&arguments.scene, common.json.as_deref());
+    files.check()?;
+    json::check(common)?;
     let start = Instant::now();
-    let scene = scene::load(&arguments.common, &arguments.scene)?;
+    let file = scene::read(&arguments.scene)?;
+    files.check_with(&file)?;
+    let scene = scene::load(common, file)?;
     let load = start.elapsed().as_secs_f64();
     let census = scene.census();
     let estimate = MemoryEstimate::of(&census);

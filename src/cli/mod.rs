@@ -9,6 +9,7 @@ mod info;
 mod interrupt;
 mod json;
 mod memory;
+mod outputs;
 mod progress;
 mod ray_table;
 mod render;

@@ -9,6 +9,7 @@ use cyltrace::tracer::Tracer;
 use serde_json::json;
 
 use super::arguments::{RenderArguments, integrator_name};
+use super::outputs::Files;
 use super::{interrupt, json, memory, progress, scene};
 
 /// How long the parts of the command took, in seconds.
@@ -21,12 +22,17 @@ struct Times {
 /// Renders the scene into the picture.
 pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
+    let files =
+        Files::new(&arguments.scene, common.json.as_deref()).output("-o", &arguments.output);
+    files.check()?;
     Output::check(&arguments.output)?;
     json::check(common)?;
     interrupt::install()?;
 
     let start = Instant::now();
-    let scene = Arc::new(scene::load(common, &arguments.scene)?);
+    let file = scene::read(&arguments.scene)?;
+    files.check_with(&file)?;
+    let scene = Arc::new(scene::load(common, file)?);
     let mut settings = Settings::of(&scene);
     settings.seed = arguments.seed;
     if let Some(size) = arguments.size {

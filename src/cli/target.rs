@@ -14,7 +14,7 @@ pub enum Target {
 impl Target {
     /// Says before any work whether `path` could be written.
     pub fn check(path: &Path) -> Result<(), FileError> {
-        if is_standard_output(path) {
+        if is_standard_stream(path) {
             return Ok(());
         }
         NewFile::check(path)
@@ -22,7 +22,7 @@ impl Target {
 
     /// Opens `path`; `-` is standard output.
     pub fn create(path: &Path) -> Result<Self, FileError> {
-        if is_standard_output(path) {
+        if is_standard_stream(path) {
             return Ok(Self::StandardOutput(BufWriter::new(io::stdout())));
         }
         NewFile::create(path).map(Self::File)
@@ -53,7 +53,8 @@ impl Write for Target {
     }
 }
 
-/// Whether a file's name stands for standard output.
-pub fn is_standard_output(path: &Path) -> bool {
+/// Whether a file's name stands for standard output, or for standard input
+/// where a file is read.
+pub fn is_standard_stream(path: &Path) -> bool {
     path.as_os_str() == "-"
 }

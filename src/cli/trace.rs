@@ -15,8 +15,9 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use super::arguments::TraceArguments;
+use super::outputs::Files;
 use super::ray_table::{Block, RayTable};
-use super::target::{Target, is_standard_output};
+use super::target::{Target, is_standard_stream};
 use super::{hit_table, interrupt, json, progress, scene};
 
 /// Blocks that a thread gets of each batch: enough to even out slow ones.
@@ -32,11 +33,20 @@ struct Totals {
 /// Traces the rays of a table.
 pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
+    let files = Files::new(&arguments.scene, common.json.as_deref())
+        .input("the table of rays", &arguments.rays)
+        .output("-o", &arguments.output);
+    files.check()?;
     Target::check(&arguments.output)?;
     json::check(common)?;
     interrupt::install()?;
     let workers = cyltrace::render::workers(common.threads).context("cannot start threads")?;
     let threads = workers.current_num_threads();
+
+    let start = Instant::now();
+    let file = scene::read(&arguments.scene)?;
+    files.check_with(&file)?;
+    let read = start.elapsed();
 
     // A bad row is to be found before anything is traced or written. A pipe
     // can be read once only; its rows are checked on the way.
@@ -50,8 +60,8 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     let check = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
-    let scene = Arc::new(scene::load(common, &arguments.scene)?);
-    let load = start.elapsed().as_secs_f64();
+    let scene = Arc::new(scene::load(common, file)?);
+    let load = (read + start.elapsed()).as_secs_f64();
     let start = Instant::now();
     let tracer = scene::build(common, &scene)?;
     let build = start.elapsed().as_secs_f64();
@@ -77,7 +87,7 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     let statistics = tracer.statistics();
     let Totals { rays, hits } = totals;
     let rays_per_s = rays as f64 / trace;
-    if common.prints() && !is_standard_output(&arguments.output) {
+    if common.prints() && !is_standard_stream(&arguments.output) {
         println!("{}: {hits} of {rays} rays hit", arguments.output.display());
         println!(
             "time: check {check:.2} s, load {load:.2} s, build {build:.2} s, trace {trace:.2} s on {threads} threads ({:.2} million rays a second, tables included)",

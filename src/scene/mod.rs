@@ -33,4 +33,4 @@ pub use description::{
 };
 pub use error::{SceneError, Statement};
 pub use limits::{GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_STRETCH};
-pub use load::load;
+pub use load::{SceneFile, load};
