@@ -3,7 +3,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use tempfile::TempDir;
 
@@ -171,5 +171,140 @@ fn output_that_is_a_link_to_an_input_refused() {
         directory.path(),
         "trace scene.toml --rays rays.csv -o hard.csv",
         &["would destroy", "hard.csv", "rays.csv"],
+    );
+}
+
+#[test]
+fn skipped_rows_counted_in_text_and_json_of_every_command() {
+    let directory = workplace();
+    for line in [
+        "info scene.toml",
+        "render scene.toml -o a.png --size 8x8",
+        "trace scene.toml --rays rays.csv -o h.csv",
+    ] {
+        let (code, out, err) = cyltrace(directory.path(), &words(line));
+        assert_eq!(code, 0, "{line}: {err}");
+        assert!(
+            out.contains("rows skipped as degenerate: 1\n"),
+            "{line}: {out}"
+        );
+        let (_, out, _) = cyltrace(directory.path(), &words(&format!("{line} --json -")));
+        let figures: serde_json::Value = serde_json::from_str(&out).expect("JSON");
+        assert_eq!(figures["skipped_rows"], 1, "{line}");
+    }
+}
+
+#[test]
+fn bounds_that_touch_zero_printed_short() {
+    let directory = workplace();
+    let (_, out, _) = cyltrace(directory.path(), &["info", "scene.toml"]);
+    let bounds = out
+        .lines()
+        .find(|line| line.starts_with("bounds: "))
+        .expect(&out);
+    assert!(bounds.len() < 200, "{bounds}");
+}
+
+const LINES: [&str; 8] = [
+    "--help",
+    "render --help",
+    "--version",
+    "info scene.toml",
+    "info scene.toml --json -",
+    "render scene.toml -o a.png --size 8x8",
+    "trace scene.toml --rays rays.csv -o -",
+    "trace scene.toml --rays rays.csv -o h.csv",
+];
+
+/// Starts a command whose standard output nobody reads; gives its code and
+/// what it says.
+fn into_closed_pipe(directory: &Path, line: &str) -> (Option<i32>, String) {
+    let (reader, writer) = std::io::pipe().expect("a pipe");
+    drop(reader);
+    let mut command = command(directory, &words(line));
+    let output = command
+        .stdout(writer)
+        .stderr(Stdio::piped())
+        .output()
+        .expect("it runs");
+    (
+        output.status.code(),
+        String::from_utf8_lossy(&output.stderr).into(),
+    )
+}
+
+#[cfg(unix)]
+#[test]
+fn closed_pipe_ends_every_command_quietly() {
+    let directory = workplace();
+    for line in LINES {
+        let (code, err) = into_closed_pipe(directory.path(), line);
+        assert_eq!((code, err.as_str()), (Some(0), ""), "{line}");
+    }
+    // The figures asked for are written all the same.
+    let (code, _) = into_closed_pipe(directory.path(), "info scene.toml --json a.json");
+    assert_eq!(code, Some(0));
+    assert!(directory.path().join("a.json").exists());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn full_standard_output_named_and_exits_2() {
+    let directory = workplace();
+    for line in LINES {
+        let full = fs::File::create("/dev/full").expect("a full device");
+        let mut command = command(directory.path(), &words(line));
+        let output = command
+            .stdout(full)
+            .stderr(Stdio::piped())
+            .output()
+            .expect("it runs");
+        let err = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{line}: {err}");
+        assert!(
+            err.starts_with("error: cannot write to standard output: ") && err.lines().count() == 1,
+            "{line}: {err}"
+        );
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn interrupted_trace_to_standard_output_does_not_claim_that_nothing_was_written() {
+    use std::io::{BufRead, BufReader, Read};
+    let directory = workplace();
+    let rays = "ox,oy,oz,dx,dy,dz\n".to_owned() + &"-4,0,0.5,1,0,0\n".repeat(400_000);
+    fs::write(directory.path().join("many.csv"), rays).expect("written");
+    let mut child = command(
+        directory.path(),
+        &words("trace scene.toml --rays many.csv -o -"),
+    )
+    .stdout(Stdio::piped())
+    .stderr(Stdio::piped())
+    .spawn()
+    .expect("it runs");
+    // Once rows come it is under way; then the pipe fills, and it waits.
+    let mut rows = BufReader::new(child.stdout.take().expect("piped"));
+    let mut line = String::new();
+    rows.read_line(&mut line).expect("a header");
+    rows.read_line(&mut line).expect("a row");
+    let sent = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .expect("kill runs");
+    assert!(sent.success());
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    std::io::copy(&mut rows, &mut std::io::sink()).expect("read");
+    let mut err = String::new();
+    child
+        .stderr
+        .take()
+        .expect("piped")
+        .read_to_string(&mut err)
+        .expect("text");
+    assert_eq!(child.wait().expect("a status").code(), Some(130), "{err}");
+    assert_eq!(
+        err,
+        "error: interrupted; the table written so far is incomplete\n"
     );
 }

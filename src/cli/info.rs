@@ -7,7 +7,8 @@ use serde_json::json;
 
 use super::arguments::InfoArguments;
 use super::outputs::Files;
-use super::{json, memory, scene};
+use super::print::print;
+use super::{json, memory, scene, text};
 
 /// Says what the scene holds.
 pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
@@ -23,46 +24,6 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
     let census = scene.census();
     let estimate = MemoryEstimate::of(&census);
     let (lower, upper) = (census.bounds.lower, census.bounds.upper);
-
-    if arguments.common.prints() {
-        println!("{}", arguments.scene.display());
-        println!(
-            "prototypes: {}, of which {} are placed",
-            census.prototypes, census.prototypes_used
-        );
-        println!(
-            "placements: {} stored, {} instances, {} levels deep",
-            census.placements, census.instances, census.depth
-        );
-        println!(
-            "cylinders: {} unique, {} instanced",
-            census.cylinders_unique, census.cylinders_instanced
-        );
-        if scene.skipped_rows > 0 {
-            println!("rows skipped as degenerate: {}", scene.skipped_rows);
-        }
-        println!(
-            "bounds: ({}, {}, {}) to ({}, {}, {})",
-            lower.x, lower.y, lower.z, upper.x, upper.y, upper.z
-        );
-        println!(
-            "memory, estimated: {} of records, {} in Embree",
-            memory::readable(estimate.records_bytes),
-            memory::readable(estimate.embree_bytes)
-        );
-        for material in &scene.materials {
-            let name = if material.name.is_empty() {
-                "(default)"
-            } else {
-                &material.name
-            };
-            let color = material.color;
-            println!(
-                "material {name}: diffuse ({}, {}, {})",
-                color.x, color.y, color.z
-            );
-        }
-    }
 
     let materials: Vec<_> = scene
         .materials
@@ -96,5 +57,37 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
             },
             "materials": materials,
         }),
-    )
+    )?;
+    if !arguments.common.prints() {
+        return Ok(());
+    }
+    let mut text = format!("{}\n", arguments.scene.display());
+    text += &format!(
+        "prototypes: {}, of which {} are placed\n",
+        census.prototypes, census.prototypes_used
+    );
+    text += &format!(
+        "placements: {} stored, {} instances, {} levels deep\n",
+        census.placements, census.instances, census.depth
+    );
+    text += &format!(
+        "cylinders: {} unique, {} instanced\n",
+        census.cylinders_unique, census.cylinders_instanced
+    );
+    text += &text::skipped_rows(scene.skipped_rows);
+    text += &format!("bounds: {} to {}\n", text::point(lower), text::point(upper));
+    text += &format!(
+        "memory, estimated: {} of records, {} in Embree\n",
+        memory::readable(estimate.records_bytes),
+        memory::readable(estimate.embree_bytes)
+    );
+    for material in &scene.materials {
+        let name = if material.name.is_empty() {
+            "(default)"
+        } else {
+            &material.name
+        };
+        text += &format!("material {name}: diffuse {}\n", text::point(material.color));
+    }
+    Ok(print(&text)?)
 }

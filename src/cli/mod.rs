@@ -10,11 +10,13 @@ mod interrupt;
 mod json;
 mod memory;
 mod outputs;
+mod print;
 mod progress;
 mod ray_table;
 mod render;
 mod scene;
 mod target;
+mod text;
 mod trace;
 
 use std::process::ExitCode;
@@ -23,6 +25,7 @@ use clap::Parser;
 
 use arguments::{Arguments, Command};
 use interrupt::Interrupted;
+use print::{StandardOutputError, print_error};
 
 /// The command could not run.
 const COULD_NOT_RUN: u8 = 2;
@@ -32,23 +35,39 @@ const INTERRUPTED: u8 = 130;
 
 /// Runs the command that the program's arguments name.
 pub fn run() -> ExitCode {
-    let arguments = Arguments::parse();
-    let result = match &arguments.command {
-        Command::Render(arguments) => render::run(arguments),
-        Command::Trace(arguments) => trace::run(arguments),
-        Command::Info(arguments) => info::run(arguments),
-    };
-    match result {
+    match arguments().and_then(|arguments| arguments.map_or(Ok(()), |a| run_command(&a))) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if error.is::<Interrupted>() => {
-            eprintln!("error: {error}");
+            print_error(&error);
             ExitCode::from(INTERRUPTED)
         }
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            print_error(&format_args!("{error:#}"));
             ExitCode::from(COULD_NOT_RUN)
         }
+    }
+}
+
+/// The arguments; `None` when they asked for help or for the version, which
+/// has been printed. Wrong ones end the program.
+fn arguments() -> anyhow::Result<Option<Arguments>> {
+    match Arguments::try_parse() {
+        Ok(arguments) => Ok(Some(arguments)),
+        Err(error) if error.use_stderr() => error.exit(),
+        Err(help) => {
+            let printed = help.print();
+            printed.map_err(|error| StandardOutputError::of(&error))?;
+            Ok(None)
+        }
+    }
+}
+
+fn run_command(arguments: &Arguments) -> anyhow::Result<()> {
+    match &arguments.command {
+        Command::Render(arguments) => render::run(arguments),
+        Command::Trace(arguments) => trace::run(arguments),
+        Command::Info(arguments) => info::run(arguments),
     }
 }
 

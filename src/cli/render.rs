@@ -10,7 +10,8 @@ use serde_json::json;
 
 use super::arguments::{RenderArguments, integrator_name};
 use super::outputs::Files;
-use super::{interrupt, json, memory, progress, scene};
+use super::print::print;
+use super::{interrupt, json, memory, progress, scene, text};
 
 /// How long the parts of the command took, in seconds.
 struct Times {
@@ -72,7 +73,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let render = start.elapsed().as_secs_f64();
     bar.finish_and_clear();
     let picture = match rendered {
-        Err(RenderError::Cancelled) => return Err(interrupt::Interrupted.into()),
+        Err(RenderError::Cancelled) => return Err(interrupt::Interrupted::NothingWritten.into()),
         other => other?,
     };
     interrupt::check()?;
@@ -86,7 +87,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     report(arguments, &settings, &tracer, &picture, &times, threads)
 }
 
-/// Prints the figures, and writes them where `--json` says.
+/// Writes the figures where `--json` says, and prints them.
 fn report(
     arguments: &RenderArguments,
     settings: &Settings,
@@ -96,42 +97,10 @@ fn report(
     threads: usize,
 ) -> anyhow::Result<()> {
     let statistics = tracer.statistics();
+    let skipped_rows = tracer.scene().skipped_rows;
     let rays = picture.rays;
     let rays_per_s = rays.total() as f64 / times.render;
     let skipped: Vec<_> = picture.skipped.iter().chain(&statistics.skipped).collect();
-    if arguments.common.prints() {
-        println!(
-            "{}: {}x{}, {} samples a pixel, {}",
-            arguments.output.display(),
-            settings.film.width,
-            settings.film.height,
-            settings.spp,
-            integrator_name(settings.integrator)
-        );
-        println!(
-            "cylinders: {} unique, {} in {} instances",
-            statistics.cylinders_unique, statistics.cylinders_instanced, statistics.instances
-        );
-        println!(
-            "memory: {} of records, {} in Embree {} ({})",
-            memory::readable(statistics.records_bytes as u64),
-            memory::readable(statistics.embree_bytes as u64),
-            statistics.embree_version,
-            statistics.isa
-        );
-        println!(
-            "time: load {:.2} s, build {:.2} s, render {:.2} s on {threads} threads",
-            times.load, times.build, times.render
-        );
-        println!(
-            "rays: {}, {:.2} million a second",
-            rays.total(),
-            rays_per_s / 1e6
-        );
-        for reason in &skipped {
-            println!("skipped: {reason}");
-        }
-    }
     json::write(
         &arguments.common,
         &json!({
@@ -150,9 +119,43 @@ fn report(
             "instances": json::count(statistics.instances),
             "memory": json::memory(statistics),
             "skipped": skipped,
+            "skipped_rows": skipped_rows,
             "embree": statistics.embree_version,
             "isa": statistics.isa,
             "threads": threads,
         }),
-    )
+    )?;
+    if !arguments.common.prints() {
+        return Ok(());
+    }
+    let mut text = format!(
+        "{}: {}x{}, {} samples a pixel, {}\n{}\n",
+        arguments.output.display(),
+        settings.film.width,
+        settings.film.height,
+        settings.spp,
+        integrator_name(settings.integrator),
+        text::cylinders(statistics),
+    );
+    text += &text::skipped_rows(skipped_rows);
+    text += &format!(
+        "memory: {} of records, {} in Embree {} ({})\n",
+        memory::readable(statistics.records_bytes as u64),
+        memory::readable(statistics.embree_bytes as u64),
+        statistics.embree_version,
+        statistics.isa
+    );
+    text += &format!(
+        "time: load {:.2} s, build {:.2} s, render {:.2} s on {threads} threads\n",
+        times.load, times.build, times.render
+    );
+    text += &format!(
+        "rays: {}, {:.2} million a second\n",
+        rays.total(),
+        rays_per_s / 1e6
+    );
+    for reason in &skipped {
+        text += &format!("skipped: {reason}\n");
+    }
+    Ok(print(&text)?)
 }

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use cyltrace::render::{FileError, NewFile};
 
+use super::print::StandardOutputError;
+
 /// Standard output, or a new file.
 pub enum Target {
     StandardOutput(BufWriter<Stdout>),
@@ -28,10 +30,20 @@ impl Target {
         NewFile::create(path).map(Self::File)
     }
 
+    /// Whether what has been written so far can be seen before the end.
+    pub fn shows_parts(&self) -> bool {
+        match self {
+            Self::StandardOutput(_) => true,
+            Self::File(file) => !file.is_replacing(),
+        }
+    }
+
     /// Writes what is buffered and moves the file to its place.
     pub fn finish(self) -> anyhow::Result<()> {
         match self {
-            Self::StandardOutput(mut writer) => Ok(writer.flush()?),
+            Self::StandardOutput(mut writer) => {
+                Ok(writer.flush().map_err(|e| StandardOutputError::of(&e))?)
+            }
             Self::File(file) => Ok(file.finish()?),
         }
     }
@@ -40,14 +52,18 @@ impl Target {
 impl Write for Target {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
-            Self::StandardOutput(writer) => writer.write(bytes),
+            Self::StandardOutput(writer) => writer
+                .write(bytes)
+                .map_err(|error| StandardOutputError::of(&error)),
             Self::File(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match self {
-            Self::StandardOutput(writer) => writer.flush(),
+            Self::StandardOutput(writer) => writer
+                .flush()
+                .map_err(|error| StandardOutputError::of(&error)),
             Self::File(file) => file.flush(),
         }
     }

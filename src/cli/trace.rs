@@ -15,10 +15,12 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use super::arguments::TraceArguments;
+use super::interrupt::Interrupted;
 use super::outputs::Files;
+use super::print::print;
 use super::ray_table::{Block, RayTable};
 use super::target::{Target, is_standard_stream};
-use super::{hit_table, interrupt, json, progress, scene};
+use super::{hit_table, interrupt, json, progress, scene, text};
 
 /// Blocks that a thread gets of each batch: enough to even out slow ones.
 const BLOCKS_PER_THREAD: usize = 4;
@@ -72,28 +74,26 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     let start = Instant::now();
     target.write_all(hit_table::HEADER.as_bytes())?;
     let mut totals = Totals::default();
-    workers.install(|| {
+    let traced = workers.install(|| {
         for_each_batch(&arguments.rays, |blocks| {
             let before = totals.rays;
             trace_batch(&tracer, &blocks, &mut totals, &mut target)?;
             bar.inc(totals.rays - before);
             Ok(())
         })
+    });
+    traced.map_err(|error| match error.downcast_ref::<Interrupted>() {
+        Some(_) if target.shows_parts() => Interrupted::PartWritten.into(),
+        _ => error,
     })?;
     target.finish()?;
     let trace = start.elapsed().as_secs_f64();
     bar.finish_and_clear();
 
     let statistics = tracer.statistics();
+    let skipped_rows = tracer.scene().skipped_rows;
     let Totals { rays, hits } = totals;
     let rays_per_s = rays as f64 / trace;
-    if common.prints() && !is_standard_stream(&arguments.output) {
-        println!("{}: {hits} of {rays} rays hit", arguments.output.display());
-        println!(
-            "time: check {check:.2} s, load {load:.2} s, build {build:.2} s, trace {trace:.2} s on {threads} threads ({:.2} million rays a second, tables included)",
-            rays_per_s / 1e6
-        );
-    }
     json::write(
         common,
         &json!({
@@ -111,11 +111,25 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
             "instances": json::count(statistics.instances),
             "memory": json::memory(statistics),
             "skipped": statistics.skipped,
+            "skipped_rows": skipped_rows,
             "embree": statistics.embree_version,
             "isa": statistics.isa,
             "threads": threads,
         }),
-    )
+    )?;
+    if !common.prints() || is_standard_stream(&arguments.output) {
+        return Ok(());
+    }
+    let mut text = format!(
+        "{}: {hits} of {rays} rays hit\n",
+        arguments.output.display()
+    );
+    text += &text::skipped_rows(skipped_rows);
+    text += &format!(
+        "time: check {check:.2} s, load {load:.2} s, build {build:.2} s, trace {trace:.2} s on {threads} threads ({:.2} million rays a second, tables included)\n",
+        rays_per_s / 1e6
+    );
+    Ok(print(&text)?)
 }
 
 /// The number of rays in a table, all of them good.
