@@ -36,6 +36,13 @@ impl SceneFile {
     /// When the file cannot be read, is no TOML, or has keys or types other
     /// than those of `docs/scene-file.md`.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
+        Self::read_toml(path).map_err(|error| match error {
+            SceneError::Unreadable { .. } => error,
+            other => other_kind(path).unwrap_or(other),
+        })
+    }
+
+    fn read_toml(path: &Path) -> Result<Self, SceneError> {
         let source = Source::read(path)?;
         let document = toml::from_str(source.text()).map_err(|error| source.toml_error(&error))?;
         Ok(Self { source, document })
@@ -76,6 +83,41 @@ impl SceneFile {
     pub fn load(self) -> Result<Scene, SceneError> {
         lower(&self.source, self.document)
     }
+}
+
+/// That a file which is no scene is data or a picture, as its name says.
+fn other_kind(path: &Path) -> Option<SceneError> {
+    const TO_READ: &str = " that names it";
+    let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+    let file = |fallback: &str| {
+        let name = path.file_name().and_then(|name| name.to_str());
+        toml::Value::from(name.unwrap_or(fallback)).to_string()
+    };
+    let columns = r#"columns = { p0 = ["startX", "startY", "startZ"], p1 = ["endX", "endY", "endZ"], radius = "radius" }"#;
+    let (what, purpose, example) = match extension.as_str() {
+        "csv" | "tsv" => (
+            "a table",
+            TO_READ,
+            format!("[[cylinder_table]]\nfile = {}\n{columns}", file("tree.csv")),
+        ),
+        "swc" => (
+            "a neuron in SWC",
+            TO_READ,
+            format!("[[swc]]\nfile = {}", file("neuron.swc")),
+        ),
+        "png" | "exr" | "jpg" | "jpeg" => (
+            "a picture",
+            "",
+            format!("[[cylinder_table]]\nfile = \"tree.csv\"\n{columns}"),
+        ),
+        _ => return None,
+    };
+    Some(SceneError::NotAScene {
+        path: path.to_owned(),
+        what,
+        purpose,
+        example,
+    })
 }
 
 /// Reads a scene file and the tables it names, and checks everything.
@@ -177,6 +219,7 @@ impl Lowered {
             prototype: &self.prototype,
             edges: &self.edges,
             reach: self.reach,
+            skipped: self.skipped,
         }
     }
 }
