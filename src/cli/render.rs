@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use anyhow::Context;
 use cyltrace::render::{Output, Picture, RenderError, Settings};
 use cyltrace::tracer::Tracer;
 use serde_json::json;
@@ -54,7 +53,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
 
     let cancelled = interrupt::end_in_order();
     let output = Output::create(&arguments.output)?;
-    let workers = cyltrace::render::workers(common.threads).context("cannot start threads")?;
+    let workers = scene::workers(common)?;
     let threads = workers.current_num_threads();
     let film = settings.film;
     let bar = progress::bar(

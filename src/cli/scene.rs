@@ -6,6 +6,7 @@ use std::sync::Arc;
 use anyhow::anyhow;
 use cyltrace::scene::{Scene, SceneFile};
 use cyltrace::tracer::{Options, Tracer};
+use rayon::ThreadPool;
 
 use super::arguments::Common;
 use super::progress;
@@ -34,4 +35,13 @@ pub fn build(common: &Common, scene: &Arc<Scene>) -> anyhow::Result<Tracer> {
     let tracer = Tracer::new(Arc::clone(scene), &options);
     spinner.finish_and_clear();
     Ok(tracer?)
+}
+
+/// The threads that trace.
+pub fn workers(common: &Common) -> anyhow::Result<ThreadPool> {
+    // The error's source has the same text as the error.
+    cyltrace::render::workers(common.threads).map_err(|error| match common.threads {
+        Some(threads) => anyhow!("cannot start {threads} threads: {error}; try fewer"),
+        None => anyhow!("cannot start threads: {error}"),
+    })
 }

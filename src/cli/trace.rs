@@ -8,7 +8,6 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use anyhow::Context;
 use cyltrace::math::Ray;
 use cyltrace::tracer::Tracer;
 use rayon::prelude::*;
@@ -20,7 +19,7 @@ use super::outputs::Files;
 use super::print::print;
 use super::ray_table::{Block, RayTable};
 use super::target::{Target, is_standard_stream};
-use super::{hit_table, interrupt, json, progress, scene, text};
+use super::{hit_table, interrupt, json, progress, ray_table, scene, text};
 
 /// Blocks that a thread gets of each batch: enough to even out slow ones.
 const BLOCKS_PER_THREAD: usize = 4;
@@ -42,7 +41,7 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     Target::check(&arguments.output)?;
     json::check(common)?;
     interrupt::install()?;
-    let workers = cyltrace::render::workers(common.threads).context("cannot start threads")?;
+    let workers = scene::workers(common)?;
     let threads = workers.current_num_threads();
 
     let start = Instant::now();
@@ -53,7 +52,8 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     // A bad row is to be found before anything is traced or written. A pipe
     // can be read once only; its rows are checked on the way.
     let start = Instant::now();
-    let rereadable = arguments.rays.metadata().is_ok_and(|file| file.is_file());
+    let rereadable = !is_standard_stream(&arguments.rays)
+        && arguments.rays.metadata().is_ok_and(|file| file.is_file());
     let rays = if rereadable {
         Some(workers.install(|| count_rays(&arguments.rays))?)
     } else {
@@ -162,7 +162,8 @@ fn for_each_batch(
         if blocks.is_empty() {
             return Ok(());
         }
-        let parse = |block: &Block| RayTable::rays(path, &columns, block);
+        let name = ray_table::name(path);
+        let parse = |block: &Block| RayTable::rays(&name, &columns, block);
         // Collected first, then searched for an error, so that the first bad
         // row is the one that is reported.
         let parsed: Vec<_> = blocks.par_iter().map(parse).collect();
