@@ -201,6 +201,53 @@ fn json_of_render_has_the_promised_keys_and_counts() {
 }
 
 #[test]
+fn rows_left_out_are_told_by_render() {
+    let directory = workplace();
+    let write = |name, text| fs::write(directory.path().join(name), text).expect("written");
+    write("a.csv", "x,y,z,X,Y,Z,r\n0,0,0,1,0,0,0.1\n0,0,0,0,0,0,0.1\n");
+    write(
+        "rows.toml",
+        "[[cylinder_table]]\nfile = \"a.csv\"\ndegenerate = \"skip\"\n\
+         columns = { p0 = [\"x\", \"y\", \"z\"], p1 = [\"X\", \"Y\", \"Z\"], radius = \"r\" }\n",
+    );
+    let arguments = ["render", "rows.toml", "-o", "a.png", "--size", "8x8"];
+    let (code, out, err) = cyltrace(directory.path(), &arguments);
+    assert_eq!(code, 0, "{err}");
+    assert!(
+        out.contains("skipped: degenerate rows of tables: 1"),
+        "{out}"
+    );
+}
+
+/// `/dev/full` refuses every byte, as a full disk does.
+#[cfg(target_os = "linux")]
+#[test]
+fn full_standard_output_is_an_error_and_no_panic() {
+    let directory = workplace();
+    let render = ["render", "scene.toml", "-o", "a.png", "--size", "8x8"];
+    let rendered = [&render[..], &["--json", "a.json"]].concat();
+    for arguments in [&["info", "scene.toml"][..], &rendered] {
+        let full = fs::File::options().write(true).open("/dev/full");
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_cyltrace"))
+            .current_dir(directory.path())
+            .args(arguments)
+            .stdout(full.expect("there"))
+            .output()
+            .expect("the program runs");
+        let message = String::from_utf8(output.stderr).expect("UTF-8");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(
+            message.contains("cannot write to standard output"),
+            "{message}"
+        );
+    }
+    assert_eq!(
+        files_in(directory.path()),
+        ["a.json", "a.png", "scene.toml"]
+    );
+}
+
+#[test]
 fn integrator_without_lights_traces_no_light_rays_and_says_so() {
     let directory = workplace();
     for (integrator, kinds) in [("normal", [0, 0]), ("ao", [0, 1])] {

@@ -40,3 +40,27 @@ fn deepest_nesting_is_traced() {
     assert_eq!(hit.t, 35.0);
     assert_eq!(hit.instance, vec![0; GREATEST_DEPTH]);
 }
+
+/// 4^64 cylinders are more than u128 can count: the counts stop there instead of
+/// starting over.
+#[test]
+fn counts_beyond_u128_stay_at_its_greatest_number() {
+    let mut text = nested(GREATEST_DEPTH);
+    let places: Vec<String> = text.split("[[").skip(1).map(|t| format!("[[{t}")).collect();
+    text = places
+        .iter()
+        .map(|entry| match entry.contains("instance]]") {
+            true => entry.repeat(4),
+            false => entry.clone(),
+        })
+        .collect();
+    let file = tempfile::NamedTempFile::new().expect("a temporary file");
+    fs::write(file.path(), text).expect("writing the scene");
+    let scene = load(file.path()).unwrap_or_else(|error| panic!("{error}"));
+    let census = scene.census();
+    assert_eq!(census.cylinders_instanced, u128::MAX);
+    let tracer = Tracer::new(Arc::new(scene), &Options::default()).expect("a tracer");
+    let built = tracer.statistics();
+    assert_eq!(built.cylinders_instanced, census.cylinders_instanced);
+    assert_eq!(built.instances, census.instances);
+}

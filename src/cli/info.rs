@@ -7,8 +7,7 @@ use serde_json::json;
 
 use super::arguments::InfoArguments;
 use super::outputs::Files;
-use super::print::print;
-use super::{json, memory, scene, text};
+use super::{json, memory, print, scene, text};
 
 /// Says what the scene holds.
 pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
@@ -89,5 +88,5 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
         };
         text += &format!("material {name}: diffuse {}\n", text::point(material.color));
     }
-    Ok(print(&text)?)
+    print(&text)
 }

@@ -25,7 +25,7 @@ use clap::Parser;
 
 use arguments::{Arguments, Command};
 use interrupt::Interrupted;
-use print::{StandardOutputError, print_error};
+use print::{StandardOutputError, print, print_error};
 
 /// The command could not run.
 const COULD_NOT_RUN: u8 = 2;

@@ -17,12 +17,12 @@ impl StandardOutputError {
 }
 
 /// Writes text to standard output.
-pub fn print(text: &str) -> io::Result<()> {
+pub fn print(text: &str) -> anyhow::Result<()> {
     let mut output = io::stdout().lock();
     let written = output.write_all(text.as_bytes());
     written
         .and_then(|()| output.flush())
-        .map_err(|error| StandardOutputError::of(&error))
+        .map_err(|error| StandardOutputError::of(&error).into())
 }
 
 /// Writes a message to standard error, where it still has a reader.

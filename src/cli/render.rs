@@ -9,8 +9,7 @@ use serde_json::json;
 
 use super::arguments::{RenderArguments, integrator_name};
 use super::outputs::Files;
-use super::print::print;
-use super::{interrupt, json, memory, progress, scene, text};
+use super::{interrupt, json, memory, print, progress, scene, text};
 
 /// How long the parts of the command took, in seconds.
 struct Times {
@@ -136,7 +135,6 @@ fn report(
         integrator_name(settings.integrator),
         text::cylinders(statistics),
     );
-    text += &text::skipped_rows(skipped_rows);
     text += &format!(
         "memory: {} of records, {} in Embree {} ({})\n",
         memory::readable(statistics.records_bytes as u64),
@@ -156,5 +154,5 @@ fn report(
     for reason in &skipped {
         text += &format!("skipped: {reason}\n");
     }
-    Ok(print(&text)?)
+    print(&text)
 }

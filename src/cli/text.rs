@@ -37,11 +37,12 @@ pub fn cylinders(statistics: &Statistics) -> String {
     )
 }
 
-/// A line about rows that were left out, or nothing when there are none.
+/// A line about rows that were left out, or nothing when there are none: the
+/// one that [`Statistics::skipped`] has.
 pub fn skipped_rows(rows: u64) -> String {
     match rows {
         0 => String::new(),
-        _ => format!("rows skipped as degenerate: {rows}\n"),
+        _ => format!("skipped: degenerate rows of tables: {rows}\n"),
     }
 }
 

@@ -16,10 +16,9 @@ use serde_json::json;
 use super::arguments::TraceArguments;
 use super::interrupt::Interrupted;
 use super::outputs::Files;
-use super::print::print;
 use super::ray_table::{Block, RayTable};
 use super::target::{Target, is_standard_stream};
-use super::{hit_table, interrupt, json, progress, ray_table, scene, text};
+use super::{hit_table, interrupt, json, print, progress, ray_table, scene, text};
 
 /// Blocks that a thread gets of each batch: enough to even out slow ones.
 const BLOCKS_PER_THREAD: usize = 4;
@@ -129,7 +128,7 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
         "time: check {check:.2} s, load {load:.2} s, build {build:.2} s, trace {trace:.2} s on {threads} threads ({:.2} million rays a second, tables included)\n",
         rays_per_s / 1e6
     );
-    Ok(print(&text)?)
+    print(&text)
 }
 
 /// The number of rays in a table, all of them good.

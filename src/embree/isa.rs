@@ -60,6 +60,17 @@ impl MaxIsa {
         Self::available().pop()
     }
 
+    /// The name of the one in use where Embree is held to `limit`, which is none
+    /// when it is above the processor's best.
+    #[must_use]
+    pub fn name_in_use(limit: Option<Self>) -> &'static str {
+        Self::lesser(limit, Self::best()).map_or("unknown", Self::name)
+    }
+
+    fn lesser(limit: Option<Self>, best: Option<Self>) -> Option<Self> {
+        best.map(|best| limit.map_or(best, |limit| limit.min(best)))
+    }
+
     #[cfg(target_arch = "x86_64")]
     fn is_available(self) -> bool {
         use std::arch::is_x86_feature_detected as has;
@@ -107,5 +118,19 @@ impl FromStr for MaxIsa {
             .into_iter()
             .find(|isa| isa.name() == name)
             .ok_or_else(|| UnknownIsa { name: name.into() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limit_above_the_best_is_not_in_use() {
+        let (less, more) = (Some(MaxIsa::Avx), Some(MaxIsa::Avx512));
+        assert_eq!(MaxIsa::lesser(more, less), less);
+        assert_eq!(MaxIsa::lesser(less, more), less);
+        assert_eq!(MaxIsa::lesser(None, more), more);
+        assert_eq!(MaxIsa::lesser(more, None), None);
     }
 }

@@ -22,6 +22,12 @@
 //! the relative error of `D` is a few units of 2^-53 times `1 + |x| / radius`.
 //! `|a|` and `√D` are rooted apart, which halves the exponents in play.
 //!
+//! `w` is that only if `n` is perpendicular to `a`. Rounded products leave an
+//! error along `a` of some 2^-53 `|a| |d|`, which `x·n` multiplies with the
+//! whole axial way to the origin: for a ray nearly along a long cylinder it
+//! would exceed all else. So where the angle is below 30 degrees the products
+//! of `n` are exact.
+//!
 //! Where the two terms of a root of (2) cancel, the root is `C / q`, `C` the
 //! constant term of (1) and `q = -(m·n) ± |a| √D` the sum that does not cancel.
 //!
@@ -37,7 +43,7 @@ use glam::DVec3;
 
 use super::chord::{Chord, ChordEnd};
 use super::{Cylinder, Part};
-use crate::math::power_of_two;
+use crate::math::{DoubleDouble, power_of_two};
 
 /// Below this (2^-700), `radius² |n|²` could lose bits to underflow and the ray
 /// is taken as parallel to the axis. `|a| |d|` is at least 2^-250 (the least
@@ -45,6 +51,10 @@ use crate::math::power_of_two;
 /// 2^-100: along any chord of a cylinder in range the ray leaves the parallel
 /// by far less than an ulp of its origin.
 const PARALLEL_BELOW: f64 = power_of_two(-700);
+
+/// The square of the sine between ray and axis below which the products of
+/// `a × d` have to be exact: `docs/derivations.md`, section 2.
+const LEAST_SQUARED_SINE: f64 = 0.25;
 
 /// The interval in which the line `p0 + from_p0 + t * direction` is inside the
 /// closed solid, or `None` where it is not.
@@ -57,8 +67,13 @@ const PARALLEL_BELOW: f64 = power_of_two(-700);
 pub fn chord(cylinder: &Cylinder, from_p0: DVec3, direction: DVec3) -> Option<Chord> {
     let (x, d, r) = (from_p0, direction, cylinder.radius());
     let a = cylinder.p1() - cylinder.p0();
-    let n = a.cross(d);
-    let nn = n.dot(n);
+    let aa = a.dot(a);
+    let mut n = a.cross(d);
+    let mut nn = n.dot(n);
+    if nn < LEAST_SQUARED_SINE * (aa * d.dot(d)) {
+        n = cross_of_exact_products(a, d);
+        nn = n.dot(n);
+    }
     if nn < PARALLEL_BELOW {
         return parallel_chord(a, x, d, r);
     }
@@ -70,7 +85,7 @@ pub fn chord(cylinder: &Cylinder, from_p0: DVec3, direction: DVec3) -> Option<Ch
     if !(discriminant >= 0.0) {
         return None;
     }
-    let (aa, ya, yd) = (a.dot(a), x.dot(a), d.dot(a));
+    let (ya, yd) = (x.dot(a), d.dot(a));
 
     // The roots of the wall.
     let m = a.cross(x);
@@ -136,6 +151,18 @@ pub fn chord(cylinder: &Cylinder, from_p0: DVec3, direction: DVec3) -> Option<Ch
         leave,
         lies_on: None,
     })
+}
+
+/// `a × d` with a relative error of 2^-53 in every component, whatever the
+/// angle. Products below 2^-960 are not exact, but then they are nothing
+/// against a vector that is not taken for zero.
+#[cold]
+fn cross_of_exact_products(a: DVec3, d: DVec3) -> DVec3 {
+    let difference = |i: usize, j: usize| {
+        let sum = DoubleDouble::product(a[i], d[j]).plus(DoubleDouble::product(-a[j], d[i]));
+        sum.high
+    };
+    DVec3::new(difference(1, 2), difference(2, 0), difference(0, 1))
 }
 
 /// The chord of a line along the axis: from disc to disc, if it is not farther

@@ -52,7 +52,8 @@ pub enum TracerError {
 pub(crate) struct Plan {
     /// The prototypes that the root needs, children before parents.
     pub order: Vec<PrototypeIndex>,
-    /// For every prototype, the cylinders in it and in all it places.
+    /// For every prototype, the cylinders in it and in all it places; counts
+    /// beyond u128 stay at its greatest number.
     pub instanced_cylinders: Vec<u128>,
     /// For every prototype, the placements in it and in all it places.
     pub instances: Vec<u128>,
@@ -81,7 +82,7 @@ impl Plan {
     }
 
     /// Visits a prototype after all that it places. The description holds no
-    /// cycles and is at most a few levels deep, so recursion is safe.
+    /// cycles, and scene files no more than [`GREATEST_DEPTH`] levels.
     fn visit(
         &mut self,
         scene: &Scene,
@@ -125,8 +126,9 @@ impl Plan {
             nesting.depth = nesting.depth.max(child.depth + 1);
             nesting.least = nesting.least.min(least);
             nesting.greatest = nesting.greatest.max(greatest);
-            cylinders += self.instanced_cylinders[placement.of.0 as usize];
-            instances += self.instances[placement.of.0 as usize];
+            let of = placement.of.0 as usize;
+            cylinders = cylinders.saturating_add(self.instanced_cylinders[of]);
+            instances = instances.saturating_add(self.instances[of]);
         }
         if nesting.depth > GREATEST_DEPTH {
             return Err(TracerError::Depth {

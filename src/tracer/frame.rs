@@ -233,6 +233,19 @@ impl Frame {
         Some((Level { ray, window }, ray32))
     }
 
+    /// Enters the prototype wherever the ray passes, for a query that does not
+    /// ask Embree: the window is the whole line.
+    pub fn enter_unseen(&self, ray: &LocalRay) -> Level {
+        let (ray, nearest, _) = self.approach(ray);
+        let window = Window {
+            shift: ray.shift,
+            nearest,
+            start: f64::NEG_INFINITY,
+            rate: 1.0,
+        };
+        Level { ray, window }
+    }
+
     /// Whether the stretch of the ray meets the prototype's grown box. The
     /// growth dwarfs the roundings here.
     fn meets_box(&self, start: DVec3, direction: DVec3, length: f64) -> bool {

@@ -91,13 +91,9 @@ impl Tracer {
             instances: plan.instances[0],
             embree_bytes: device.memory_bytes(),
             records_bytes: records_bytes(&scene, &built),
-            skipped: skipped_prototypes(&scene, &plan),
+            skipped: skipped(&scene, &plan),
             embree_version: device.version().to_string(),
-            isa: options
-                .max_isa
-                .or_else(MaxIsa::best)
-                .map_or("unknown", MaxIsa::name)
-                .to_owned(),
+            isa: MaxIsa::name_in_use(options.max_isa).to_owned(),
         };
         let root = built.into_iter().next().flatten();
         Ok(Self {
@@ -227,10 +223,13 @@ fn records_bytes(scene: &Scene, built: &[Option<Arc<Prototype>>]) -> usize {
             .sum::<usize>()
 }
 
-/// A sentence for each prototype that no placement needs.
-fn skipped_prototypes(scene: &Scene, plan: &Plan) -> Vec<String> {
+/// A sentence for each prototype that no placement needs, and one for rows
+/// that are no solid.
+fn skipped(scene: &Scene, plan: &Plan) -> Vec<String> {
+    let rows = (scene.skipped_rows > 0)
+        .then(|| format!("degenerate rows of tables: {}", scene.skipped_rows));
     let is_needed = |index| plan.order.contains(&PrototypeIndex(index as u32));
-    scene
+    let prototypes = scene
         .prototypes
         .iter()
         .enumerate()
@@ -240,6 +239,6 @@ fn skipped_prototypes(scene: &Scene, plan: &Plan) -> Vec<String> {
                 "prototype \"{}\" is placed nowhere: not built",
                 prototype.name
             )
-        })
-        .collect()
+        });
+    rows.into_iter().chain(prototypes).collect()
 }

@@ -168,13 +168,10 @@ impl Prototype {
         hit
     }
 
-    /// As [`Prototype::closest`], but visits every primitive instead of asking
-    /// Embree for candidates.
+    /// As [`Prototype::closest`], but visits every primitive, also where the
+    /// ray is nowhere near: neither boxes nor spheres have a say.
     pub fn closest_exhaustive(&self, ray: &LocalRay, query: &mut Query) {
-        let Some((level, _)) = query.enter(&self.frame, ray) else {
-            return;
-        };
-        let outer = query.level.replace(level);
+        let outer = query.level.replace(self.frame.enter_unseen(ray));
         for record in 0..self.cylinders.records().len() as u32 {
             self.cylinders.visit(record, query);
         }
