@@ -88,6 +88,18 @@ fn bad_arguments_exit_2_and_name_the_remedy() {
             &["render", "scene.toml", "-o", "a.png", "--colour", "red"],
             "--colour",
         ),
+        (
+            &["render", "scene.toml", "-o", "a.png", "--spp", "0"],
+            "'0' for '--spp <N>': it must be a whole number from 1",
+        ),
+        (
+            &["render", "scene.toml", "-o", "a.png", "--seed", "-1"],
+            "'-1' for '--seed <N>': it must be a whole number from 0",
+        ),
+        (
+            &["info", "scene.toml", "--threads", "100000"],
+            "'100000' for '--threads <N>': it must be a whole number from 1 to 1024",
+        ),
         (&["trace", "scene.toml", "-o", "hits.csv"], "--rays"),
         (&["info"], "<SCENE>"),
     ] {
@@ -99,4 +111,52 @@ fn bad_arguments_exit_2_and_name_the_remedy() {
         );
         assert!(out.is_empty(), "{arguments:?}: {out}");
     }
+}
+
+#[test]
+fn document_has_every_flag_column_and_json_key() {
+    let document = include_str!("../docs/command-line.md");
+    let mut missing = Vec::new();
+    let mut need = |word: &str| {
+        if !document.contains(&format!("`{word}")) {
+            missing.push(word.to_owned());
+        }
+    };
+    for command in ["render", "trace", "info"] {
+        let (_, help, _) = cyltrace(&[command, "--help"]);
+        help.split(|c: char| c.is_whitespace() || c == ',')
+            .filter(|word| word.starts_with("--") && word.len() > 2)
+            .for_each(&mut need);
+    }
+    let directory = tempfile::tempdir().expect("directory");
+    let at = |name: &str| {
+        directory
+            .path()
+            .join(name)
+            .to_str()
+            .expect("UTF-8")
+            .to_owned()
+    };
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/minimal.toml");
+    let (rays, hits, picture) = (at("rays.csv"), at("hits.csv"), at("a.png"));
+    std::fs::write(&rays, "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n").expect("written");
+    for arguments in [
+        &["info", scene, "--json", "-"][..],
+        &[
+            "render", scene, "-o", &picture, "--size", "8x8", "--json", "-",
+        ],
+        &["trace", scene, "--rays", &rays, "-o", &hits, "--json", "-"],
+    ] {
+        let (_, out, err) = cyltrace(arguments);
+        let figures: serde_json::Value = serde_json::from_str(&out).expect(&err);
+        figures
+            .as_object()
+            .expect("keys")
+            .keys()
+            .for_each(|key| need(&format!("{key}`")));
+    }
+    let hits = std::fs::read_to_string(hits).expect("written");
+    let header = hits.lines().next().expect("a header");
+    header.split(',').for_each(|name| need(&format!("{name}`")));
+    assert!(missing.is_empty(), "{missing:?}");
 }

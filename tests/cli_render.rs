@@ -219,31 +219,6 @@ fn rows_left_out_are_told_by_render() {
     );
 }
 
-#[test]
-fn json_in_place_of_the_output_refused_before_rendering() {
-    let directory = workplace();
-    fs::write(directory.path().join("rays.csv"), "ox,oy,oz,dx,dy,dz\n").expect("written");
-    let before = files_in(directory.path());
-    for arguments in [
-        &["render", "scene.toml", "-o", "a.png", "--json", "./a.png"][..],
-        &[
-            "trace",
-            "scene.toml",
-            "--rays",
-            "rays.csv",
-            "-o",
-            "-",
-            "--json",
-            "-",
-        ],
-    ] {
-        let (code, out, err) = cyltrace(directory.path(), arguments);
-        assert_eq!((code, out.as_str()), (2, ""), "{arguments:?}: {err}");
-        assert!(err.contains("--json and --output"), "{err}");
-        assert_eq!(files_in(directory.path()), before);
-    }
-}
-
 /// `/dev/full` refuses every byte, as a full disk does.
 #[cfg(target_os = "linux")]
 #[test]

@@ -247,6 +247,34 @@ fn bad_ray_rows_refused_by_place_and_value_and_nothing_written() {
 }
 
 #[test]
+fn rays_from_standard_input_same_hits_and_errors_by_line() {
+    let directory = workplace(RAYS.as_bytes());
+    let from_input = |rays: &str| {
+        Command::cargo_bin("cyltrace")
+            .expect("the program is built")
+            .current_dir(directory.path())
+            .args(["trace", "scene.toml", "--rays", "-", "-o", "-"])
+            .write_stdin(rays)
+            .output()
+            .expect("the program runs")
+    };
+    let (_, expected, _) = trace(directory.path(), &["-o", "-"]);
+    // A file of that name is another thing.
+    fs::write(directory.path().join("-"), "no rays").expect("written");
+    let output = from_input(RAYS);
+    assert!(output.status.success(), "{output:?}");
+    assert!(expected.lines().count() == HITS.len() + 1);
+    assert_eq!(String::from_utf8_lossy(&output.stdout), expected);
+    let output = from_input("ox,oy,oz,dx,dy,dz\n1,2,3,4,5,six\n");
+    assert_eq!(output.status.code(), Some(2));
+    let err = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        err.contains("standard input:2: ") && err.contains("\"six\""),
+        "{err}"
+    );
+}
+
+#[test]
 fn bad_row_after_good_ones_nothing_on_standard_output() {
     let mut rays = String::from("ox,oy,oz,dx,dy,dz\n");
     rays += &"-4,0,1,1,0,0\n".repeat(50_000);

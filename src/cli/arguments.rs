@@ -8,7 +8,7 @@ use cyltrace::cases::{Family, Inputs};
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{Film, Integrator};
 
-use super::target::is_standard_output;
+use super::target::is_standard_stream;
 
 /// Traces analytic cylinders through Embree: exact hits, no meshes.
 #[derive(Debug, Parser)]
@@ -36,7 +36,7 @@ pub struct Common {
     #[arg(long, short)]
     pub quiet: bool,
     /// Use N threads [default: as many as the machine has]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true)]
     pub threads: Option<NonZeroUsize>,
     /// Hold Embree to an instruction set: sse2, sse4.2, avx, avx2 or avx512
     #[arg(long, value_name = "NAME")]
@@ -51,7 +51,7 @@ impl Common {
             && self
                 .json
                 .as_deref()
-                .is_none_or(|path| !is_standard_output(path))
+                .is_none_or(|path| !is_standard_stream(path))
     }
 }
 
@@ -69,13 +69,19 @@ pub struct RenderArguments {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<Film>,
     /// Samples a pixel; powers of two are best [default: the scene's, else 4]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = parse_spp, allow_negative_numbers = true)]
     pub spp: Option<NonZeroU32>,
     /// What the picture shows [default: the scene's, else sun]
     #[arg(long, value_name = "NAME", value_enum)]
     pub integrator: Option<IntegratorName>,
     /// Chooses the random numbers
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 0,
+        value_parser = parse_seed,
+        allow_negative_numbers = true
+    )]
     pub seed: u64,
     #[command(flatten)]
     pub common: Common,
@@ -88,7 +94,7 @@ pub struct TraceArguments {
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
     /// CSV with the columns ox,oy,oz,dx,dy,dz and optionally t_min,t_max
-    /// (defaults 0 and inf)
+    /// (defaults 0 and inf); `-` is standard input
     #[arg(long, value_name = "FILE")]
     pub rays: PathBuf,
     /// CSV of hits, one row a ray, in order; `-` is standard output
@@ -176,6 +182,26 @@ pub fn integrator_name(integrator: Integrator) -> &'static str {
         Integrator::Ao => "ao",
         Integrator::Normal => "normal",
     }
+}
+
+/// Most threads: more than any machine has, few enough to start.
+const GREATEST_THREADS: usize = 1024;
+
+fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
+    let threads = text.parse().ok();
+    threads
+        .filter(|threads: &NonZeroUsize| threads.get() <= GREATEST_THREADS)
+        .ok_or_else(|| format!("it must be a whole number from 1 to {GREATEST_THREADS}"))
+}
+
+fn parse_spp(text: &str) -> Result<NonZeroU32, String> {
+    let spp = text.parse();
+    spp.map_err(|_| format!("it must be a whole number from 1 to {}", u32::MAX))
+}
+
+fn parse_seed(text: &str) -> Result<u64, String> {
+    let seed = text.parse();
+    seed.map_err(|_| format!("it must be a whole number from 0 to {}", u64::MAX))
 }
 
 fn parse_size(text: &str) -> Result<Film, String> {

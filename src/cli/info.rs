@@ -1,70 +1,28 @@
 //! `cyltrace info`.
 
-use std::fmt::Write as _;
 use std::time::Instant;
 
 use cyltrace::tracer::MemoryEstimate;
 use serde_json::json;
 
 use super::arguments::InfoArguments;
-use super::{json, memory, print, scene};
+use super::outputs::Files;
+use super::{json, memory, print, scene, text};
 
 /// Says what the scene holds.
 pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
-    json::check(&arguments.common, None)?;
+    let common = &arguments.common;
+    let files = Files::new(&arguments.scene, common.json.as_deref());
+    files.check()?;
+    json::check(common)?;
     let start = Instant::now();
-    let scene = scene::load(&arguments.common, &arguments.scene)?;
+    let file = scene::read(&arguments.scene)?;
+    files.check_with(&file)?;
+    let scene = scene::load(common, file)?;
     let load = start.elapsed().as_secs_f64();
     let census = scene.census();
     let estimate = MemoryEstimate::of(&census);
     let (lower, upper) = (census.bounds.lower, census.bounds.upper);
-
-    let mut text = String::new();
-    if arguments.common.prints() {
-        writeln!(text, "{}", arguments.scene.display())?;
-        writeln!(
-            text,
-            "prototypes: {}, of which {} are placed",
-            census.prototypes, census.prototypes_used
-        )?;
-        writeln!(
-            text,
-            "placements: {} stored, {} instances, {} levels deep",
-            census.placements, census.instances, census.depth
-        )?;
-        writeln!(
-            text,
-            "cylinders: {} unique, {} instanced",
-            census.cylinders_unique, census.cylinders_instanced
-        )?;
-        if scene.skipped_rows > 0 {
-            writeln!(text, "rows skipped as degenerate: {}", scene.skipped_rows)?;
-        }
-        writeln!(
-            text,
-            "bounds: ({}, {}, {}) to ({}, {}, {})",
-            lower.x, lower.y, lower.z, upper.x, upper.y, upper.z
-        )?;
-        writeln!(
-            text,
-            "memory, estimated: {} of records, {} in Embree",
-            memory::readable(estimate.records_bytes),
-            memory::readable(estimate.embree_bytes)
-        )?;
-        for material in &scene.materials {
-            let name = if material.name.is_empty() {
-                "(default)"
-            } else {
-                &material.name
-            };
-            let color = material.color;
-            writeln!(
-                text,
-                "material {name}: diffuse ({}, {}, {})",
-                color.x, color.y, color.z
-            )?;
-        }
-    }
 
     let materials: Vec<_> = scene
         .materials
@@ -99,5 +57,36 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
             "materials": materials,
         }),
     )?;
+    if !arguments.common.prints() {
+        return Ok(());
+    }
+    let mut text = format!("{}\n", arguments.scene.display());
+    text += &format!(
+        "prototypes: {}, of which {} are placed\n",
+        census.prototypes, census.prototypes_used
+    );
+    text += &format!(
+        "placements: {} stored, {} instances, {} levels deep\n",
+        census.placements, census.instances, census.depth
+    );
+    text += &format!(
+        "cylinders: {} unique, {} instanced\n",
+        census.cylinders_unique, census.cylinders_instanced
+    );
+    text += &text::skipped_rows(scene.skipped_rows);
+    text += &format!("bounds: {} to {}\n", text::point(lower), text::point(upper));
+    text += &format!(
+        "memory, estimated: {} of records, {} in Embree\n",
+        memory::readable(estimate.records_bytes),
+        memory::readable(estimate.embree_bytes)
+    );
+    for material in &scene.materials {
+        let name = if material.name.is_empty() {
+            "(default)"
+        } else {
+            &material.name
+        };
+        text += &format!("material {name}: diffuse {}\n", text::point(material.color));
+    }
     print(&text)
 }

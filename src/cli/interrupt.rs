@@ -9,8 +9,14 @@ use std::sync::{Mutex, PoisonError};
 
 /// The command was stopped by the user.
 #[derive(Debug, thiserror::Error)]
-#[error("interrupted; nothing was written")]
-pub struct Interrupted;
+pub enum Interrupted {
+    /// Before anything was written, or only to a temporary file.
+    #[error("interrupted; nothing was written")]
+    NothingWritten,
+    /// After a part was written to a stream.
+    #[error("interrupted; the table written so far is incomplete")]
+    PartWritten,
+}
 
 /// Set when work in order has to end.
 static REQUESTED: AtomicBool = AtomicBool::new(false);
@@ -24,7 +30,7 @@ pub fn install() -> anyhow::Result<()> {
     ctrlc::set_handler(|| {
         let orderly = ORDERLY.lock().unwrap_or_else(PoisonError::into_inner);
         if !*orderly {
-            eprintln!("error: {Interrupted}");
+            super::print::print_error(&Interrupted::NothingWritten);
             std::process::exit(i32::from(super::INTERRUPTED));
         }
         REQUESTED.store(true, Ordering::Relaxed);
@@ -42,7 +48,7 @@ pub fn end_in_order() -> &'static AtomicBool {
 /// An error when the user asked to stop.
 pub fn check() -> Result<(), Interrupted> {
     if REQUESTED.load(Ordering::Relaxed) {
-        Err(Interrupted)
+        Err(Interrupted::NothingWritten)
     } else {
         Ok(())
     }

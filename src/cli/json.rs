@@ -1,9 +1,7 @@
 //! The figures of a run as JSON.
 
 use std::io::Write;
-use std::path::{self, Path};
 
-use anyhow::bail;
 use cyltrace::tracer::Statistics;
 use serde_json::{Value, json};
 
@@ -11,27 +9,12 @@ use super::arguments::Common;
 use super::memory::peak_resident_bytes;
 use super::target::Target;
 
-/// Says before any work whether the figures can be written, and to another place
-/// than `output`.
-pub fn check(common: &Common, output: Option<&Path>) -> anyhow::Result<()> {
-    let Some(path) = &common.json else {
-        return Ok(());
-    };
-    if output.is_some_and(|output| is_same_place(path, output)) {
-        bail!("--json and --output both name {path:?}: one would replace the other");
+/// Says before any work whether the figures can be written.
+pub fn check(common: &Common) -> anyhow::Result<()> {
+    match &common.json {
+        Some(path) => Ok(Target::check(path)?),
+        None => Ok(()),
     }
-    Ok(Target::check(path)?)
-}
-
-/// Whether two paths name the same file or both standard output. Devices and
-/// pipes, such as /dev/null, take more than one.
-fn is_same_place(one: &Path, other: &Path) -> bool {
-    if one.metadata().is_ok_and(|existing| !existing.is_file()) {
-        return false;
-    }
-    let whole = |path: &Path| path::absolute(path).unwrap_or_else(|_| path.into());
-    let found = |path: &Path| path.canonicalize().unwrap_or_else(|_| whole(path));
-    found(one) == found(other)
 }
 
 /// Writes the figures where `--json` says, if it was given.

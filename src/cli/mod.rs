@@ -9,22 +9,24 @@ mod info;
 mod interrupt;
 mod json;
 mod memory;
+mod outputs;
+mod print;
 mod progress;
 mod ray_table;
 mod render;
 mod scene;
 mod stress;
 mod target;
+mod text;
 mod trace;
 
-use std::io::Write as _;
 use std::process::ExitCode;
 
-use anyhow::Context as _;
 use clap::Parser;
 
 use arguments::{Arguments, Command};
 use interrupt::Interrupted;
+use print::{StandardOutputError, print, print_error};
 
 /// Nothing is wrong.
 const GOOD: u8 = 0;
@@ -40,35 +42,42 @@ const INTERRUPTED: u8 = 130;
 
 /// Runs the command that the program's arguments name.
 pub fn run() -> ExitCode {
-    let arguments = Arguments::parse();
-    let result = match &arguments.command {
-        Command::Render(arguments) => render::run(arguments).map(|()| GOOD),
-        Command::Trace(arguments) => trace::run(arguments).map(|()| GOOD),
-        Command::Info(arguments) => info::run(arguments).map(|()| GOOD),
-        Command::Stress(arguments) => stress::run(arguments),
-    };
-    match result {
+    match arguments().and_then(|arguments| arguments.map_or(Ok(GOOD), |a| run_command(&a))) {
         Ok(code) => ExitCode::from(code),
         Err(error) if error.is::<Interrupted>() => {
-            eprintln!("error: {error}");
+            print_error(&error);
             ExitCode::from(INTERRUPTED)
         }
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            print_error(&format_args!("{error:#}"));
             ExitCode::from(COULD_NOT_RUN)
         }
     }
 }
 
-/// Prints the lines meant for people, after all files are written: `println!`
-/// would panic where standard output is full or closed.
-fn print(text: &str) -> anyhow::Result<()> {
-    let mut output = std::io::stdout().lock();
-    output
-        .write_all(text.as_bytes())
-        .and_then(|()| output.flush())
-        .context("cannot write to standard output")
+/// The arguments; `None` when they asked for help or for the version, which
+/// has been printed. Wrong ones end the program.
+fn arguments() -> anyhow::Result<Option<Arguments>> {
+    match Arguments::try_parse() {
+        Ok(arguments) => Ok(Some(arguments)),
+        Err(error) if error.use_stderr() => error.exit(),
+        Err(help) => {
+            let printed = help.print();
+            printed.map_err(|error| StandardOutputError::of(&error))?;
+            Ok(None)
+        }
+    }
+}
+
+/// Runs a command; the answer is the exit code of one that could run.
+fn run_command(arguments: &Arguments) -> anyhow::Result<u8> {
+    match &arguments.command {
+        Command::Render(arguments) => render::run(arguments).map(|()| GOOD),
+        Command::Trace(arguments) => trace::run(arguments).map(|()| GOOD),
+        Command::Info(arguments) => info::run(arguments).map(|()| GOOD),
+        Command::Stress(arguments) => stress::run(arguments),
+    }
 }
 
 /// Whether the reader of a pipe had enough, as in `cyltrace trace ... | head`.

@@ -6,12 +6,14 @@
 //! threads and a table of any length needs little memory.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
 use cyltrace::math::Ray;
 use glam::DVec3;
+
+use super::target::is_standard_stream;
 
 /// The columns' names; the last two may be absent.
 const NAMES: [&str; 8] = ["ox", "oy", "oz", "dx", "dy", "dz", "t_min", "t_max"];
@@ -28,8 +30,8 @@ const BLOCK_BYTES: usize = 1 << 16;
 
 /// A table that is being read.
 pub struct RayTable {
-    path: PathBuf,
-    reader: BufReader<File>,
+    name: String,
+    reader: BufReader<Box<dyn Read>>,
     line: u64,
     columns: Columns,
 }
@@ -44,17 +46,32 @@ pub struct Block {
     text: Vec<u8>,
 }
 
+/// What messages call a table; `-` is standard input.
+pub fn name(path: &Path) -> String {
+    if is_standard_stream(path) {
+        "standard input".to_owned()
+    } else {
+        path.display().to_string()
+    }
+}
+
 impl RayTable {
     /// Opens a table and reads its header.
     pub fn open(path: &Path) -> anyhow::Result<Self> {
-        let cannot_read = || format!("cannot read {path:?}");
-        let file = File::open(path).with_context(cannot_read)?;
-        if file.metadata().with_context(cannot_read)?.is_dir() {
-            bail!("cannot read {path:?}: it is a directory");
-        }
+        let name = name(path);
+        let cannot_read = || format!("cannot read {name}");
+        let input: Box<dyn Read> = if is_standard_stream(path) {
+            Box::new(io::stdin())
+        } else {
+            let file = File::open(path).with_context(cannot_read)?;
+            if file.metadata().with_context(cannot_read)?.is_dir() {
+                bail!("cannot read {name}: it is a directory");
+            }
+            Box::new(file)
+        };
         let mut table = Self {
-            path: path.into(),
-            reader: BufReader::with_capacity(BLOCK_BYTES, file),
+            name: name.clone(),
+            reader: BufReader::with_capacity(BLOCK_BYTES, input),
             line: 0,
             columns: Columns(Vec::new()),
         };
@@ -68,14 +85,13 @@ impl RayTable {
                 == 0
             {
                 bail!(
-                    "{}: there is no header; it must name the columns {}",
-                    path.display(),
+                    "{name}: there is no header; it must name the columns {}",
                     NAMES[..REQUIRED].join(",")
                 );
             }
             table.line += 1;
             let text = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&line);
-            let at = || format!("{}:{}", path.display(), table.line);
+            let at = || format!("{name}:{}", table.line);
             if let Some(row) = content(text).with_context(at)? {
                 table.columns = Columns::named(row).with_context(at)?;
                 return Ok(table);
@@ -96,7 +112,7 @@ impl RayTable {
         };
         while block.text.len() < BLOCK_BYTES {
             let read = self.reader.read_until(b'\n', &mut block.text);
-            if read.with_context(|| format!("cannot read {:?}", self.path))? == 0 {
+            if read.with_context(|| format!("cannot read {}", self.name))? == 0 {
                 break;
             }
             self.line += 1;
@@ -104,11 +120,11 @@ impl RayTable {
         Ok((!block.text.is_empty()).then_some(block))
     }
 
-    /// The rays of a block of this table.
-    pub fn rays(path: &Path, columns: &Columns, block: &Block) -> anyhow::Result<Vec<Ray>> {
+    /// The rays of a block of the table of that name.
+    pub fn rays(name: &str, columns: &Columns, block: &Block) -> anyhow::Result<Vec<Ray>> {
         let mut rays = Vec::with_capacity(block.text.len() / 32);
         for (number, line) in (block.first_line..).zip(block.text.split(|&byte| byte == b'\n')) {
-            let at = || format!("{}:{number}", path.display());
+            let at = || format!("{name}:{number}");
             if let Some(row) = content(line).with_context(at)? {
                 rays.push(columns.ray(row).with_context(at)?);
             }

@@ -1,16 +1,15 @@
 //! `cyltrace render`.
 
-use std::fmt::Write as _;
 use std::sync::Arc;
 use std::time::Instant;
 
-use anyhow::Context;
 use cyltrace::render::{Output, Picture, RenderError, Settings};
 use cyltrace::tracer::Tracer;
 use serde_json::json;
 
 use super::arguments::{RenderArguments, integrator_name};
-use super::{interrupt, json, memory, print, progress, scene};
+use super::outputs::Files;
+use super::{interrupt, json, memory, print, progress, scene, text};
 
 /// How long the parts of the command took, in seconds.
 struct Times {
@@ -22,12 +21,17 @@ struct Times {
 /// Renders the scene into the picture.
 pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
+    let files =
+        Files::new(&arguments.scene, common.json.as_deref()).output("-o", &arguments.output);
+    files.check()?;
     Output::check(&arguments.output)?;
-    json::check(common, Some(&arguments.output))?;
+    json::check(common)?;
     interrupt::install()?;
 
     let start = Instant::now();
-    let scene = Arc::new(scene::load(common, &arguments.scene)?);
+    let file = scene::read(&arguments.scene)?;
+    files.check_with(&file)?;
+    let scene = Arc::new(scene::load(common, file)?);
     let mut settings = Settings::of(&scene);
     settings.seed = arguments.seed;
     if let Some(size) = arguments.size {
@@ -48,7 +52,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
 
     let cancelled = interrupt::end_in_order();
     let output = Output::create(&arguments.output)?;
-    let workers = cyltrace::render::workers(common.threads).context("cannot start threads")?;
+    let workers = scene::workers(common)?;
     let threads = workers.current_num_threads();
     let film = settings.film;
     let bar = progress::bar(
@@ -67,7 +71,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let render = start.elapsed().as_secs_f64();
     bar.finish_and_clear();
     let picture = match rendered {
-        Err(RenderError::Cancelled) => return Err(interrupt::Interrupted.into()),
+        Err(RenderError::Cancelled) => return Err(interrupt::Interrupted::NothingWritten.into()),
         other => other?,
     };
     interrupt::check()?;
@@ -81,7 +85,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     report(arguments, &settings, &tracer, &picture, &times, threads)
 }
 
-/// Prints the figures, and writes them where `--json` says.
+/// Writes the figures where `--json` says, and prints them.
 fn report(
     arguments: &RenderArguments,
     settings: &Settings,
@@ -91,48 +95,10 @@ fn report(
     threads: usize,
 ) -> anyhow::Result<()> {
     let statistics = tracer.statistics();
+    let skipped_rows = tracer.scene().skipped_rows;
     let rays = picture.rays;
     let rays_per_s = rays.total() as f64 / times.render;
     let skipped: Vec<_> = picture.skipped.iter().chain(&statistics.skipped).collect();
-    let mut text = String::new();
-    if arguments.common.prints() {
-        writeln!(
-            text,
-            "{}: {}x{}, {} samples a pixel, {}",
-            arguments.output.display(),
-            settings.film.width,
-            settings.film.height,
-            settings.spp,
-            integrator_name(settings.integrator)
-        )?;
-        writeln!(
-            text,
-            "cylinders: {} unique, {} in {} instances",
-            statistics.cylinders_unique, statistics.cylinders_instanced, statistics.instances
-        )?;
-        writeln!(
-            text,
-            "memory: {} of records, {} in Embree {} ({})",
-            memory::readable(statistics.records_bytes as u64),
-            memory::readable(statistics.embree_bytes as u64),
-            statistics.embree_version,
-            statistics.isa
-        )?;
-        writeln!(
-            text,
-            "time: load {:.2} s, build {:.2} s, render {:.2} s on {threads} threads",
-            times.load, times.build, times.render
-        )?;
-        writeln!(
-            text,
-            "rays: {}, {:.2} million a second",
-            rays.total(),
-            rays_per_s / 1e6
-        )?;
-        for reason in &skipped {
-            writeln!(text, "skipped: {reason}")?;
-        }
-    }
     json::write(
         &arguments.common,
         &json!({
@@ -151,10 +117,42 @@ fn report(
             "instances": json::count(statistics.instances),
             "memory": json::memory(statistics),
             "skipped": skipped,
+            "skipped_rows": skipped_rows,
             "embree": statistics.embree_version,
             "isa": statistics.isa,
             "threads": threads,
         }),
     )?;
+    if !arguments.common.prints() {
+        return Ok(());
+    }
+    let mut text = format!(
+        "{}: {}x{}, {} samples a pixel, {}\n{}\n",
+        arguments.output.display(),
+        settings.film.width,
+        settings.film.height,
+        settings.spp,
+        integrator_name(settings.integrator),
+        text::cylinders(statistics),
+    );
+    text += &format!(
+        "memory: {} of records, {} in Embree {} ({})\n",
+        memory::readable(statistics.records_bytes as u64),
+        memory::readable(statistics.embree_bytes as u64),
+        statistics.embree_version,
+        statistics.isa
+    );
+    text += &format!(
+        "time: load {:.2} s, build {:.2} s, render {:.2} s on {threads} threads\n",
+        times.load, times.build, times.render
+    );
+    text += &format!(
+        "rays: {}, {:.2} million a second\n",
+        rays.total(),
+        rays_per_s / 1e6
+    );
+    for reason in &skipped {
+        text += &format!("skipped: {reason}\n");
+    }
     print(&text)
 }

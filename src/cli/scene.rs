@@ -4,17 +4,23 @@ use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::anyhow;
-use cyltrace::scene::Scene;
+use cyltrace::scene::{Scene, SceneFile};
 use cyltrace::tracer::{Options, Tracer};
+use rayon::ThreadPool;
 
 use super::arguments::Common;
 use super::progress;
 
-/// Loads a scene file.
-pub fn load(common: &Common, path: &Path) -> anyhow::Result<Scene> {
-    let spinner = progress::spinner(common, "loading the scene");
+/// Reads a scene file, but not yet the files that it names.
+pub fn read(path: &Path) -> anyhow::Result<SceneFile> {
     // The error's text is the whole message; its source would repeat a part.
-    let scene = cyltrace::scene::load(path).map_err(|error| anyhow!("{error}"));
+    SceneFile::read(path).map_err(|error| anyhow!("{error}"))
+}
+
+/// Loads what a scene file names, and checks everything.
+pub fn load(common: &Common, file: SceneFile) -> anyhow::Result<Scene> {
+    let spinner = progress::spinner(common, "loading the scene");
+    let scene = file.load().map_err(|error| anyhow!("{error}"));
     spinner.finish_and_clear();
     scene
 }
@@ -29,4 +35,13 @@ pub fn build(common: &Common, scene: &Arc<Scene>) -> anyhow::Result<Tracer> {
     let tracer = Tracer::new(Arc::clone(scene), &options);
     spinner.finish_and_clear();
     Ok(tracer?)
+}
+
+/// The threads that trace.
+pub fn workers(common: &Common) -> anyhow::Result<ThreadPool> {
+    // The error's source has the same text as the error.
+    cyltrace::render::workers(common.threads).map_err(|error| match common.threads {
+        Some(threads) => anyhow!("cannot start {threads} threads: {error}; try fewer"),
+        None => anyhow!("cannot start threads: {error}"),
+    })
 }

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use cyltrace::render::{FileError, NewFile};
 
+use super::print::StandardOutputError;
+
 /// Standard output, or a new file.
 pub enum Target {
     StandardOutput(BufWriter<Stdout>),
@@ -14,7 +16,7 @@ pub enum Target {
 impl Target {
     /// Says before any work whether `path` could be written.
     pub fn check(path: &Path) -> Result<(), FileError> {
-        if is_standard_output(path) {
+        if is_standard_stream(path) {
             return Ok(());
         }
         NewFile::check(path)
@@ -22,16 +24,26 @@ impl Target {
 
     /// Opens `path`; `-` is standard output.
     pub fn create(path: &Path) -> Result<Self, FileError> {
-        if is_standard_output(path) {
+        if is_standard_stream(path) {
             return Ok(Self::StandardOutput(BufWriter::new(io::stdout())));
         }
         NewFile::create(path).map(Self::File)
     }
 
+    /// Whether what has been written so far can be seen before the end.
+    pub fn shows_parts(&self) -> bool {
+        match self {
+            Self::StandardOutput(_) => true,
+            Self::File(file) => !file.is_replacing(),
+        }
+    }
+
     /// Writes what is buffered and moves the file to its place.
     pub fn finish(self) -> anyhow::Result<()> {
         match self {
-            Self::StandardOutput(mut writer) => Ok(writer.flush()?),
+            Self::StandardOutput(mut writer) => {
+                Ok(writer.flush().map_err(|e| StandardOutputError::of(&e))?)
+            }
             Self::File(file) => Ok(file.finish()?),
         }
     }
@@ -40,20 +52,25 @@ impl Target {
 impl Write for Target {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
-            Self::StandardOutput(writer) => writer.write(bytes),
+            Self::StandardOutput(writer) => writer
+                .write(bytes)
+                .map_err(|error| StandardOutputError::of(&error)),
             Self::File(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match self {
-            Self::StandardOutput(writer) => writer.flush(),
+            Self::StandardOutput(writer) => writer
+                .flush()
+                .map_err(|error| StandardOutputError::of(&error)),
             Self::File(file) => file.flush(),
         }
     }
 }
 
-/// Whether a file's name stands for standard output.
-pub fn is_standard_output(path: &Path) -> bool {
+/// Whether a file's name stands for standard output, or for standard input
+/// where a file is read.
+pub fn is_standard_stream(path: &Path) -> bool {
     path.as_os_str() == "-"
 }

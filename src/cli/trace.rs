@@ -3,22 +3,22 @@
 //! Rays are read, traced and written in batches of a few blocks a thread, so
 //! that a table of any length needs little memory and rows stay in order.
 
-use std::fmt::Write as _;
-use std::io::Write as _;
+use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use anyhow::Context;
 use cyltrace::math::Ray;
 use cyltrace::tracer::{DEFAULT_BATCH, Hit, Tracer};
 use rayon::prelude::*;
 use serde_json::json;
 
 use super::arguments::TraceArguments;
+use super::interrupt::Interrupted;
+use super::outputs::Files;
 use super::ray_table::{Block, RayTable};
-use super::target::{Target, is_standard_output};
-use super::{hit_table, interrupt, json, print, progress, scene};
+use super::target::{Target, is_standard_stream};
+use super::{hit_table, interrupt, json, print, progress, ray_table, scene, text};
 
 /// Blocks that a thread gets of each batch: enough to even out slow ones.
 const BLOCKS_PER_THREAD: usize = 4;
@@ -36,16 +36,26 @@ struct Totals {
 /// Traces the rays of a table.
 pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
+    let files = Files::new(&arguments.scene, common.json.as_deref())
+        .input("the table of rays", &arguments.rays)
+        .output("-o", &arguments.output);
+    files.check()?;
     Target::check(&arguments.output)?;
-    json::check(common, Some(&arguments.output))?;
+    json::check(common)?;
     interrupt::install()?;
-    let workers = cyltrace::render::workers(common.threads).context("cannot start threads")?;
+    let workers = scene::workers(common)?;
     let threads = workers.current_num_threads();
+
+    let start = Instant::now();
+    let file = scene::read(&arguments.scene)?;
+    files.check_with(&file)?;
+    let read = start.elapsed();
 
     // A bad row is to be found before anything is traced or written. A pipe
     // can be read once only; its rows are checked on the way.
     let start = Instant::now();
-    let rereadable = arguments.rays.metadata().is_ok_and(|file| file.is_file());
+    let rereadable = !is_standard_stream(&arguments.rays)
+        && arguments.rays.metadata().is_ok_and(|file| file.is_file());
     let rays = if rereadable {
         Some(workers.install(|| count_rays(&arguments.rays))?)
     } else {
@@ -54,8 +64,8 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     let check = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
-    let scene = Arc::new(scene::load(common, &arguments.scene)?);
-    let load = start.elapsed().as_secs_f64();
+    let scene = Arc::new(scene::load(common, file)?);
+    let load = (read + start.elapsed()).as_secs_f64();
     let start = Instant::now();
     let tracer = scene::build(common, &scene)?;
     let build = start.elapsed().as_secs_f64();
@@ -66,40 +76,30 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     let start = Instant::now();
     target.write_all(hit_table::HEADER.as_bytes())?;
     let mut totals = Totals::default();
-    workers.install(|| {
+    let traced = workers.install(|| {
         for_each_batch(&arguments.rays, |blocks| {
             let before = totals.rays;
             trace_batch(&tracer, arguments.all, &blocks, &mut totals, &mut target)?;
             bar.inc(totals.rays - before);
             Ok(())
         })
+    });
+    traced.map_err(|error| match error.downcast_ref::<Interrupted>() {
+        Some(_) if target.shows_parts() => Interrupted::PartWritten.into(),
+        _ => error,
     })?;
     target.finish()?;
     let trace = start.elapsed().as_secs_f64();
     bar.finish_and_clear();
 
     let statistics = tracer.statistics();
+    let skipped_rows = tracer.scene().skipped_rows;
     let Totals {
         rays,
         hit_rays,
         hits,
     } = totals;
     let rays_per_s = rays as f64 / trace;
-    let mut text = String::new();
-    if common.prints() && !is_standard_output(&arguments.output) {
-        let output = arguments.output.display();
-        let more = if arguments.all {
-            format!(", {hits} hits")
-        } else {
-            String::new()
-        };
-        writeln!(text, "{output}: {hit_rays} of {rays} rays hit{more}")?;
-        writeln!(
-            text,
-            "time: check {check:.2} s, load {load:.2} s, build {build:.2} s, trace {trace:.2} s on {threads} threads ({:.2} million rays a second, tables included)",
-            rays_per_s / 1e6
-        )?;
-    }
     json::write(
         common,
         &json!({
@@ -118,11 +118,29 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
             "instances": json::count(statistics.instances),
             "memory": json::memory(statistics),
             "skipped": statistics.skipped,
+            "skipped_rows": skipped_rows,
             "embree": statistics.embree_version,
             "isa": statistics.isa,
             "threads": threads,
         }),
     )?;
+    if !common.prints() || is_standard_stream(&arguments.output) {
+        return Ok(());
+    }
+    let more = if arguments.all {
+        format!(", {hits} hits")
+    } else {
+        String::new()
+    };
+    let mut text = format!(
+        "{}: {hit_rays} of {rays} rays hit{more}\n",
+        arguments.output.display()
+    );
+    text += &text::skipped_rows(skipped_rows);
+    text += &format!(
+        "time: check {check:.2} s, load {load:.2} s, build {build:.2} s, trace {trace:.2} s on {threads} threads ({:.2} million rays a second, tables included)\n",
+        rays_per_s / 1e6
+    );
     print(&text)
 }
 
@@ -156,7 +174,8 @@ fn for_each_batch(
         if blocks.is_empty() {
             return Ok(());
         }
-        let parse = |block: &Block| RayTable::rays(path, &columns, block);
+        let name = ray_table::name(path);
+        let parse = |block: &Block| RayTable::rays(&name, &columns, block);
         // Collected first, then searched for an error, so that the first bad
         // row is the one that is reported.
         let parsed: Vec<_> = blocks.par_iter().map(parse).collect();

@@ -19,6 +19,7 @@ use std::sync::atomic::AtomicBool;
 
 use rayon::ThreadPool;
 
+pub use crate::scene::GREATEST_PIXELS;
 pub use camera::Camera;
 pub use film::Film;
 pub use integrator::RayCounts;
@@ -32,10 +33,6 @@ pub use workers::workers;
 use crate::scene::{self, Integrator, Scene};
 use crate::tracer::Tracer;
 use integrator::View;
-
-/// Most pixels of a picture, 2^28 (16384 x 16384): its film takes 3 GiB, and
-/// twice that while tiles are put together.
-pub const GREATEST_PIXELS: u64 = 1 << 28;
 
 /// What to render, where the scene leaves a choice.
 #[derive(Clone, Debug, PartialEq, Eq)]

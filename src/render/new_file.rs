@@ -28,6 +28,24 @@ pub enum FileError {
         /// The file as asked for.
         path: PathBuf,
     },
+    /// No file can be created in the directory.
+    #[error(
+        "cannot write {path:?}: no file can be created in the directory {directory:?}: {reason}"
+    )]
+    Directory {
+        /// The file as asked for.
+        path: PathBuf,
+        /// Its directory.
+        directory: PathBuf,
+        /// What the system says.
+        reason: io::ErrorKind,
+    },
+    /// There is a file that must not be written to.
+    #[error("cannot write {path:?}: the file is there already and may not be written to")]
+    WriteProtected {
+        /// The file as asked for.
+        path: PathBuf,
+    },
     /// The system refuses to create, write or rename the file.
     #[error("cannot write {path:?}")]
     System {
@@ -57,7 +75,8 @@ impl NewFile {
     /// told without creating it.
     ///
     /// # Errors
-    /// When the directory does not exist, or `path` is a directory.
+    /// When the directory does not exist, `path` is a directory, or a file
+    /// there may not be written to.
     pub fn check(path: &Path) -> Result<(), FileError> {
         let directory = directory_of(path);
         if !directory.is_dir() {
@@ -68,6 +87,13 @@ impl NewFile {
         }
         if path.is_dir() {
             return Err(FileError::IsDirectory { path: path.into() });
+        }
+        if let Ok(existing) = fs::metadata(path)
+            && existing.is_file()
+            && (existing.permissions().readonly()
+                || fs::OpenOptions::new().write(true).open(path).is_err())
+        {
+            return Err(FileError::WriteProtected { path: path.into() });
         }
         Ok(())
     }
@@ -84,17 +110,40 @@ impl NewFile {
             path: path.into(),
             source,
         };
-        let is_device = fs::metadata(path).is_ok_and(|existing| !existing.is_file());
-        let path = fs::canonicalize(path).unwrap_or_else(|_| path.into());
+        let existing = fs::metadata(path).ok();
+        let is_device = existing.as_ref().is_some_and(|file| !file.is_file());
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.into());
         let sink = if is_device {
-            Sink::Device(File::create(&path).map_err(system)?)
+            Sink::Device(File::create(&target).map_err(system)?)
         } else {
-            Sink::Temporary(temporary_in(directory_of(&path)).map_err(system)?)
+            let directory = directory_of(&target);
+            // The system's own text would name the temporary file.
+            let temporary = temporary_in(directory).map_err(|error| FileError::Directory {
+                path: path.into(),
+                directory: directory.into(),
+                reason: error.kind(),
+            })?;
+            if let Some(existing) = existing {
+                let permissions = existing.permissions();
+                temporary
+                    .as_file()
+                    .set_permissions(permissions)
+                    .map_err(system)?;
+            }
+            Sink::Temporary(temporary)
         };
+        let path = target;
         Ok(Self {
             path,
             writer: BufWriter::with_capacity(1 << 16, sink),
         })
+    }
+
+    /// Whether nothing shows before [`NewFile::finish`]: not so for devices and
+    /// pipes.
+    #[must_use]
+    pub fn is_replacing(&self) -> bool {
+        matches!(self.writer.get_ref(), Sink::Temporary(_))
     }
 
     /// Writes what is buffered and moves the file to its place.
@@ -206,6 +255,56 @@ mod tests {
         file.finish().expect("finished");
         assert_eq!(names_in(directory.path()), std::slice::from_ref(&path));
         assert_eq!(fs::read(&path).expect("read"), b"new");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn new_file_keeps_the_permissions_of_the_old_one() {
+        use std::os::unix::fs::PermissionsExt;
+        let directory = tempfile::tempdir().expect("directory");
+        let mode_of = |path: &Path| fs::metadata(path).expect("there").permissions().mode() & 0o777;
+        let replace = |path: &Path| NewFile::create(path).and_then(NewFile::finish);
+
+        let old = directory.path().join("old");
+        for mode in [0o600, 0o640, 0o664, 0o755, 0o200] {
+            fs::write(&old, "old").expect("written");
+            fs::set_permissions(&old, fs::Permissions::from_mode(mode)).expect("set");
+            replace(&old).expect("replaced");
+            assert_eq!(mode_of(&old), mode, "{mode:o}");
+        }
+        let (ours, plain) = (
+            directory.path().join("ours"),
+            directory.path().join("plain"),
+        );
+        replace(&ours).expect("created");
+        fs::write(&plain, "").expect("written");
+        assert_eq!(mode_of(&ours), mode_of(&plain), "not the umask's");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn new_file_over_a_protected_one_refused_and_old_file_kept() {
+        use std::os::unix::fs::PermissionsExt;
+        let directory = tempfile::tempdir().expect("directory");
+        let path = directory.path().join("old");
+        fs::write(&path, "old").expect("written");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).expect("set");
+        let message = NewFile::create(&path).expect_err("protected").to_string();
+        assert!(message.contains("may not be written to"), "{message}");
+        assert_eq!(names_in(directory.path()), std::slice::from_ref(&path));
+        assert_eq!(fs::read(&path).expect("read"), b"old");
+    }
+
+    /// Nobody creates files in /proc, not even the superuser.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn new_file_in_a_protected_directory_refused_without_internal_names() {
+        let message = NewFile::create(Path::new("/proc/new.csv"))
+            .expect_err("not for us")
+            .to_string();
+        assert!(message.contains("in the directory \"/proc\""), "{message}");
+        assert!(message.contains("/proc/new.csv"), "{message}");
+        assert!(!message.contains(".cyltrace-"), "{message}");
     }
 
     #[cfg(unix)]

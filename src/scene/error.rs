@@ -18,6 +18,18 @@ pub enum SceneError {
         /// What the operating system says.
         source: io::Error,
     },
+    /// A file of another kind stands where a scene file is needed.
+    #[error("{}: this is {what}; a scene is a TOML file{purpose}, such as:\n\n{example}", path.display())]
+    NotAScene {
+        /// The file.
+        path: PathBuf,
+        /// What it is.
+        what: &'static str,
+        /// What the scene file would do with it.
+        purpose: &'static str,
+        /// The lines of such a file.
+        example: String,
+    },
     /// A file is not text in UTF-8.
     #[error("{}", encoding(path, *line, *column, *utf16))]
     Encoding {
@@ -34,7 +46,7 @@ pub enum SceneError {
     #[error(transparent)]
     Statement(Box<Statement>),
     /// Something in a row of a table, or in its header, is wrong.
-    #[error("{}: line {line}{}: {message}{}", path.display(), column_text(column.as_deref()), help_text(help.as_deref()))]
+    #[error("{}:{line}:{} {message}{}", path.display(), column_text(column.as_deref()), help_text(help.as_deref()))]
     Row {
         /// The table.
         path: PathBuf,
@@ -77,20 +89,19 @@ impl std::error::Error for Statement {}
 
 impl fmt::Display for Statement {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        let path = self.path.display().to_string();
+        let (line, column) = (self.line, self.column);
+        let message = format!("{}:{line}:{column}: {}", self.path.display(), self.message);
         let Some(excerpt) = &self.excerpt else {
-            let (line, column) = (self.line, self.column);
-            write!(formatter, "{}\n --> {path}:{line}:{column}", self.message)?;
+            formatter.write_str(&message)?;
             return match &self.help {
                 Some(help) => write!(formatter, "\n = help: {help}"),
                 None => Ok(()),
             };
         };
         let snippet = Snippet::source(excerpt.text.as_str())
-            .path(path)
             .line_start(self.line)
             .annotation(AnnotationKind::Primary.span(excerpt.wrong.clone()));
-        let title = Level::ERROR.no_name().primary_title(self.message.as_str());
+        let title = Level::ERROR.no_name().primary_title(message.as_str());
         let mut group = Group::with_title(title).element(snippet);
         if let Some(help) = &self.help {
             group = group.element(Level::HELP.message(help.as_str()));
@@ -113,7 +124,7 @@ fn unreadable(path: &std::path::Path, source: &io::Error) -> String {
 fn encoding(path: &std::path::Path, line: u64, column: Option<usize>, utf16: bool) -> String {
     let place = match column {
         Some(column) => format!("{}:{line}:{column}", path.display()),
-        None => format!("{}: line {line}", path.display()),
+        None => format!("{}:{line}", path.display()),
     };
     let now = if utf16 { ", it looks like UTF-16" } else { "" };
     format!("{place}: the text is not UTF-8{now}; save the file as UTF-8")
@@ -121,7 +132,7 @@ fn encoding(path: &std::path::Path, line: u64, column: Option<usize>, utf16: boo
 
 fn column_text(column: Option<&str>) -> String {
     column.map_or(String::new(), |name| {
-        format!(", column {}", super::names::quoted(name))
+        format!(" column {}:", super::names::quoted(name))
     })
 }
 

@@ -16,6 +16,18 @@ pub(super) struct Node<'a> {
     pub edges: &'a [Edge],
     /// At least the size of every coordinate of its own solids.
     pub reach: f64,
+    /// Rows of its tables that were left out.
+    pub skipped: u64,
+}
+
+impl Node<'_> {
+    /// Why it holds no solids, where rows were left out; all of them then.
+    fn emptied(&self) -> String {
+        match self.skipped {
+            0 => String::new(),
+            rows => format!(" (all {rows} rows were skipped as degenerate)"),
+        }
+    }
 }
 
 /// What a prototype and all that is placed in it come to.
@@ -41,7 +53,10 @@ pub(super) fn check(source: &Source, nodes: &[Node]) -> Result<(), SceneError> {
     if summaries.first().is_none_or(|root| !root.has_solids) {
         return Err(source.error_with_help(
             0..0,
-            "the scene is empty: it holds no solids",
+            format!(
+                "the scene is empty: it holds no solids{}",
+                nodes.first().map_or_else(String::new, Node::emptied)
+            ),
             "add a [[cylinder]], a [[cylinder_table]] or an [[swc]], or place a prototype with an [[instance]]",
         ));
     }
@@ -69,7 +84,8 @@ fn summary(
         let wrong = |message: String| Err(source.error(edge.place.clone(), message));
         if !child.has_solids {
             return wrong(format!(
-                "the prototype {name} holds no solids: there is nothing to place"
+                "the prototype {name} holds no solids{}: there is nothing to place",
+                nodes[of].emptied()
             ));
         }
         total.has_solids = true;

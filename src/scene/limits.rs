@@ -1,4 +1,5 @@
-//! How far placements may go. The tracer's proofs rest on these limits.
+//! How far a scene may go. The tracer's proofs rest on the limits of
+//! placements.
 
 use crate::math::power_of_two;
 
@@ -14,3 +15,7 @@ pub const GREATEST_CONDITION: f64 = power_of_two(27);
 /// The greatest factor by which all placements on a path together may stretch
 /// or shrink, 2^64: beyond it the solvers' products could leave f64.
 pub const GREATEST_STRETCH: f64 = power_of_two(64);
+
+/// Most pixels of a picture, 2^28 (16384 x 16384): its film takes 3 GiB, and
+/// twice that while tiles are put together.
+pub const GREATEST_PIXELS: u64 = 1 << 28;

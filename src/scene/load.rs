@@ -1,13 +1,15 @@
 //! From a scene file to a checked description.
 
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 
 use super::camera::camera;
 use super::description::{Prototype, PrototypeIndex, Scene};
-use super::document::{Body, Document, PrototypeKeys, ScatterKeys};
+use super::document::{
+    Body, CylinderTableKeys, Document, InstanceTableKeys, PrototypeKeys, ScatterKeys, SwcKeys,
+};
 use super::error::SceneError;
 use super::graph::{self, Node};
 use super::names::{quoted, suggestion};
@@ -21,6 +23,103 @@ use super::transform::GREATEST_ENTRY;
 use super::values::{Keys, NumberOrList};
 use crate::solid::Caps;
 
+/// A scene file that has been read; the files that it names have not.
+pub struct SceneFile {
+    source: Source,
+    document: Document,
+}
+
+impl SceneFile {
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    /// When the file cannot be read, is no TOML, or has keys or types other
+    /// than those of `docs/scene-file.md`.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        Self::read_toml(path).map_err(|error| match error {
+            SceneError::Unreadable { .. } => error,
+            other => other_kind(path).unwrap_or(other),
+        })
+    }
+
+    fn read_toml(path: &Path) -> Result<Self, SceneError> {
+        let source = Source::read(path)?;
+        let document = toml::from_str(source.text()).map_err(|error| source.toml_error(&error))?;
+        Ok(Self { source, document })
+    }
+
+    /// The files that the scene names, whether they exist or not.
+    #[must_use]
+    pub fn files(&self) -> Vec<PathBuf> {
+        let document = &self.document;
+        let mut names = Vec::new();
+        let mut add = |tables: &[Keys<CylinderTableKeys>],
+                       neurons: &[Keys<SwcKeys>],
+                       placements: &[Keys<InstanceTableKeys>]| {
+            names.extend(tables.iter().map(|Keys(keys)| keys.file.get_ref().clone()));
+            names.extend(neurons.iter().map(|Keys(keys)| keys.file.get_ref().clone()));
+            names.extend(
+                placements
+                    .iter()
+                    .map(|Keys(keys)| keys.file.get_ref().clone()),
+            );
+        };
+        add(
+            &document.cylinder_table,
+            &document.swc,
+            &document.instance_table,
+        );
+        for Keys(keys) in &document.prototype {
+            add(&keys.cylinder_table, &keys.swc, &keys.instance_table);
+        }
+        let paths = names.iter().map(|name| self.source.resolve(name));
+        paths.collect()
+    }
+
+    /// Reads the files that the scene names, and checks everything.
+    ///
+    /// # Errors
+    /// Those of [`load`].
+    pub fn load(self) -> Result<Scene, SceneError> {
+        lower(&self.source, self.document)
+    }
+}
+
+/// That a file which is no scene is data or a picture, as its name says.
+fn other_kind(path: &Path) -> Option<SceneError> {
+    const TO_READ: &str = " that names it";
+    let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+    let file = |fallback: &str| {
+        let name = path.file_name().and_then(|name| name.to_str());
+        toml::Value::from(name.unwrap_or(fallback)).to_string()
+    };
+    let columns = r#"columns = { p0 = ["startX", "startY", "startZ"], p1 = ["endX", "endY", "endZ"], radius = "radius" }"#;
+    let (what, purpose, example) = match extension.as_str() {
+        "csv" | "tsv" => (
+            "a table",
+            TO_READ,
+            format!("[[cylinder_table]]\nfile = {}\n{columns}", file("tree.csv")),
+        ),
+        "swc" => (
+            "a neuron in SWC",
+            TO_READ,
+            format!("[[swc]]\nfile = {}", file("neuron.swc")),
+        ),
+        "png" | "exr" | "jpg" | "jpeg" => (
+            "a picture",
+            "",
+            format!("[[cylinder_table]]\nfile = \"tree.csv\"\n{columns}"),
+        ),
+        _ => return None,
+    };
+    Some(SceneError::NotAScene {
+        path: path.to_owned(),
+        what,
+        purpose,
+        example,
+    })
+}
+
 /// Reads a scene file and the tables it names, and checks everything.
 ///
 /// `docs/scene-file.md` describes the file. Paths in it are relative to its
@@ -31,14 +130,14 @@ use crate::solid::Caps;
 /// The error's text names the file, the line and the value, and says what
 /// would be right.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
-    let source = Source::read(path)?;
-    let document: Document =
-        toml::from_str(source.text()).map_err(|error| source.toml_error(&error))?;
+    SceneFile::read(path)?.load()
+}
 
-    let materials = Materials::new(&source, &document.material)?;
-    let index = prototype_index(&source, &document.prototype)?;
+fn lower(source: &Source, document: Document) -> Result<Scene, SceneError> {
+    let materials = Materials::new(source, &document.material)?;
+    let index = prototype_index(source, &document.prototype)?;
     let loader = Loader {
-        source: &source,
+        source,
         materials: &materials,
         prototypes: &index,
     };
@@ -55,20 +154,20 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         bodies.push(loader.prototype(keys)?);
     }
     let nodes: Vec<Node> = bodies.iter().map(Lowered::node).collect();
-    graph::check(&source, &nodes)?;
+    graph::check(source, &nodes)?;
 
     let sun = document.sun.map(|Keys(keys)| keys);
     let sky = document.sky.map(|Keys(keys)| keys);
     let lights = lights(
-        &source,
+        source,
         sun.as_ref(),
         sky.as_ref(),
         document.background.as_ref(),
     )?;
     Ok(Scene {
-        camera: camera(&source, &keys(document.camera))?,
-        film: film(&source, &keys(document.film))?,
-        render: render(&source, &keys(document.render))?,
+        camera: camera(source, &keys(document.camera))?,
+        film: film(source, &keys(document.film))?,
+        render: render(source, &keys(document.render))?,
         sun: lights.sun,
         sky: lights.sky,
         background: lights.background,
@@ -120,6 +219,7 @@ impl Lowered {
             prototype: &self.prototype,
             edges: &self.edges,
             reach: self.reach,
+            skipped: self.skipped,
         }
     }
 }

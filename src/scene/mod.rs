@@ -23,6 +23,7 @@ mod solids;
 mod source;
 mod swc;
 mod table;
+mod toml_message;
 mod transform;
 mod values;
 
@@ -32,5 +33,5 @@ pub use description::{
     Projection, Prototype, PrototypeIndex, RenderSettings, Scene, Sky, Sun,
 };
 pub use error::{SceneError, Statement};
-pub use limits::{GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_STRETCH};
-pub use load::load;
+pub use limits::{GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_PIXELS, GREATEST_STRETCH};
+pub use load::{SceneFile, load};

@@ -8,12 +8,13 @@ use toml::Spanned;
 use super::description::{Film, Integrator, Material, MaterialIndex, RenderSettings, Sky, Sun};
 use super::document::{FilmKeys, MaterialKeys, RenderKeys, SkyKeys, SunKeys, Triple};
 use super::error::SceneError;
+use super::limits::GREATEST_PIXELS;
 use super::names::{quoted, suggestion};
 use super::source::Source;
 use super::transform::{sin_cos_degrees, unit};
 use super::values::{Keys, Number, Whole};
 
-/// Most pixels across and down: more would be 51 GB of film.
+/// Most pixels across and down.
 const GREATEST_SIDE: u32 = 65_536;
 /// The reflectance of solids that name no material.
 const DEFAULT_REFLECTANCE: f64 = 0.5;
@@ -97,10 +98,18 @@ fn sun(source: &Source, keys: &SunKeys) -> Result<Sun, SceneError> {
 /// The picture's size.
 pub(super) fn film(source: &Source, keys: &FilmKeys) -> Result<Film, SceneError> {
     let side = |name, key| count(source, name, key, GREATEST_SIDE);
-    Ok(Film {
-        width: side("width", keys.width.as_ref())?.unwrap_or(1280),
-        height: side("height", keys.height.as_ref())?.unwrap_or(720),
-    })
+    let width = side("width", keys.width.as_ref())?.unwrap_or(1280);
+    let height = side("height", keys.height.as_ref())?.unwrap_or(720);
+    let key = keys.width.as_ref().or(keys.height.as_ref());
+    if let Some(key) = key
+        && u64::from(width) * u64::from(height) > GREATEST_PIXELS
+    {
+        return Err(source.error(
+            key.span(),
+            format!("the film is {width} x {height}: a picture has at most {GREATEST_PIXELS} pixels (2^28)"),
+        ));
+    }
+    Ok(Film { width, height })
 }
 
 /// What `render` computes.

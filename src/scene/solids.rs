@@ -174,7 +174,8 @@ impl Layout {
         let (radius, factor) = match (&names.radius, &names.diameter) {
             (Some(radius), None) => (radius, 1.0),
             (None, Some(diameter)) => (diameter, 0.5),
-            _ => return wrong("columns must name either radius or diameter"),
+            (Some(_), Some(_)) => return wrong("columns must name radius or diameter, not both"),
+            (None, None) => return wrong("columns must name either radius or diameter"),
         };
         Ok(Self {
             p0,

@@ -8,14 +8,11 @@ use toml::Spanned;
 
 use super::error::{Excerpt, SceneError, Statement};
 use super::names::{quoted, suggestion};
+use super::toml_message;
 
 /// Longest line that an error shows, in bytes; of a longer one, only the
 /// place is given.
 const LONGEST_SHOWN_LINE: usize = 400;
-/// Most characters of a message of the TOML parser that are passed on, from
-/// its beginning and from its end: it repeats the user's keys and values,
-/// however long.
-const LONGEST_MESSAGE_PART: usize = 300;
 
 /// A scene file that has been read.
 pub(super) struct Source {
@@ -81,11 +78,11 @@ impl Source {
 
     /// What the TOML parser or a value's type complains about.
     pub fn toml_error(&self, error: &toml::de::Error) -> SceneError {
-        let mut lines = error.message().lines();
-        let first = lines.next().unwrap_or_default().to_owned();
-        let rest: Vec<&str> = lines.collect();
-        let message = [vec![first.as_str()], rest].concat().join(", ");
-        self.statement(error.span().unwrap_or(0..0), without_middle(&message), None)
+        let place = error.span().unwrap_or(0..0);
+        let (_, _, line_start) = locate(&self.text, place.start.min(self.text.len()));
+        let line = self.text[line_start..].lines().next().unwrap_or_default();
+        let (message, help) = toml_message::explain(error.message(), line);
+        self.statement(place, message, help)
     }
 
     /// That a file which the scene names cannot be opened.
@@ -153,16 +150,4 @@ fn locate(text: &str, byte: usize) -> (usize, usize, usize) {
     let line = before.matches('\n').count() + 1;
     let column = before[line_start..].chars().count() + 1;
     (line, column, line_start)
-}
-
-/// Beginning and end of a long message.
-fn without_middle(message: &str) -> String {
-    let beginning = message.char_indices().nth(LONGEST_MESSAGE_PART);
-    let end = message.char_indices().nth_back(LONGEST_MESSAGE_PART);
-    match (beginning, end) {
-        (Some((first, _)), Some((last, _))) if first < last => {
-            format!("{}[...]{}", &message[..first], &message[last..])
-        }
-        _ => message.to_owned(),
-    }
 }

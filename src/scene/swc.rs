@@ -48,11 +48,12 @@ pub(super) fn add_swc(
         .samples()
         .map_err(|error| source.unreadable(&keys.file, error))?;
     let index = file.index(&samples)?;
-    for sample in &samples {
-        if sample.parent == NO_PARENT {
+    let parents = file.parents(&samples, &index)?;
+    file.check_cycles(&samples, &parents)?;
+    for (sample, parent) in samples.iter().zip(&parents) {
+        let Some(parent) = parent.map(|place| &samples[place]) else {
             continue;
-        }
-        let parent = file.parent(&samples, &index, sample)?;
+        };
         match Cylinder::new(parent.point, sample.point, sample.radius, look.caps) {
             Ok(cylinder) => solids.push(&cylinder, look.material),
             Err(error) if is_degenerate(&error) && degenerate == Degenerate::Skip => solids.skip(),
@@ -165,20 +166,72 @@ impl SwcFile {
         Ok(index)
     }
 
-    fn parent<'s>(
+    /// Where the parent of each sample stands in the list of samples.
+    fn parents(
         &self,
-        samples: &'s [Sample],
+        samples: &[Sample],
         index: &HashMap<i64, usize>,
-        sample: &Sample,
-    ) -> Result<&'s Sample, SceneError> {
-        let message = match index.get(&sample.parent) {
-            Some(_) if sample.parent == sample.id => "the sample is its own parent".to_owned(),
-            Some(&place) => return Ok(&samples[place]),
-            None => format!(
-                "there is no sample {}: the parent must be the id of a sample, or -1 for none",
-                sample.parent
-            ),
+    ) -> Result<Vec<Option<usize>>, SceneError> {
+        let parent = |sample: &Sample| {
+            let message = match index.get(&sample.parent) {
+                _ if sample.parent == NO_PARENT => return Ok(None),
+                Some(_) if sample.parent == sample.id => "the sample is its own parent".to_owned(),
+                Some(&place) => return Ok(Some(place)),
+                None => format!(
+                    "there is no sample {}: the parent must be the id of a sample, or -1 for none",
+                    sample.parent
+                ),
+            };
+            Err(self.error(sample.line, Some("parent"), message, None))
         };
-        Err(self.error(sample.line, Some("parent"), message, None))
+        samples.iter().map(parent).collect()
+    }
+
+    /// That no sample descends from itself.
+    fn check_cycles(
+        &self,
+        samples: &[Sample],
+        parents: &[Option<usize>],
+    ) -> Result<(), SceneError> {
+        // For each sample the start of the walk that came by first.
+        let mut seen = vec![usize::MAX; samples.len()];
+        for start in 0..samples.len() {
+            let mut place = start;
+            while seen[place] == usize::MAX {
+                seen[place] = start;
+                match parents[place] {
+                    Some(parent) => place = parent,
+                    None => break,
+                }
+            }
+            // The walk met its own trail, rather than an end or an older one.
+            if seen[place] == start && parents[place].is_some() {
+                return Err(self.cycle(samples, parents, place));
+            }
+        }
+        Ok(())
+    }
+
+    /// That the sample at `place` descends from itself. The error is about
+    /// the first sample of the cycle in the file.
+    fn cycle(&self, samples: &[Sample], parents: &[Option<usize>], place: usize) -> SceneError {
+        const MOST_SHOWN: usize = 12;
+        let mut round = vec![place];
+        round.extend(
+            std::iter::successors(parents[place], |&at| parents[at]).take_while(|&at| at != place),
+        );
+        let first = (0..round.len()).min_by_key(|&at| round[at]).unwrap_or(0);
+        round.rotate_left(first);
+        let id = |at: usize| samples[at].id.to_string();
+        let mut ids: Vec<String> = round.iter().take(MOST_SHOWN).map(|&at| id(at)).collect();
+        if round.len() > MOST_SHOWN {
+            ids.push(format!("({} more)", round.len() - MOST_SHOWN));
+        }
+        ids.push(id(round[0]));
+        let message = format!(
+            "the parents form a cycle: {}; a neuron is a tree, a sample must not descend from itself",
+            ids.join(" -> ")
+        );
+        self.error(samples[round[0]].line, Some("parent"), message, None)
     }
 }

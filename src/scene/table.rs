@@ -352,7 +352,7 @@ mod tests {
                 let message = column_sum(&text, "x")
                     .expect_err("bad is no number")
                     .to_string();
-                let place = format!("line {line}, column \"x\": \"bad\" is not a number");
+                let place = format!(":{line}: column \"x\": \"bad\" is not a number");
                 assert!(message.contains(&place), "{text:?}: {message}");
             }
         }

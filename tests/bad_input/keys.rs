@@ -16,20 +16,20 @@ pub fn cases() -> Vec<Case> {
             "colour = [1, 1, 1]\n",
             &[
                 "scene.toml:5:1",
-                "unknown field `colour`",
-                "`material`",
+                "unknown key \"colour\"",
+                "\"material\"",
                 "5 | colour",
             ],
         ),
         with_solid(
             "table_unknown",
             "[lamp]\nstrength = 3\n",
-            &["scene.toml:5:2", "unknown field `lamp`", "`sun`"],
+            &["scene.toml:5:2", "unknown key \"lamp\"", "\"sun\""],
         ),
         with_solid(
             "key_unknown_in_columns",
             "[[cylinder_table]]\nfile = \"t.csv\"\ncolumns = { p0 = [\"a\", \"b\", \"c\"], end = [\"a\", \"b\", \"c\"] }\n",
-            &["scene.toml:7:35", "unknown field `end`", "`p1`"],
+            &["scene.toml:7:35", "unknown key \"end\"", "\"p1\""],
         ),
         Case::new(
             "key_missing_in_a_cylinder",
@@ -44,7 +44,11 @@ pub fn cases() -> Vec<Case> {
         Case::new(
             "cylinder_stated_as_one_table",
             "[cylinder]\np0 = [0, 0, 0]\np1 = [0, 0, 1]\nradius = 1\n",
-            &["scene.toml:1:1", "invalid type: map, expected a sequence"],
+            &[
+                "scene.toml:1:1",
+                "[cylinder] is one table",
+                "write [[cylinder]]",
+            ],
         ),
         with_solid(
             "film_stated_as_an_array",
@@ -52,6 +56,55 @@ pub fn cases() -> Vec<Case> {
             &["scene.toml:1:8", "expected a table of keys"],
         )
         .preceded_by("film = [1280, 720]\n"),
+        with_solid(
+            "instance_stated_as_inline_table",
+            "",
+            &["scene.toml:1:12", "write [[instance]]"],
+        )
+        .preceded_by("instance = { of = \"a\" }\n"),
+        with_solid(
+            "prototype_cylinder_stated_as_one_table",
+            "[[prototype]]\nname = \"a\"\n[prototype.cylinder]\nradius = 1\n",
+            &["scene.toml:7:1", "write [[prototype.cylinder]]"],
+        ),
+        Case::new(
+            "cylinder_stated_as_one_table_twice",
+            "[cylinder]\nradius = 1\n[cylinder]\nradius = 1\n",
+            &["scene.toml:3:", "write [[cylinder]]"],
+        ),
+        with_solid(
+            "camera_stated_as_a_list",
+            "[[camera]]\nframe = \"auto\"\n",
+            &["scene.toml:5:1", "there is only one", "write [camera]"],
+        ),
+        with_solid(
+            "background_behind_a_table",
+            "[film]\nwidth = 9\nbackground = [0, 0, 0]\n",
+            &[
+                "scene.toml:7:1",
+                "unknown key \"background\"",
+                "top-level keys go before the first [table]",
+            ],
+        ),
+        Case::new(
+            "key_misspelt",
+            "[[cylinder]]\nraduis = 1\n",
+            &[
+                "scene.toml:2:1",
+                "unknown key \"raduis\"",
+                "did you mean \"radius\"?",
+            ],
+        ),
+        with_solid(
+            "table_misspelt",
+            "[[cylinders]]\nradius = 1\n",
+            &["scene.toml:5:3", "did you mean \"cylinder\"?"],
+        ),
+        with_solid(
+            "film_of_too_many_pixels",
+            "[film]\nwidth = 32768\nheight = 16384\n",
+            &["scene.toml:6:9", "32768 x 16384", "268435456"],
+        ),
         Case::new(
             "radius_that_is_text",
             "[[cylinder]]\np0 = [0, 0, 0]\np1 = [0, 0, 1]\nradius = \"1\"\n",

@@ -153,6 +153,40 @@ fn load_of_no_file_and_of_a_folder_says_so() {
 }
 
 #[test]
+fn load_of_data_or_a_picture_shows_the_scene_that_it_needs() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for (name, content, expected) in [
+        (
+            "tree.csv",
+            &b"a,b\n1,2\n"[..],
+            ["this is a table", "file = \"tree.csv\""],
+        ),
+        (
+            "n.SWC",
+            b"1 1 0 0 0 1 -1\n",
+            ["this is a neuron", "[[swc]]\nfile = \"n.SWC\""],
+        ),
+        (
+            "p.png",
+            b"\x89PNG\r\n\x1a\n",
+            ["this is a picture", "[[cylinder_table]]\nfile"],
+        ),
+    ] {
+        let path = folder.path().join(name);
+        fs::write(&path, content).expect("written");
+        let text = refusal(name, &path);
+        for fragment in expected.into_iter().chain(["a scene is a TOML file"]) {
+            assert!(
+                text.contains(fragment),
+                "{name}: {fragment:?} not in {text}"
+            );
+        }
+    }
+    let missing = refusal("missing", &folder.path().join("missing.csv"));
+    assert!(missing.contains("there is no such file"), "{missing}");
+}
+
+#[test]
 fn render_of_every_broken_scene_exits_with_2_and_leaves_no_picture() {
     let mut problems = Vec::new();
     for case in &cases() {

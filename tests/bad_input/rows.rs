@@ -95,38 +95,38 @@ pub fn cases() -> Vec<Case> {
         points(
             "cell_that_is_text",
             "0,0,0,0,0,1,thick",
-            &["tree.csv: line 5, column \"radius\": \"thick\" is not a number"],
+            &["tree.csv:5: column \"radius\": \"thick\" is not a number"],
         ),
         points(
             "cell_that_is_empty",
             "0,,0,0,0,1,1",
-            &["tree.csv: line 5, column \"b\": the cell is empty"],
+            &["tree.csv:5: column \"b\": the cell is empty"],
         ),
         points(
             "cell_nan",
             "# next\n0,0,0,0,0,NaN,1",
-            &["tree.csv: line 6, column \"f\": \"NaN\" is not a finite number"],
+            &["tree.csv:6: column \"f\": \"NaN\" is not a finite number"],
         ),
         points(
             "cell_infinite",
             "0,0,0,-inf,0,1,1",
-            &["tree.csv: line 5, column \"d\": \"-inf\" is not a finite number"],
+            &["tree.csv:5: column \"d\": \"-inf\" is not a finite number"],
         ),
         points(
             "row_too_short",
             "0,0,0,0,0,1",
-            &["tree.csv: line 5: the row has 6 cells, the header has 7"],
+            &["tree.csv:5: the row has 6 cells, the header has 7"],
         ),
         points(
             "row_too_long",
             "0,0,0,0,0,1,1,1",
-            &["tree.csv: line 5: the row has 8 cells, the header has 7"],
+            &["tree.csv:5: the row has 8 cells, the header has 7"],
         ),
         points(
             "row_with_zero_radius",
             "0,0,0,0,0,1,0",
             &[
-                "tree.csv: line 5, column \"radius\": radius is 0",
+                "tree.csv:5: column \"radius\": radius is 0",
                 "degenerate = \"skip\"",
             ],
         ),
@@ -134,7 +134,7 @@ pub fn cases() -> Vec<Case> {
             "row_with_zero_length",
             "0,0,1,0,0,1,1",
             &[
-                "tree.csv: line 5: p0 and p1 are 0.0 apart",
+                "tree.csv:5: p0 and p1 are 0.0 apart",
                 "degenerate = \"skip\"",
             ],
         ),
@@ -142,22 +142,37 @@ pub fn cases() -> Vec<Case> {
             "row_with_negative_radius",
             "0,0,0,0,0,1,-2",
             &[
-                "tree.csv: line 5, column \"radius\": radius is -2",
+                "tree.csv:5: column \"radius\": radius is -2",
                 "must be a positive",
             ],
         ),
         Case::new(
             "row_with_negative_radius_though_skipping",
             format!("{POINTS}degenerate = \"skip\"\n"),
-            &["tree.csv: line 2, column \"radius\": radius is -2"],
+            &["tree.csv:2: column \"radius\": radius is -2"],
         )
         .with("tree.csv", "a,b,c,d,e,f,radius\n0,0,0,0,0,1,-2\n"),
         Case::new(
             "rows_all_skipped",
             format!("{POINTS}degenerate = \"skip\"\n"),
-            &["the scene is empty"],
+            &["the scene is empty", "all 2 rows were skipped as degenerate"],
         )
-        .with("tree.csv", "a,b,c,d,e,f,radius\n0,0,0,0,0,1,0\n"),
+        .with(
+            "tree.csv",
+            "a,b,c,d,e,f,radius\n0,0,0,0,0,1,0\n0,0,0,0,0,0,1\n",
+        ),
+        Case::new(
+            "rows_of_a_prototype_all_skipped",
+            "[[instance]]\nof = \"a\"\n[[prototype]]\nname = \"a\"\n[[prototype.swc]]\nfile = \"n.swc\"\ndegenerate = \"skip\"\n",
+            &["scene.toml:2:6", "\"a\" holds no solids", "all 1 rows were skipped"],
+        )
+        .with("n.swc", "1 1 0 0 0 1 -1\n2 1 0 0 0 1 1\n"),
+        Case::new(
+            "columns_with_radius_and_diameter",
+            POINTS.replace("radius =", "diameter = \"d\", radius ="),
+            &["radius or diameter, not both", "scene.toml:4:11"],
+        )
+        .with("tree.csv", "a,b,c,d,e,f,radius\n"),
         Case::new(
             "degenerate_unknown",
             format!("{POINTS}degenerate = \"ignore\"\n"),
@@ -172,58 +187,68 @@ pub fn cases() -> Vec<Case> {
             "row_with_zero_axis",
             "0;0;0;0;0;0;1;1",
             &[
-                "tree.csv: line 2, column \"d\": the axis is zero",
+                "tree.csv:2: column \"d\": the axis is zero",
                 "degenerate = \"skip\"",
             ],
         ),
         axis(
             "row_with_negative_length",
             "0;0;0;0;0;1;-1;1",
-            &["tree.csv: line 2, column \"length\": length is -1"],
+            &["tree.csv:2: column \"length\": length is -1"],
         ),
         axis(
             "cell_with_a_decimal_comma",
             "0;0;0;0;0;1;1,5;1",
-            &["tree.csv: line 2, column \"length\": \"1,5\" is not a number (such as 1.5"],
+            &["tree.csv:2: column \"length\": \"1,5\" is not a number (such as 1.5"],
         ),
         swc(
             "sample_of_six_cells",
             "2 3 0 0 1 1\n",
-            &["neuron.swc: line 3: the row has 6 cells, SWC has 7"],
+            &["neuron.swc:3: the row has 6 cells, SWC has 7"],
         ),
         swc(
             "sample_with_a_broken_id",
             "2.5 3 0 0 1 1 1\n",
-            &["neuron.swc: line 3, column \"id\": \"2.5\" is not a whole number"],
+            &["neuron.swc:3: column \"id\": \"2.5\" is not a whole number"],
         ),
         swc(
             "sample_with_a_coordinate_nan",
             "2 3 0 nan 1 1 1\n",
-            &["neuron.swc: line 3, column \"y\": \"nan\" is not a finite number"],
+            &["neuron.swc:3: column \"y\": \"nan\" is not a finite number"],
         ),
         swc(
             "sample_with_an_unknown_parent",
             "2 3 0 0 1 1 7\n",
             &[
-                "neuron.swc: line 3, column \"parent\": there is no sample 7",
+                "neuron.swc:3: column \"parent\": there is no sample 7",
                 "-1",
             ],
         ),
         swc(
             "sample_that_is_its_own_parent",
             "2 3 0 0 1 1 2\n",
-            &["neuron.swc: line 3, column \"parent\": the sample is its own parent"],
+            &["neuron.swc:3: column \"parent\": the sample is its own parent"],
+        ),
+        swc(
+            "samples_that_are_each_others_parents",
+            "2 3 0 0 1 1 3\n3 3 0 0 2 1 2\n",
+            &["neuron.swc:3: column \"parent\": the parents form a cycle: 2 -> 3 -> 2"],
+        ),
+        swc(
+            "samples_in_a_long_cycle_that_others_hang_on",
+            "9 3 0 0 9 1 6\n5 3 0 0 5 1 4\n4 3 0 0 4 1 7\n6 3 0 0 6 1 5\n7 3 0 0 7 1 6\n",
+            &["neuron.swc:4: column \"parent\": the parents form a cycle: 5 -> 4 -> 7 -> 6 -> 5"],
         ),
         swc(
             "sample_with_an_id_used_before",
             "\n1 3 0 0 1 1 1\n",
-            &["neuron.swc: line 4, column \"id\": the id 1 stands on line 2 already"],
+            &["neuron.swc:4: column \"id\": the id 1 stands on line 2 already"],
         ),
         swc(
             "sample_with_zero_radius",
             "2 3 0 0 1 0 1\n",
             &[
-                "neuron.swc: line 3, column \"radius\": radius is 0",
+                "neuron.swc:3: column \"radius\": radius is 0",
                 "degenerate = \"skip\"",
             ],
         ),
@@ -231,7 +256,7 @@ pub fn cases() -> Vec<Case> {
             "sample_at_its_parent",
             "2 3 0 0 0 1 1\n",
             &[
-                "neuron.swc: line 3: p0 and p1 are 0.0 apart",
+                "neuron.swc:3: p0 and p1 are 0.0 apart",
                 "degenerate = \"skip\"",
             ],
         ),
@@ -246,19 +271,19 @@ pub fn cases() -> Vec<Case> {
             "row_with_a_zero_rotation_axis",
             ", axis = [\"i\", \"j\", \"k\"], degrees = \"w\"",
             "0,0,0,0,0,0,1,1\n",
-            &["places.csv: line 2, column \"i\": the rotation axis is zero"],
+            &["places.csv:2: column \"i\": the rotation axis is zero"],
         ),
         places(
             "row_with_a_zero_quaternion",
             ", quaternion = [\"i\", \"j\", \"k\", \"w\"]",
             "0,0,0,0,0,0,1,1\n0,0,0,0,0,0,0,1\n",
-            &["places.csv: line 3, column \"i\": the quaternion is zero"],
+            &["places.csv:3: column \"i\": the quaternion is zero"],
         ),
         places(
             "row_with_zero_scale",
             ", scale = \"s\"",
             "0,0,0,0,0,0,1,0\n",
-            &["places.csv: line 2: the placement is singular"],
+            &["places.csv:2: the placement is singular"],
         ),
         places(
             "scale_column_missing",

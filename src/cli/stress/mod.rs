@@ -30,7 +30,7 @@ pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
         replay::run(word, &formulations)?;
         return Ok(GOOD);
     }
-    json::check(common, None)?;
+    json::check(common)?;
     if let Some(directory) = &arguments.report {
         std::fs::create_dir_all(directory)
             .with_context(|| format!("cannot create {}", directory.display()))?;
@@ -62,7 +62,7 @@ pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
     bar.finish_and_clear();
     let cells = match cells {
         Some(cells) => cells,
-        None => return Err(interrupt::Interrupted.into()),
+        None => return Err(interrupt::Interrupted::NothingWritten.into()),
     };
 
     let broken: Vec<(&Cell, &Promise)> = cells

@@ -1,0 +1,77 @@
+//! Figures as lines for people.
+
+use std::fmt::Write;
+
+use cyltrace::tracer::Statistics;
+use glam::DVec3;
+
+/// Appends the shortest text that reads back as the same f64: decimal, or
+/// scientific where that would need many zeros.
+pub fn push_number(text: &mut String, value: f64) {
+    let start = text.len();
+    write!(text, "{value:?}").expect("a String takes any text");
+    if text[start..].ends_with(".0") {
+        text.truncate(text.len() - 2);
+    }
+}
+
+/// Three numbers in their shortest form.
+pub fn point(point: DVec3) -> String {
+    let mut text = String::from("(");
+    for (axis, value) in point.to_array().into_iter().enumerate() {
+        text += if axis == 0 { "" } else { ", " };
+        push_number(&mut text, value);
+    }
+    text + ")"
+}
+
+/// The cylinders of a traced scene.
+pub fn cylinders(statistics: &Statistics) -> String {
+    let (unique, instances) = (statistics.cylinders_unique, statistics.instances);
+    if instances == 0 {
+        return format!("cylinders: {unique}, no instances");
+    }
+    format!(
+        "cylinders: {unique} unique, {} with the {instances} instances",
+        statistics.cylinders_instanced
+    )
+}
+
+/// A line about rows that were left out, or nothing when there are none: the
+/// one that [`Statistics::skipped`] has.
+pub fn skipped_rows(rows: u64) -> String {
+    match rows {
+        0 => String::new(),
+        _ => format!("skipped: degenerate rows of tables: {rows}\n"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn number_written_reads_back_and_is_short() {
+        for (value, text) in [
+            (1.0, "1"),
+            (-0.0, "-0"),
+            (0.1, "0.1"),
+            (1e-300, "1e-300"),
+            (1e300, "1e300"),
+            (-2.5e17, "-2.5e17"),
+            (1.0 / 3.0, "0.3333333333333333"),
+            (5e-324, "5e-324"),
+        ] {
+            let mut written = String::new();
+            push_number(&mut written, value);
+            assert_eq!(written, text);
+            let back: f64 = written.parse().expect("a number");
+            assert_eq!(back.to_bits(), value.to_bits());
+        }
+    }
+
+    #[test]
+    fn point_rounded_outward_from_zero_stays_short() {
+        assert_eq!(point(DVec3::new(-5e-324, 1.0, 2.5)), "(-5e-324, 1, 2.5)");
+    }
+}

@@ -1,0 +1,124 @@
+//! What the messages of the TOML parser mean to a user, and what to do.
+
+use super::names::{quoted, suggestion};
+
+/// Keys of the scene that hold many tables, `[[...]]`.
+const LISTS: [&str; 8] = [
+    "material",
+    "prototype",
+    "cylinder",
+    "cylinder_table",
+    "swc",
+    "instance",
+    "instance_table",
+    "scatter",
+];
+/// The other keys of the scene.
+const SINGLE: [&str; 6] = ["background", "camera", "film", "render", "sun", "sky"];
+
+/// Most characters of a message that are passed on, from its beginning and
+/// from its end: it repeats the user's keys and values, however long.
+const LONGEST_PART: usize = 300;
+
+/// What is wrong, and what to do about it where that is known, for a message
+/// of the parser about a place in `line`.
+pub(super) fn explain(message: &str, line: &str) -> (String, Option<String>) {
+    if let Some((key, expected)) = unknown_field(message) {
+        return unknown_key(key, &expected, line);
+    }
+    let line = line.trim();
+    let path = header(line);
+    let key = path.or_else(|| line.split_once('=').map(|(key, _)| key.trim()));
+    let last = path.and_then(|path| path.rsplit('.').next()).or(key);
+    if let (Some(key), Some(last)) = (key, last) {
+        let wants_list = message.starts_with("invalid type: map, expected a sequence")
+            || (message == "duplicate key" && path.is_some() && !line.starts_with("[["));
+        if wants_list && LISTS.contains(&last) {
+            return (
+                format!("[{key}] is one table where there may be many"),
+                Some(format!("write [[{key}]] in front of each")),
+            );
+        }
+        if line.starts_with("[[") && SINGLE.contains(&last) {
+            return (
+                format!("[[{key}]] is a list of tables, and there is only one {last}"),
+                Some(format!("write [{key}], once")),
+            );
+        }
+    }
+    let lines: Vec<&str> = message.lines().collect();
+    (without_middle(&lines.join(", ")), None)
+}
+
+/// The key and the keys that would be right, of a message about an unknown
+/// one.
+fn unknown_field(message: &str) -> Option<(&str, Vec<&str>)> {
+    let rest = message.strip_prefix("unknown field `")?;
+    let (key, expected) = rest.split_at(rest.rfind("`, expected ")?);
+    // The odd pieces stand between two backquotes; the first quote ends `key`.
+    Some((key, expected[1..].split('`').skip(1).step_by(2).collect()))
+}
+
+fn unknown_key(key: &str, expected: &[&str], line: &str) -> (String, Option<String>) {
+    let message = format!("unknown key {}", quoted(key));
+    let is_top = LISTS.contains(&key) || SINGLE.contains(&key);
+    let help = if !is_top {
+        suggestion(key, expected.iter().copied(), "keys")
+    } else if line.trim_start().starts_with('[') {
+        format!("{key} belongs to the scene itself, not into another table")
+    } else {
+        format!(
+            "top-level keys go before the first [table]: put {key} above it; here it belongs to the table that precedes it"
+        )
+    };
+    (message, Some(help))
+}
+
+/// The path in a line such as `[a.b]` or `[[a.b]]`.
+fn header(line: &str) -> Option<&str> {
+    let inner = line.strip_prefix('[')?;
+    let inner = inner.strip_prefix('[').unwrap_or(inner);
+    inner.split_once(']').map(|(path, _)| path.trim())
+}
+
+/// Beginning and end of a long message.
+fn without_middle(message: &str) -> String {
+    let beginning = message.char_indices().nth(LONGEST_PART);
+    let end = message.char_indices().nth_back(LONGEST_PART);
+    match (beginning, end) {
+        (Some((first, _)), Some((last, _))) if first < last => {
+            format!("{}[...]{}", &message[..first], &message[last..])
+        }
+        _ => message.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_field_of_any_wording_is_taken_apart() {
+        for (message, key, expected) in [
+            ("unknown field `a`, expected `b`", "a", &["b"][..]),
+            ("unknown field `a`, expected `b` or `c`", "a", &["b", "c"]),
+            (
+                "unknown field `a`b`, expected one of `c`, `d`, `e`",
+                "a`b",
+                &["c", "d", "e"],
+            ),
+        ] {
+            let found = unknown_field(message).expect(message);
+            assert_eq!(found, (key, expected.to_vec()), "{message}");
+        }
+        assert_eq!(unknown_field("missing field `a`"), None);
+    }
+
+    #[test]
+    fn message_that_is_not_known_is_passed_on_without_its_middle() {
+        let (message, help) = explain("bad\nvalue", "x = 1");
+        assert_eq!((message.as_str(), help), ("bad, value", None));
+        let (message, _) = explain(&"x".repeat(10_000), "x = 1");
+        assert_eq!(message.len(), 2 * LONGEST_PART + "[...]".len() + 1);
+    }
+}
