@@ -107,12 +107,6 @@ impl<S: Real> Axis<S> for StatedAxis<S> {
     }
 }
 
-/// The square of the reciprocal sine of the angle between ray and axis beyond
-/// which [`upright`] is worth its time. At a sine of 1/4 the part of `n` along
-/// the axis, at most `2√2 u |a| |d|`, displaces the ray by `11 u |x|`, which
-/// the 32 u of section 5 of `docs/derivations.md` have room for.
-const STEEP_SQ: f64 = 16.0;
-
 /// The interval in which the line `p0 + from_p0 + t * direction` is inside the
 /// closed solid, or `None` where it is not.
 ///
@@ -147,9 +141,6 @@ pub(super) fn axis_chord<S: Real>(
         return parallel_chord(axis, x, d);
     }
 
-    let is_slanted = nn * S::from_f64(STEEP_SQ) < axis.aa() * d.dot(d);
-    let n = if is_slanted { upright::<S>(n, a) } else { n };
-
     // Does the line reach the infinite wall? Written so that NaN is a miss.
     let w = x.dot(n);
     let discriminant = axis.rr() * nn - w * w;
@@ -180,15 +171,6 @@ pub(super) fn axis_chord<S: Real>(
 #[cold]
 fn exact_normal<S: Real>(a: S::Vector, d: S::Vector) -> S::Vector {
     a.cross_of_exact_products(d)
-}
-
-/// `n` without what rounding left of it along the axis. In `w = x·n` that
-/// would count with the whole way from the origin along the axis, though
-/// sliding along it changes nothing; across the axis, the error of `n` is that
-/// of a direction a few ulps off.
-#[cold]
-fn upright<S: Real>(n: S::Vector, a: S::Vector) -> S::Vector {
-    n - a * (n.dot(a) / a.dot(a))
 }
 
 /// The chord of a line along the axis: from disc to disc, if it is not farther
