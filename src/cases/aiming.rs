@@ -124,20 +124,20 @@ impl Target {
         }
     }
 
-    /// A line in any direction through a point of the axis.
-    pub fn middle(&self, random: &mut Random) -> Aim {
-        let aim = self.anywhere(random);
+    /// A line in any direction past the point of the axis that is nearest to
+    /// the scene's origin, at up to 1.3 radii.
+    pub fn nearest_to_zero(&self, random: &mut Random) -> Aim {
+        let heading = random.direction();
+        let share = -self.p0.dot(self.axis) / self.length;
+        let off = heading.cross(self.axis) * (1.3 * self.radius * random.unit());
         Aim {
-            point: self.point(
-                0.5,
-                aim.heading.cross(self.axis) * (1.3 * self.radius * random.unit()),
-            ),
-            ..aim
+            point: self.point(share, off),
+            heading,
         }
     }
 
     /// A ray from a point of the wall into the solid.
-    pub fn from_wall(&self, random: &mut Random, inputs: Inputs) -> Option<Ray> {
+    pub fn ray_from_wall(&self, random: &mut Random, inputs: Inputs) -> Option<Ray> {
         let outward = self.across(random);
         let origin = self.point(random.uniform(0.02, 0.98), outward * self.radius);
         let heading = random.direction();
@@ -150,7 +150,7 @@ impl Target {
     }
 
     /// A ray in any direction from a point within the solid.
-    pub fn from_inside(&self, random: &mut Random, inputs: Inputs) -> Option<Ray> {
+    pub fn ray_from_inside(&self, random: &mut Random, inputs: Inputs) -> Option<Ray> {
         let off = self.across(random) * (self.radius * 0.98 * random.unit().sqrt());
         let origin = self.point(random.uniform(0.02, 0.98), off);
         valid(inputs.vector(origin), inputs.vector(random.direction()))
@@ -160,7 +160,7 @@ impl Target {
 impl Aim {
     /// The ray on the line that starts `distance` before the point, with a
     /// direction of length about `speed`.
-    pub fn from(&self, distance: f64, speed: f64, inputs: Inputs) -> Option<Ray> {
+    pub fn ray(&self, distance: f64, speed: f64, inputs: Inputs) -> Option<Ray> {
         let origin = inputs.vector(self.point - self.heading * distance);
         let direction = (self.point - origin).normalize() * speed;
         valid(origin, inputs.vector(direction))

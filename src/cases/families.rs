@@ -160,8 +160,8 @@ impl Family {
         let cylinder = self.shape().draw(random, inputs, scale)?;
         let target = Target::new(&cylinder);
         let ray = match self {
-            Self::SurfaceIn => target.from_wall(random, inputs)?,
-            Self::Inside => target.from_inside(random, inputs)?,
+            Self::SurfaceIn => target.ray_from_wall(random, inputs)?,
+            Self::Inside => target.ray_from_inside(random, inputs)?,
             _ => {
                 let aim = self.aim(random, &target);
                 let distance = self.distance(random, &target);
@@ -169,7 +169,7 @@ impl Family {
                     Self::DirectionScale => random.log_uniform(1e-10, 1e10),
                     _ => 1.0,
                 };
-                aim.from(distance, speed, inputs)?
+                aim.ray(distance, speed, inputs)?
             }
         };
         Some(Problem { cylinder, ray })
@@ -201,7 +201,7 @@ impl Family {
                 ..Shape::long([1e2, 1e5])
             },
             Self::Cross => Shape {
-                offset: Offset::None,
+                offset: Offset::Along,
                 ..Shape::long([1e4, 1e8])
             },
             _ => Shape::ORDINARY,
@@ -224,7 +224,7 @@ impl Family {
                 let angle = target.slope() * random.uniform(0.0, 2.0);
                 target.along_axis(random, angle)
             }
-            Self::Cross => target.middle(random),
+            Self::Cross => target.nearest_to_zero(random),
             _ => target.anywhere(random),
         }
     }
@@ -305,7 +305,7 @@ fn tangent(random: &mut Random, inputs: Inputs) -> Option<Problem> {
     let distance = target.radius() * random.log_uniform(2.0, 20.0);
     let ray = target
         .grazing(random, [1e-7, 1e-3])
-        .from(distance, 1.0, inputs)?;
+        .ray(distance, 1.0, inputs)?;
 
     // The distance of the two lines is |x·n| / |n|.
     let n = (cylinder.p1() - cylinder.p0()).cross(ray.direction);

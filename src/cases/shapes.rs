@@ -28,8 +28,8 @@ pub(super) enum Offset {
     Sizes([f64; 2]),
     /// In radii.
     Radii([f64; 2]),
-    /// It is the origin: the ends are rounded, the middle is not.
-    None,
+    /// Up to 0.4 lengths along the axis, which passes the origin.
+    Along,
 }
 
 impl Shape {
@@ -59,10 +59,14 @@ impl Shape {
                 (length + radius) * random.log_uniform(least, greatest)
             }
             Offset::Radii([least, greatest]) => radius * random.log_uniform(least, greatest),
-            Offset::None => 0.0,
+            Offset::Along => length * random.uniform(-0.4, 0.4),
         };
-        let middle = random.direction() * offset;
-        let half_axis = random.direction() * (length / 2.0);
+        let way = random.direction();
+        let half_axis = match self.offset {
+            Offset::Along => way,
+            Offset::Sizes(_) | Offset::Radii(_) => random.direction(),
+        } * (length / 2.0);
+        let middle = way * offset;
         let end = |side: f64| inputs.vector((middle + half_axis * side) * scale);
         Cylinder::new(
             end(-1.0),

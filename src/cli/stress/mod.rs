@@ -105,10 +105,9 @@ fn chosen(names: &[String]) -> anyhow::Result<Vec<Box<dyn Formulation>>> {
             known.join(", ")
         );
     }
-    let is_chosen = |one: &Box<dyn Formulation>| {
-        names.is_empty() || names.iter().any(|name| name == one.name())
-    };
-    Ok(formulations::all().into_iter().filter(is_chosen).collect())
+    let mut formulations = formulations::all();
+    formulations.retain(|one| names.is_empty() || names.iter().any(|name| name == one.name()));
+    Ok(formulations)
 }
 
 /// A cell as a row of the JSON.

@@ -12,7 +12,8 @@ pub fn promises() -> String {
         &[
             "formulation",
             "inputs",
-            "promise, in every family",
+            "in every family but",
+            "promise",
             "because",
         ],
         4,
@@ -21,6 +22,12 @@ pub fn promises() -> String {
         table.push(vec![
             promise.formulation.to_owned(),
             promise.inputs.name().to_owned(),
+            promise
+                .except
+                .iter()
+                .map(|family| family.name())
+                .collect::<Vec<_>>()
+                .join(", "),
             promise.claim.to_string(),
             promise.why.to_owned(),
         ]);
