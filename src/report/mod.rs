@@ -1,0 +1,10 @@
+//! What people look at: figures, tables and pages, as text.
+
+mod csv;
+mod figure;
+mod html;
+mod label;
+
+pub use csv::csv;
+pub use figure::{Figure, Mark, Series, Symbol};
+pub use html::{Page, escape};
