@@ -1,10 +1,12 @@
 //! cyltrace traces analytic cylinders through Embree: exact hits, no meshes,
 //! and the proof beside them.
 
+pub mod bench;
 pub mod embree;
 pub mod math;
 pub mod oracle;
 pub mod render;
+pub mod report;
 pub mod scene;
 pub mod solid;
 pub mod tracer;
