@@ -2,6 +2,7 @@
 //! and the proof beside them.
 
 pub mod bench;
+pub mod cases;
 pub mod embree;
 pub mod math;
 pub mod oracle;

@@ -28,7 +28,7 @@ fn help_of_every_command_mentions_every_flag() {
                 "--seed",
             ][..],
         ),
-        ("trace", &["--rays", "--output", "-o"][..]),
+        ("trace", &["--rays", "--output", "-o", "--all"][..]),
         ("info", &[][..]),
     ] {
         let (code, help, _) = cyltrace(&[command, "--help"]);

@@ -92,6 +92,9 @@ pub struct TraceArguments {
     /// CSV of hits, one row a ray, in order; `-` is standard output
     #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
+    /// Write every hit of a ray, in order of t, instead of the first
+    #[arg(long)]
+    pub all: bool,
     #[command(flatten)]
     pub common: Common,
 }

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use anyhow::Context;
 use cyltrace::math::Ray;
-use cyltrace::tracer::Tracer;
+use cyltrace::tracer::{DEFAULT_BATCH, Hit, Tracer};
 use rayon::prelude::*;
 use serde_json::json;
 
@@ -22,10 +22,13 @@ use super::{hit_table, interrupt, json, progress, scene};
 /// Blocks that a thread gets of each batch: enough to even out slow ones.
 const BLOCKS_PER_THREAD: usize = 4;
 
-/// What the whole table came to.
-#[derive(Default)]
+/// What rays came to.
+#[derive(Clone, Copy, Default)]
 struct Totals {
     rays: u64,
+    /// Rays that hit anything.
+    hit_rays: u64,
+    /// Hits; more than one a ray only if all are asked for.
     hits: u64,
 }
 
@@ -65,7 +68,7 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     workers.install(|| {
         for_each_batch(&arguments.rays, |blocks| {
             let before = totals.rays;
-            trace_batch(&tracer, &blocks, &mut totals, &mut target)?;
+            trace_batch(&tracer, arguments.all, &blocks, &mut totals, &mut target)?;
             bar.inc(totals.rays - before);
             Ok(())
         })
@@ -75,10 +78,19 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     bar.finish_and_clear();
 
     let statistics = tracer.statistics();
-    let Totals { rays, hits } = totals;
+    let Totals {
+        rays,
+        hit_rays,
+        hits,
+    } = totals;
     let rays_per_s = rays as f64 / trace;
     if common.prints() && !is_standard_output(&arguments.output) {
-        println!("{}: {hits} of {rays} rays hit", arguments.output.display());
+        let output = arguments.output.display();
+        if arguments.all {
+            println!("{output}: {hit_rays} of {rays} rays hit, {hits} hits");
+        } else {
+            println!("{output}: {hit_rays} of {rays} rays hit");
+        }
         println!(
             "time: check {check:.2} s, load {load:.2} s, build {build:.2} s, trace {trace:.2} s on {threads} threads ({:.2} million rays a second, tables included)",
             rays_per_s / 1e6
@@ -91,6 +103,7 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
             "rays_file": arguments.rays,
             "output": arguments.output,
             "rays": rays,
+            "hit_rays": hit_rays,
             "hits": hits,
             "check_s": check,
             "load_s": load,
@@ -149,6 +162,7 @@ fn for_each_batch(
 /// Traces the rays of some blocks and writes their rows.
 fn trace_batch(
     tracer: &Tracer,
+    all: bool,
     blocks: &[Vec<Ray>],
     totals: &mut Totals,
     target: &mut Target,
@@ -161,25 +175,42 @@ fn trace_batch(
             (first, rays)
         })
         .collect();
-    let traced: Vec<(String, u64)> = numbered
+    let traced: Vec<(String, Totals)> = numbered
         .par_iter()
-        .map(|(first, rays)| trace_block(tracer, *first, rays))
+        .map(|(first, rays)| trace_block(tracer, all, *first, rays))
         .collect();
-    for (rows, hits) in traced {
+    for (rows, block) in traced {
         target.write_all(rows.as_bytes())?;
-        totals.hits += hits;
+        totals.hit_rays += block.hit_rays;
+        totals.hits += block.hits;
     }
     Ok(())
 }
 
-/// The rows of a block whose rays count from `first`, and how many are hits.
-fn trace_block(tracer: &Tracer, first: u64, rays: &[Ray]) -> (String, u64) {
+/// The rows of a block whose rays count from `first`, and what they come to.
+fn trace_block(tracer: &Tracer, all: bool, first: u64, rays: &[Ray]) -> (String, Totals) {
     let mut rows = String::new();
-    let mut hits = 0;
+    let mut totals = Totals::default();
     for (number, ray) in (first..).zip(rays) {
-        let hit = tracer.closest(ray);
-        hits += u64::from(hit.is_some());
-        hit_table::push_row(&mut rows, number, hit.as_ref(), tracer.scene());
+        let mut push = |hit: Option<&Hit>| {
+            hit_table::push_row(&mut rows, number, hit, tracer.scene());
+        };
+        let mut hits = 0;
+        if all {
+            for hit in tracer.all_hits(ray, DEFAULT_BATCH) {
+                push(Some(&hit));
+                hits += 1;
+            }
+        } else if let Some(hit) = tracer.closest(ray) {
+            push(Some(&hit));
+            hits += 1;
+        }
+        if hits == 0 {
+            push(None);
+        }
+        totals.rays += 1;
+        totals.hit_rays += u64::from(hits > 0);
+        totals.hits += hits;
     }
-    (rows, hits)
+    (rows, totals)
 }

@@ -1,14 +1,15 @@
 //! Rays, boxes, roundings and random numbers, on top of glam's f64 vectors.
 //!
 //! This layer knows nothing of the rest of the crate. Everything here is f64;
-//! f32 appears only where a value is handed to Embree, and is then rounded in
-//! a stated direction.
+//! f32 appears where a value is handed to Embree, and is then rounded in a
+//! stated direction, and in [`Real`], for solvers that exist in both.
 
 mod bounds;
 mod double_double;
 mod placement;
 mod random;
 mod ray;
+mod real;
 mod rounding;
 
 pub use bounds::Bounds;
@@ -16,4 +17,5 @@ pub use double_double::DoubleDouble;
 pub use placement::{ChildFromParent, PlacementErrors};
 pub use random::Random;
 pub use ray::Ray;
+pub use real::{RayOf, Real, RealVector};
 pub use rounding::{UNIT_ROUNDOFF, f32_above, f32_below, power_of_two, power_of_two_below};

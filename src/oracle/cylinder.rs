@@ -81,7 +81,12 @@ struct Problem {
 /// When the ray is not valid ([`Ray::is_valid`]).
 #[must_use]
 pub fn first_hit(cylinder: &Cylinder, ray: &Ray) -> CylinderTruth {
-    placed_first_hit(cylinder, &ExactAffine::identity(), ray)
+    assert!(ray.is_valid(), "the oracle was asked about {ray:?}");
+    let p0 = ExactVector::new(cylinder.p0());
+    let a = &ExactVector::new(cylinder.p1()) - &p0;
+    let x = &ExactVector::new(ray.origin) - &p0;
+    let d = ExactVector::new(ray.direction);
+    Problem::new(cylinder.caps(), a, x, d, &exact(cylinder.radius())).solve(ray)
 }
 
 /// The same for a cylinder that is placed in the ray's space.
@@ -111,17 +116,7 @@ pub fn placed_first_hit(
     let x = &adjugate.times(&origin) - &p0;
     let d = adjugate.times(&ExactVector::new(ray.direction));
     let a = &p1 - &p0;
-    let problem = Problem {
-        caps: cylinder.caps(),
-        aa: a.dot(&a),
-        ax: a.dot(&x),
-        ad: a.dot(&d),
-        rr: &radius * &radius,
-        a,
-        x,
-        d,
-    };
-    problem.solve(ray)
+    Problem::new(cylinder.caps(), a, x, d, &radius).solve(ray)
 }
 
 /// Of two candidates at one `t`, the disc and the entry come first.
@@ -130,6 +125,19 @@ fn rank(candidate: &Candidate) -> (bool, Crossing) {
 }
 
 impl Problem {
+    fn new(caps: Caps, a: ExactVector, x: ExactVector, d: ExactVector, radius: &Exact) -> Self {
+        Self {
+            caps,
+            aa: a.dot(&a),
+            ax: a.dot(&x),
+            ad: a.dot(&d),
+            rr: radius * radius,
+            a,
+            x,
+            d,
+        }
+    }
+
     fn solve(&self, ray: &Ray) -> CylinderTruth {
         let mut candidates = Vec::new();
         let wall_gap = self.list_wall(ray, &mut candidates);

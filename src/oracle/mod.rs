@@ -7,9 +7,13 @@
 mod affine;
 mod cylinder;
 mod distance;
+mod gap;
+mod normal;
 mod number;
 
 pub use affine::{ExactAffine, ExactMatrix};
 pub use cylinder::{CylinderTruth, TrueHit, first_hit, placed_first_hit};
 pub use distance::distance_to_part;
+pub use gap::gap;
+pub use normal::outward_normal;
 pub use number::{Exact, ExactVector, exact, to_f64};

@@ -12,12 +12,13 @@
 //! wall) touches it all the way; its least `t` may be the start of the range.
 
 use super::{Caps, Crossing, Part};
+use crate::math::Real;
 
 /// One end of a [`Chord`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ChordEnd {
+pub struct ChordEnd<S = f64> {
     /// The ray's parameter.
-    pub t: f64,
+    pub t: S,
     /// The part of the solid's boundary, whether or not the surface has it.
     pub part: Part,
     /// Whether the point is on a rim, that is on the wall too.
@@ -26,62 +27,107 @@ pub struct ChordEnd {
 
 /// The interval in which a line is inside a closed convex solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Chord {
+pub struct Chord<S = f64> {
     /// Where the ray goes in.
-    pub enter: ChordEnd,
-    /// Where the ray comes out; its `t` is not less than that of `enter`, but
-    /// for rounding.
-    pub leave: ChordEnd,
+    pub enter: ChordEnd<S>,
+    /// Where the ray comes out; its `t` is not less than that of `enter`.
+    pub leave: ChordEnd<S>,
     /// The part within which the whole chord runs, if it does.
     pub lies_on: Option<Part>,
 }
 
 /// A point where a ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Meeting {
-    /// The parameter, counted as the chord's.
-    pub t: f64,
+pub struct Meeting<S = f64> {
+    /// The parameter of the whole ray.
+    pub t: S,
+    /// The parameter counted as the chord's, before it was shifted.
+    pub t_local: S,
     /// The part of the surface.
     pub part: Part,
     /// The direction of the crossing.
     pub crossing: Crossing,
 }
 
-impl Chord {
-    /// The first point at which the ray is on the surface that has the discs
-    /// `caps`, among those with `t_min <= t + shift <= t_max`.
+impl<S: Real> Chord<S> {
+    /// The points, at most two, at which the ray is on the surface that has the
+    /// discs `caps`, among those with `t_min <= t + shift <= t_max`, in order.
     ///
     /// The range is the whole ray's; `shift` is where the chord's `t` starts
-    /// on it, 0 unless the solver was given a point farther along the ray.
+    /// on it, 0 unless the solver was given a point farther along the ray. A
+    /// tangent is an entry and an exit at the same `t`.
+    #[inline]
+    pub fn meetings(
+        &self,
+        caps: Caps,
+        shift: S,
+        t_min: S,
+        t_max: S,
+    ) -> impl Iterator<Item = Meeting<S>> + use<S> {
+        let enter = self.entry(caps, shift, t_min, t_max);
+        let leave = self.exit(caps, shift, t_min, t_max);
+        enter.into_iter().chain(leave)
+    }
+
+    /// The first of [`Chord::meetings`].
     #[inline]
     #[must_use]
-    pub fn first(&self, caps: Caps, shift: f64, t_min: f64, t_max: f64) -> Option<Meeting> {
+    pub fn first(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> Option<Meeting<S>> {
+        self.entry(caps, shift, t_min, t_max)
+            .or_else(|| self.exit(caps, shift, t_min, t_max))
+    }
+
+    #[inline]
+    fn entry(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> Option<Meeting<S>> {
         if let Some(part) = self.lies_on
             && exists(part, caps)
-            && self.enter.t + shift < t_min
-            && t_min <= self.leave.t + shift
+            && self.holds(t_min - shift)
             && t_min <= t_max
         {
             return Some(Meeting {
-                t: t_min - shift,
+                t: t_min,
+                t_local: t_min - shift,
                 part,
                 crossing: Crossing::Enter,
             });
         }
-        let meet = |end: &ChordEnd, crossing| {
-            let part = end.present(caps)?;
-            let t = end.t + shift;
-            (t_min <= t && t <= t_max).then_some(Meeting {
-                t: end.t,
-                part,
-                crossing,
-            })
-        };
-        meet(&self.enter, Crossing::Enter).or_else(|| meet(&self.leave, Crossing::Leave))
+        self.enter
+            .meeting(Crossing::Enter, caps, shift, t_min, t_max)
+    }
+
+    #[inline]
+    fn exit(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> Option<Meeting<S>> {
+        self.leave
+            .meeting(Crossing::Leave, caps, shift, t_min, t_max)
+    }
+
+    /// Whether `t` is behind the entry and not behind the exit.
+    fn holds(&self, t: S) -> bool {
+        self.enter.t < t && t <= self.leave.t
     }
 }
 
-impl ChordEnd {
+impl<S: Real> ChordEnd<S> {
+    /// The end as a meeting, if the surface is there and it is in range.
+    #[inline]
+    fn meeting(
+        &self,
+        crossing: Crossing,
+        caps: Caps,
+        shift: S,
+        t_min: S,
+        t_max: S,
+    ) -> Option<Meeting<S>> {
+        let part = self.present(caps)?;
+        let t = self.t + shift;
+        (t_min <= t && t <= t_max).then_some(Meeting {
+            t,
+            t_local: self.t,
+            part,
+            crossing,
+        })
+    }
+
     /// The part of the surface this end lies on, if the surface has one there.
     #[inline]
     fn present(&self, caps: Caps) -> Option<Part> {

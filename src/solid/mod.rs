@@ -3,6 +3,7 @@
 mod chord;
 mod cylinder;
 pub mod formulations;
+mod slab;
 mod surface;
 pub mod tessellation;
 pub mod triple_product;

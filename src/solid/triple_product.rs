@@ -1,4 +1,4 @@
-//! The triple-product solver ("Qr"): ray against cylinder in f64.
+//! The triple-product solver ("Qr"): ray against cylinder.
 //!
 //! With the axis `a = p1 - p0`, the ray `o + t d` and `x = o - p0`, let
 //! `n = a × d` and `m = a × x`. A point of the line is at distance `radius`
@@ -26,60 +26,122 @@
 //! constant term of (1) and `q = -(m·n) ± |a| √D` the sum that does not cancel.
 //!
 //! The axial position of a point is `y = x·a + t d·a`, inside the slab between
-//! the discs iff `0 <= y <= |a|²`. The solid is the wall's interval of `t`
-//! overlapped with the slab's, and both ends of the overlap are judged by `y`
-//! at the roots of (2): wall and discs are chosen from the same numbers, so
-//! that no ray slips between them at a rim.
+//! the discs iff `0 <= y <= |a|²`; `slab.rs` overlaps wall and slab.
 //!
-//! A derivation of the error bounds is in `docs/derivations.md`, section 2.
+//! A derivation of the error bounds is in `docs/derivations.md`, section 2. It
+//! is for f64, in which the tracer solves; f32 exists for comparison.
 
 use glam::DVec3;
 
-use super::chord::{Chord, ChordEnd};
-use super::{Cylinder, Part};
-use crate::math::power_of_two;
+use super::Cylinder;
+use super::chord::Chord;
+use super::slab::Slab;
+use crate::math::{Real, RealVector, power_of_two};
 
 /// Below this (2^-700), `radius² |n|²` could lose bits to underflow and the ray
 /// is taken as parallel to the axis. `|a| |d|` is at least 2^-250 (the least
 /// length of a cylinder times the least direction), so the angle is then below
 /// 2^-100: along any chord of a cylinder in range the ray leaves the parallel
-/// by far less than an ulp of its origin.
+/// by far less than an ulp of its origin. f32 does not reach that far, and
+/// there the limit is its least normal number.
 const PARALLEL_BELOW: f64 = power_of_two(-700);
+
+/// What the solver reads of a cylinder: its axis `a`, its radius, and products
+/// of them that may be kept or computed when asked for.
+pub(super) trait Axis<S: Real>: Copy {
+    /// `a = p1 - p0`.
+    fn a(&self) -> S::Vector;
+    /// `radius²`.
+    fn rr(&self) -> S;
+    /// `|a|²`.
+    fn aa(&self) -> S;
+    /// `|a|`.
+    fn length(&self) -> S;
+    /// `radius² |a|²`.
+    fn rr_aa(&self) -> S;
+}
+
+/// An axis of which nothing is kept that can be computed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StatedAxis<S: Real> {
+    /// `p1 - p0`.
+    pub a: S::Vector,
+    /// The radius.
+    pub radius: S,
+}
+
+impl<S: Real> Axis<S> for StatedAxis<S> {
+    #[inline]
+    fn a(&self) -> S::Vector {
+        self.a
+    }
+
+    #[inline]
+    fn rr(&self) -> S {
+        self.radius * self.radius
+    }
+
+    #[inline]
+    fn aa(&self) -> S {
+        self.a.dot(self.a)
+    }
+
+    #[inline]
+    fn length(&self) -> S {
+        self.aa().sqrt()
+    }
+
+    #[inline]
+    fn rr_aa(&self) -> S {
+        self.rr() * self.aa()
+    }
+}
 
 /// The interval in which the line `p0 + from_p0 + t * direction` is inside the
 /// closed solid, or `None` where it is not.
 ///
-/// `from_p0` is the ray's origin as seen from the cylinder's `p0`. `direction` has a largest component between 2^-100 and 2^100 in size; with
-/// the range of [`Cylinder`] nothing then overflows. A non-finite argument is
-/// a miss.
+/// `from_p0` is the ray's origin as seen from the cylinder's `p0`. `direction`
+/// has a largest component between 2^-100 and 2^100 in size; with the range of
+/// [`Cylinder`] nothing then overflows. A non-finite argument is a miss.
 #[inline]
 #[must_use]
 pub fn chord(cylinder: &Cylinder, from_p0: DVec3, direction: DVec3) -> Option<Chord> {
-    let (x, d, r) = (from_p0, direction, cylinder.radius());
-    let a = cylinder.p1() - cylinder.p0();
+    let axis = StatedAxis {
+        a: cylinder.p1() - cylinder.p0(),
+        radius: cylinder.radius(),
+    };
+    axis_chord(&axis, from_p0, direction)
+}
+
+/// The same for any form of the cylinder and either precision.
+#[inline(always)]
+pub(super) fn axis_chord<S: Real>(
+    axis: &impl Axis<S>,
+    from_p0: S::Vector,
+    direction: S::Vector,
+) -> Option<Chord<S>> {
+    let (a, x, d) = (axis.a(), from_p0, direction);
     let n = a.cross(d);
     let nn = n.dot(n);
-    if nn < PARALLEL_BELOW {
-        return parallel_chord(a, x, d, r);
+    if nn < parallel_below() {
+        return parallel_chord(axis, x, d);
     }
 
     // Does the line reach the infinite wall? Written so that NaN is a miss.
     let w = x.dot(n);
-    let rr = r * r;
-    let discriminant = rr * nn - w * w;
-    if !(discriminant >= 0.0) {
+    let discriminant = axis.rr() * nn - w * w;
+    if !(discriminant >= S::ZERO) {
         return None;
     }
-    let (aa, ya, yd) = (a.dot(a), x.dot(a), d.dot(a));
 
     // The roots of the wall.
     let m = a.cross(x);
     let mn = m.dot(n);
-    let s = aa.sqrt() * discriminant.sqrt();
-    let (t0, t1) = if (s - mn.abs()).abs() < 0.5 * mn.abs() {
-        let c = m.dot(m) - rr * aa;
-        let q = if mn < 0.0 { s - mn } else { -mn - s };
-        if mn < 0.0 {
+    let s = axis.length() * discriminant.sqrt();
+    let (t0, t1) = if (s - mn.abs()).abs() < S::from_f64(0.5) * mn.abs() {
+        let c = m.dot(m) - axis.rr_aa();
+        let q = if mn < S::ZERO { s - mn } else { -mn - s };
+        if mn < S::ZERO {
             (c / q, q / nn)
         } else {
             (q / nn, c / q)
@@ -87,108 +149,36 @@ pub fn chord(cylinder: &Cylinder, from_p0: DVec3, direction: DVec3) -> Option<Ch
     } else {
         ((-mn - s) / nn, (s - mn) / nn)
     };
-
-    // Overlap with the slab between the discs, seen in the ray's direction.
-    if yd == 0.0 {
-        return perpendicular_chord(t0, t1, aa, ya);
-    }
-    let (y0, y1) = (ya + t0 * yd, ya + t1 * yd);
-    let forward = yd > 0.0;
-    let (y_enter, y_leave) = if forward {
-        (y0, y1)
-    } else {
-        (aa - y0, aa - y1)
-    };
-    if !(y_enter <= aa && y_leave >= 0.0) {
-        return None;
-    }
-    let cap0 = |y: f64| ChordEnd {
-        t: -ya / yd,
-        part: Part::Cap0,
-        on_rim: y == 0.0,
-    };
-    let cap1 = |y: f64| ChordEnd {
-        t: (aa - ya) / yd,
-        part: Part::Cap1,
-        on_rim: y == aa,
-    };
-    let side = |t: f64| ChordEnd {
-        t,
-        part: Part::Side,
-        on_rim: false,
-    };
-    let enter = if y_enter > 0.0 {
-        side(t0)
-    } else if forward {
-        cap0(y0)
-    } else {
-        cap1(y0)
-    };
-    let leave = if y_leave < aa {
-        side(t1)
-    } else if forward {
-        cap1(y1)
-    } else {
-        cap0(y1)
-    };
-    Some(Chord {
-        enter,
-        leave,
-        lies_on: None,
-    })
+    slab(axis, x, d).overlap(t0, t1)
 }
 
 /// The chord of a line along the axis: from disc to disc, if it is not farther
 /// from the axis than the wall. Its squared distance is `|m|² / |a|²`.
 #[cold]
-fn parallel_chord(a: DVec3, x: DVec3, d: DVec3, r: f64) -> Option<Chord> {
-    let m = a.cross(x);
-    let (aa, ya, yd) = (a.dot(a), x.dot(a), d.dot(a));
-    let (mm, rr_aa) = (m.dot(m), r * r * aa);
-    if !(mm <= rr_aa) || yd == 0.0 {
+fn parallel_chord<S: Real>(axis: &impl Axis<S>, x: S::Vector, d: S::Vector) -> Option<Chord<S>> {
+    let m = axis.a().cross(x);
+    let (mm, rr_aa) = (m.dot(m), axis.rr_aa());
+    if !(mm <= rr_aa) {
         return None;
     }
-    let on_rim = mm == rr_aa;
-    let cap0 = ChordEnd {
-        t: -ya / yd,
-        part: Part::Cap0,
-        on_rim,
-    };
-    let cap1 = ChordEnd {
-        t: (aa - ya) / yd,
-        part: Part::Cap1,
-        on_rim,
-    };
-    let (enter, leave) = if yd > 0.0 { (cap0, cap1) } else { (cap1, cap0) };
-    Some(Chord {
-        enter,
-        leave,
-        lies_on: on_rim.then_some(Part::Side),
-    })
+    slab(axis, x, d).along(mm == rr_aa)
 }
 
-/// The chord of a line across the axis: from wall to wall at one height, which
-/// may be that of a disc.
-#[cold]
-fn perpendicular_chord(t0: f64, t1: f64, aa: f64, ya: f64) -> Option<Chord> {
-    if !(0.0 <= ya && ya <= aa) {
-        return None;
+#[inline]
+fn slab<S: Real>(axis: &impl Axis<S>, x: S::Vector, d: S::Vector) -> Slab<S> {
+    Slab {
+        height: axis.aa(),
+        position: x.dot(axis.a()),
+        slope: d.dot(axis.a()),
     }
-    let disc = if ya == 0.0 {
-        Some(Part::Cap0)
-    } else if ya == aa {
-        Some(Part::Cap1)
+}
+
+#[inline]
+fn parallel_below<S: Real>() -> S {
+    let limit = S::from_f64(PARALLEL_BELOW);
+    if limit > S::MIN_POSITIVE {
+        limit
     } else {
-        None
-    };
-    let end = |t| ChordEnd {
-        t,
-        part: disc.unwrap_or(Part::Side),
-        on_rim: disc.is_some(),
-    };
-    Some(Chord {
-        enter: end(t0),
-        leave: end(t1),
-        lies_on: disc,
-    })
+        S::MIN_POSITIVE
+    }
 }

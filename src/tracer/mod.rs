@@ -7,8 +7,10 @@
 //! placed prototype (`prototype`), the query keeps the best hit (`query`), and
 //! what the caller wants to know of it is worked out at the end (`resolve`).
 
+mod all_hits;
 mod build;
 mod estimate;
+mod found;
 mod frame;
 mod hit;
 mod prototype;
@@ -18,6 +20,7 @@ mod resolve;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
+pub use all_hits::{AllHits, DEFAULT_BATCH};
 pub use build::TracerError;
 pub use estimate::MemoryEstimate;
 pub use hit::Hit;
@@ -26,6 +29,7 @@ use crate::embree::{Device, DeviceOptions, MaxIsa};
 use crate::math::{Bounds, Ray, power_of_two, power_of_two_below};
 use crate::scene::{CylinderRecord, Placement, PrototypeIndex, Scene};
 use build::Plan;
+use found::{Found, Keep};
 use frame::LocalRay;
 use prototype::Prototype;
 use query::Query;
@@ -114,7 +118,7 @@ impl Tracer {
     /// ([`Ray::is_valid`]).
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
-        self.answer(ray, Prototype::closest)
+        self.answer(ray, Prototype::search)
     }
 
     /// As [`Tracer::closest`], without Embree: every placement and every solid
@@ -122,7 +126,19 @@ impl Tracer {
     /// same solver, and very slow.
     #[must_use]
     pub fn closest_exhaustive(&self, ray: &Ray) -> Option<Hit> {
-        self.answer(ray, Prototype::closest_exhaustive)
+        self.answer(ray, Prototype::search_exhaustively)
+    }
+
+    /// Every point of a surface that the ray meets, in order of `t`, then of
+    /// instance path, primitive, entry before exit, and part. The first is that
+    /// of [`Tracer::closest`].
+    ///
+    /// The hits are found on the way, `batch` of them in a traversal, so that
+    /// memory does not grow with their number; the answer is the same for
+    /// every `batch`, which is taken as at least 1. A tangent is an entry and an exit at the same `t`.
+    #[must_use]
+    pub fn all_hits(&self, ray: &Ray, batch: usize) -> AllHits<'_> {
+        AllHits::new(self, ray, batch)
     }
 
     /// Whether the ray meets any surface.
@@ -132,7 +148,7 @@ impl Tracer {
         let Some((ray, _)) = with_usual_length(ray) else {
             return false;
         };
-        root.occluded(&LocalRay::new(&ray), &mut Query::new(&ray))
+        root.occluded(&LocalRay::new(&ray), &mut Query::first(&ray))
     }
 
     /// The box around all surfaces, in world space; empty for an empty scene.
@@ -159,13 +175,26 @@ impl Tracer {
         trace: impl FnOnce(&Prototype, &LocalRay, &mut Query),
     ) -> Option<Hit> {
         let root = self.root.as_ref()?;
-        let (ray, [unit, lift]) = with_usual_length(ray)?;
-        let mut query = Query::new(&ray);
+        let (ray, factors) = with_usual_length(ray)?;
+        let mut query = Query::first(&ray);
         trace(root, &LocalRay::new(&ray), &mut query);
-        let best = query.best?;
-        let mut hit = resolve::resolve(&self.scene, root, &ray, &best);
+        match query.keep {
+            Keep::First(Some(found)) => Some(self.resolved(root, &ray, factors, &found)),
+            _ => None,
+        }
+    }
+
+    /// The answer for a hit of the ray in use.
+    fn resolved(
+        &self,
+        root: &Arc<Prototype>,
+        ray: &Ray,
+        [unit, lift]: [f64; 2],
+        found: &Found,
+    ) -> Hit {
+        let mut hit = resolve::resolve(&self.scene, root, ray, found);
         hit.t = hit.t * unit * lift;
-        Some(hit)
+        hit
     }
 }
 

@@ -148,8 +148,8 @@ impl Prototype {
         (record, &self.placements.children[record.child as usize])
     }
 
-    /// Traces for the closest hit; `query` keeps it.
-    pub fn closest(&self, ray: &LocalRay, query: &mut Query) {
+    /// Traces for the hits that `query` keeps.
+    pub fn search(&self, ray: &LocalRay, query: &mut Query) {
         if let Some((level, ray32)) = query.enter(&self.frame, ray) {
             let outer = query.level.replace(level);
             self.scene.closest(&ray32, query);
@@ -168,9 +168,9 @@ impl Prototype {
         hit
     }
 
-    /// As [`Prototype::closest`], but visits every primitive instead of asking
+    /// As [`Prototype::search`], but visits every primitive instead of asking
     /// Embree for candidates.
-    pub fn closest_exhaustive(&self, ray: &LocalRay, query: &mut Query) {
+    pub fn search_exhaustively(&self, ray: &LocalRay, query: &mut Query) {
         let Some((level, _)) = query.enter(&self.frame, ray) else {
             return;
         };
@@ -180,7 +180,7 @@ impl Prototype {
         }
         for placement in 0..self.placements.records.len() as u32 {
             self.placements
-                .visit(placement, query, Self::closest_exhaustive);
+                .visit(placement, query, Self::search_exhaustively);
         }
         query.level = outer;
     }
@@ -191,13 +191,9 @@ impl CylinderGeometry {
         &self.description.prototypes[self.prototype.0 as usize].cylinders
     }
 
-    /// Whether the cylinder's first meeting became the best hit.
     #[inline]
-    fn visit(&self, index: u32, query: &mut Query) -> bool {
-        let record = &self.records()[index as usize];
-        query
-            .meet(record)
-            .is_some_and(|meeting| query.offer(meeting, self.prototype, index, record.primitive()))
+    fn visit(&self, index: u32, query: &mut Query) {
+        query.visit(&self.records()[index as usize], self.prototype, index);
     }
 }
 
@@ -215,13 +211,22 @@ impl UserGeometry for CylinderGeometry {
 
     #[inline]
     fn intersect(&self, primitive: u32, query: &mut Query) -> Option<f32> {
-        self.visit(primitive, query).then(|| query.t_far())
+        shorter(query, |query| self.visit(primitive, query))
     }
 
     #[inline]
     fn occluded(&self, primitive: u32, query: &mut Query) -> bool {
-        query.meet(&self.records()[primitive as usize]).is_some()
+        query.meets(&self.records()[primitive as usize])
     }
+}
+
+/// Lets `visit` find hits, and answers with Embree's new `t_far` if that leaves
+/// less room for others.
+#[inline]
+fn shorter(query: &mut Query, visit: impl FnOnce(&mut Query)) -> Option<f32> {
+    let before = query.bound();
+    visit(query);
+    (query.bound() < before).then(|| query.t_far())
 }
 
 impl PlacementGeometry {
@@ -284,10 +289,9 @@ impl UserGeometry for Arc<PlacementGeometry> {
     }
 
     fn intersect(&self, primitive: u32, query: &mut Query) -> Option<f32> {
-        let before = query.best.as_ref().map(|best| best.t);
-        self.visit(primitive, query, Prototype::closest);
-        let after = query.best.as_ref().map(|best| best.t);
-        (after != before).then(|| query.t_far())
+        shorter(query, |query| {
+            self.visit(primitive, query, Prototype::search)
+        })
     }
 
     fn occluded(&self, primitive: u32, query: &mut Query) -> bool {

@@ -1,36 +1,17 @@
-//! The state of one query: the f64 ray and the best hit so far.
+//! The state of one query: the f64 ray and the hits so far.
 //!
 //! It travels through Embree in the query context. Embree's own f32 ray only
 //! finds candidates; what is a hit, and which is nearer, is decided here on
 //! f64 alone.
 
-use arrayvec::ArrayVec;
-
+use super::found::{Found, InstancePath, Keep};
 use super::frame::{Frame, Level, LocalRay};
 use crate::embree::Ray32;
 use crate::math::Ray;
-use crate::scene::{CylinderRecord, GREATEST_DEPTH, PrototypeIndex};
-use crate::solid::{Meeting, triple_product};
+use crate::scene::{CylinderRecord, PrototypeIndex};
+use crate::solid::{Chord, Cylinder, triple_product};
 
-/// The placements on the way from the root to a prototype, outermost first.
-pub(crate) type InstancePath = ArrayVec<u32, GREATEST_DEPTH>;
-
-/// A hit as the query keeps it: what is needed to work it out afterwards.
-#[derive(Clone, Debug)]
-pub(crate) struct Best {
-    /// The parameter of the ray that was asked for.
-    pub t: f64,
-    /// The meeting, whose `t` counts from the local ray's origin.
-    pub meeting: Meeting,
-    pub prototype: PrototypeIndex,
-    /// The position in the prototype's list of cylinders.
-    pub record: u32,
-    /// The number that the user knows it by.
-    pub primitive: u32,
-    pub path: InstancePath,
-}
-
-/// A closest-hit or any-hit query on its way.
+/// A query on its way.
 #[derive(Debug)]
 pub(crate) struct Query {
     t_min: f64,
@@ -38,27 +19,43 @@ pub(crate) struct Query {
     /// The ray in the prototype that is being traced.
     pub level: Option<Level>,
     pub path: InstancePath,
-    pub best: Option<Best>,
+    pub keep: Keep,
 }
 
 impl Query {
-    pub fn new(ray: &Ray) -> Self {
+    /// A query for the first hit, or whether there is any.
+    pub fn first(ray: &Ray) -> Self {
+        Self::new(ray, Keep::First(None))
+    }
+
+    /// A query for the next hits after one, at most `most`.
+    pub fn next(ray: &Ray, after: Option<Found>, most: usize) -> Self {
+        let t_min = after.as_ref().map_or(ray.t_min, |after| after.meeting.t);
+        let hits = Vec::new();
+        let keep = Keep::Next { after, most, hits };
+        Self {
+            t_min,
+            ..Self::new(ray, keep)
+        }
+    }
+
+    fn new(ray: &Ray, keep: Keep) -> Self {
         Self {
             t_min: ray.t_min,
             t_max: ray.t_max,
             level: None,
             path: InstancePath::new(),
-            best: None,
+            keep,
         }
     }
 
-    /// The greatest `t` that can still become the answer.
+    /// The greatest `t` that can still be part of the answer.
     #[inline]
-    fn bound(&self) -> f64 {
-        self.best.as_ref().map_or(self.t_max, |best| best.t)
+    pub fn bound(&self) -> f64 {
+        self.keep.bound(self.t_max)
     }
 
-    /// The ray in a prototype, if anything there could become the answer.
+    /// The ray in a prototype, if anything there could be part of the answer.
     #[inline]
     pub fn enter(&self, frame: &Frame, ray: &LocalRay) -> Option<(Level, Ray32)> {
         frame.enter(ray, self.t_min, self.bound())
@@ -72,49 +69,49 @@ impl Query {
             .expect("callbacks run within a prototype")
     }
 
-    /// The first point in range where the ray meets a cylinder of the current
-    /// prototype.
+    /// The stretch of the ray inside a cylinder of the current prototype.
     #[inline]
-    pub fn meet(&self, record: &CylinderRecord) -> Option<Meeting> {
-        let (cylinder, ray) = (record.cylinder(), &self.level().ray);
-        triple_product::chord(&cylinder, ray.origin_from(cylinder.p0()), ray.direction)?.first(
-            cylinder.caps(),
-            ray.shift,
-            self.t_min,
-            self.bound(),
-        )
+    fn chord(&self, cylinder: &Cylinder) -> Option<Chord> {
+        let ray = &self.level().ray;
+        triple_product::chord(cylinder, ray.origin_from(cylinder.p0()), ray.direction)
     }
 
-    /// Takes a meeting as the best hit if it comes before the best so far:
-    /// less `t`, or the same and a lesser (path, primitive).
+    /// Whether the ray meets a cylinder of the current prototype.
     #[inline]
-    pub fn offer(
-        &mut self,
-        meeting: Meeting,
-        prototype: PrototypeIndex,
-        record: u32,
-        primitive: u32,
-    ) -> bool {
-        let t = meeting.t + self.level().ray.shift;
-        if let Some(best) = &self.best
-            && (t > best.t
-                || (t == best.t && (&self.path, primitive) >= (&best.path, best.primitive)))
-        {
-            return false;
+    pub fn meets(&self, record: &CylinderRecord) -> bool {
+        let (cylinder, shift) = (record.cylinder(), self.level().ray.shift);
+        self.chord(&cylinder)
+            .and_then(|chord| chord.first(cylinder.caps(), shift, self.t_min, self.t_max))
+            .is_some()
+    }
+
+    /// Keeps of the points where the ray meets a cylinder of the current
+    /// prototype those that are wanted.
+    #[inline]
+    pub fn visit(&mut self, record: &CylinderRecord, prototype: PrototypeIndex, position: u32) {
+        let (cylinder, shift) = (record.cylinder(), self.level().ray.shift);
+        let Some(chord) = self.chord(&cylinder) else {
+            return;
+        };
+        let primitive = record.primitive();
+        let meetings = chord.meetings(cylinder.caps(), shift, self.t_min, self.bound());
+        let wanted = match self.keep {
+            Keep::First(_) => 1,
+            Keep::Next { .. } => 2,
+        };
+        for meeting in meetings.take(wanted) {
+            self.keep
+                .offer(meeting, &self.path, primitive, |meeting, path| Found {
+                    meeting,
+                    prototype,
+                    record: position,
+                    primitive,
+                    path: path.clone(),
+                });
         }
-        let path = self.path.clone();
-        self.best = Some(Best {
-            t,
-            meeting,
-            prototype,
-            record,
-            primitive,
-            path,
-        });
-        true
     }
 
-    /// The `t_far` that leaves room for hits as near as the best one.
+    /// The `t_far` that leaves room for all hits that would be kept.
     #[inline]
     pub fn t_far(&self) -> f32 {
         self.level().window.t_far(self.bound())

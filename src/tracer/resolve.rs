@@ -32,9 +32,9 @@
 use std::sync::Arc;
 
 use super::Hit;
+use super::found::Found;
 use super::frame::LocalRay;
 use super::prototype::Prototype;
-use super::query::Best;
 use crate::math::{PlacementErrors, Ray, UNIT_ROUNDOFF};
 use crate::scene::Scene;
 use crate::solid::{SolidKind, surface_point};
@@ -45,13 +45,13 @@ use crate::solid::{SolidKind, surface_point};
 const SOLVER_DISPLACEMENT: f64 = 32.0 * UNIT_ROUNDOFF;
 
 /// The answer for the best hit of a query with `ray`.
-pub(crate) fn resolve(scene: &Scene, root: &Arc<Prototype>, ray: &Ray, best: &Best) -> Hit {
+pub(crate) fn resolve(scene: &Scene, root: &Arc<Prototype>, ray: &Ray, found: &Found) -> Hit {
     // Down to the prototype that was hit.
     let mut prototype = root;
     let mut local = root.frame.approach(&LocalRay::new(ray)).0;
-    let mut placements = Vec::with_capacity(best.path.len());
+    let mut placements = Vec::with_capacity(found.path.len());
     let mut description = &scene.prototypes[0];
-    for &index in &best.path {
+    for &index in &found.path {
         let (record, child) = prototype.placement(index);
         let placement = &description.placements[index as usize];
         placements.push((record, placement.parent_from_child));
@@ -61,10 +61,10 @@ pub(crate) fn resolve(scene: &Scene, root: &Arc<Prototype>, ray: &Ray, best: &Be
     }
 
     // The point on the solid.
-    let record = &description.cylinders[best.record as usize];
+    let record = &description.cylinders[found.record as usize];
     let cylinder = record.cylinder();
-    let from_p0 = local.origin_from(cylinder.p0()) + local.direction * best.meeting.t;
-    let surface = surface_point(&cylinder, best.meeting.part, from_p0);
+    let from_p0 = local.origin_from(cylinder.p0()) + local.direction * found.meeting.t_local;
+    let surface = surface_point(&cylinder, found.meeting.part, from_p0);
     let mut size = (cylinder.p1() - cylinder.p0()).length() + 2.0 * cylinder.radius();
     let seen = surface.point.length()
         + cylinder.p0().length()
@@ -92,18 +92,18 @@ pub(crate) fn resolve(scene: &Scene, root: &Arc<Prototype>, ray: &Ray, best: &Be
         2.0 * (error + displacement + 2.0 * UNIT_ROUNDOFF * point.length() + normal_error * size);
 
     Hit {
-        t: best.t,
+        t: found.meeting.t,
         point,
         error,
         normal,
         u: surface.u,
         v: surface.v,
-        prototype: best.prototype,
+        prototype: found.prototype,
         solid: SolidKind::Cylinder,
-        primitive: best.primitive,
-        part: best.meeting.part,
-        crossing: best.meeting.crossing,
-        instance: best.path.to_vec(),
+        primitive: found.primitive,
+        part: found.meeting.part,
+        crossing: found.meeting.crossing,
+        instance: found.path.to_vec(),
         material: record.material(),
         spawn_offset,
     }

@@ -1,0 +1,68 @@
+//! Time per ray of every formulation, by criterion: hits and misses apart.
+//!
+//! `cargo bench --bench solvers`; a name as argument picks formulations. The
+//! cases are ordinary ones, so this says what a formulation costs and nothing
+//! of what it gets wrong: that is `cyltrace bench accuracy`.
+
+use std::hint::black_box;
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use cyltrace::math::{Random, Ray};
+use cyltrace::oracle;
+use cyltrace::solid::formulations::{self, Problem};
+use cyltrace::solid::{Caps, Cylinder};
+use glam::DVec3;
+
+const SEED: u64 = 3;
+/// Records and rays of so many problems fit in the second cache, and are too
+/// many for the branch predictor to learn.
+const PROBLEMS: usize = 2_000;
+
+/// Capped cylinders of ordinary size, rays from some lengths away that are
+/// aimed up to two radii from the axis. All numbers are f32.
+fn problem(random: &mut Random) -> Problem {
+    let round = |v: DVec3| v.as_vec3().as_dvec3();
+    let p0 = round(random.direction() * random.uniform(0.0, 2.0));
+    let along = random.direction() * random.uniform(0.5, 4.0);
+    let radius = random.uniform(0.1, 1.0);
+    let target = p0
+        + along * random.uniform(-0.2, 1.2)
+        + along.cross(random.direction()).normalize() * (radius * random.uniform(0.0, 2.0));
+    let origin = round(target + random.direction() * random.uniform(5.0, 20.0));
+    let direction = round((target - origin) * random.uniform(0.1, 1.0));
+    let radius = round(DVec3::splat(radius)).x;
+    let cylinder = Cylinder::new(p0, round(p0 + along), radius, Caps::Both).expect("a cylinder");
+    Problem {
+        cylinder,
+        ray: Ray::new(origin, direction),
+    }
+}
+
+/// Problems of which all are hits, or all are misses.
+fn problems(are_hits: bool) -> Vec<Problem> {
+    let mut random = Random::new(SEED, u64::from(are_hits));
+    std::iter::repeat_with(|| problem(&mut random))
+        .filter(|problem| {
+            let truth = oracle::first_hit(&problem.cylinder, &problem.ray);
+            truth.hit.is_some() == are_hits
+        })
+        .take(PROBLEMS)
+        .collect()
+}
+
+fn solvers(criterion: &mut Criterion) {
+    for (name, are_hits) in [("hits", true), ("misses", false)] {
+        let problems = problems(are_hits);
+        let mut group = criterion.benchmark_group(name);
+        group.throughput(Throughput::Elements(PROBLEMS as u64));
+        for formulation in formulations::all() {
+            let batch = formulation.batch(&problems);
+            let id = BenchmarkId::new(formulation.name(), formulation.precision().name());
+            group.bench_function(id, |bencher| bencher.iter(|| black_box(&batch).run()));
+        }
+        group.finish();
+    }
+}
+
+criterion_group!(benches, solvers);
+criterion_main!(benches);
