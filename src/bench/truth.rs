@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::statistics::p99;
+use crate::cases::{Family, Inputs};
 use crate::oracle::{CylinderTruth, exact, first_hit, to_f64};
 use crate::solid::formulations::{Formulation, Problem};
 
@@ -62,6 +63,15 @@ impl JudgedCases {
             problems,
             truths,
         }
+    }
+
+    /// The first `count` cases of a family in f32 numbers, so that what computes
+    /// in f32 is asked the same question.
+    #[must_use]
+    pub fn of(family: Family, seed: u64, count: u64) -> Self {
+        let draw = |index| family.case(seed, index, Inputs::F32);
+        let problems = (0..count).into_par_iter().map(draw).collect();
+        Self::new(family.name(), problems)
     }
 
     /// The name of their family.

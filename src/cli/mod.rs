@@ -4,6 +4,7 @@
 //! could not run; 130 it was interrupted.
 
 mod arguments;
+mod bench;
 mod hit_table;
 mod info;
 mod interrupt;
@@ -36,6 +37,7 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::run(arguments),
         Command::Trace(arguments) => trace::run(arguments),
         Command::Info(arguments) => info::run(arguments),
+        Command::Bench(arguments) => bench::run(arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -81,23 +81,30 @@ const LABEL_HEIGHT: f64 = 14.0;
 /// A label farther than this from its mark is led to it by a line.
 const LED: f64 = 16.0;
 
-/// The colours are those of Okabe and Ito (2008), which colour-blind readers
-/// can tell apart; in the dark some are lighter.
+/// The colours of series are after Okabe and Ito (2008), which colour-blind
+/// readers can tell apart; in the dark they are lighter. They are written out
+/// where variables would be shorter, for programs other than browsers know none.
 const STYLE: &str = "\
-.cyl { font: 12px system-ui, 'DejaVu Sans', sans-serif; --ink: #1c1e21; --paper: #ffffff; --rule: #e3e6ea; --c0: #c45100; --c1: #0067a5; --c2: #a8468a; --c3: #6b7178; --c4: #00805c; }
-@media (prefers-color-scheme: dark) { .cyl { --ink: #e4e6e9; --paper: #16181b; --rule: #2e3338; --c0: #f0883e; --c1: #58b0ee; --c2: #df8fc8; --c3: #9aa1a9; --c4: #35c794; } }
-.cyl .paper { fill: var(--paper); }
-.cyl text { fill: var(--ink); }
+.cyl { font: 12px 'DejaVu Sans', Verdana, sans-serif; }
+.cyl .paper, .cyl .second { fill: #ffffff; }
+.cyl text { fill: #1c1e21; }
 .cyl .middle { text-anchor: middle; }
 .cyl .end { text-anchor: end; }
-.cyl .rule { stroke: var(--rule); stroke-width: 1; }
-.cyl .axis { stroke: var(--ink); stroke-width: 1; fill: none; }
-.cyl .lead { stroke: var(--ink); stroke-width: 0.6; opacity: 0.5; }
+.cyl .rule { stroke: #e3e6ea; stroke-width: 1; }
+.cyl .axis { stroke: #1c1e21; stroke-width: 1; fill: none; }
+.cyl .lead { stroke: #1c1e21; stroke-width: 0.6; opacity: 0.5; }
 .cyl .join { stroke: currentColor; stroke-width: 1; opacity: 0.45; }
 .cyl .curve { stroke: currentColor; stroke-width: 1.5; fill: none; }
-.cyl .first { fill: currentColor; stroke: var(--paper); stroke-width: 1; }
-.cyl .second { fill: var(--paper); stroke: currentColor; stroke-width: 1.5; }
-.cyl .s0 { color: var(--c0); } .cyl .s1 { color: var(--c1); } .cyl .s2 { color: var(--c2); } .cyl .s3 { color: var(--c3); } .cyl .s4 { color: var(--c4); }
+.cyl .first { fill: currentColor; }
+.cyl .second { stroke: currentColor; stroke-width: 1.5; }
+.cyl .s0 { color: #c45100; } .cyl .s1 { color: #0067a5; } .cyl .s2 { color: #a8468a; } .cyl .s3 { color: #6b7178; } .cyl .s4 { color: #00805c; }
+@media (prefers-color-scheme: dark) {
+.cyl .paper, .cyl .second { fill: #16181b; }
+.cyl text { fill: #e4e6e9; }
+.cyl .rule { stroke: #2e3338; }
+.cyl .axis, .cyl .lead { stroke: #e4e6e9; }
+.cyl .s0 { color: #f0883e; } .cyl .s1 { color: #58b0ee; } .cyl .s2 { color: #df8fc8; } .cyl .s3 { color: #9aa1a9; } .cyl .s4 { color: #35c794; }
+}
 ";
 
 /// A logarithmic axis.
@@ -283,6 +290,12 @@ impl Figure {
                 });
             }
         }
+        for series in self.series.iter().filter(|series| series.is_curve) {
+            let corners: Vec<(f64, f64)> = series.marks.iter().map(at).collect();
+            for ends in corners.windows(2) {
+                lines.extend(along(ends[0], ends[1]));
+            }
+        }
         let around = Surroundings {
             frame: PLOT,
             marks,
@@ -302,6 +315,17 @@ impl Figure {
             text(svg, "middle", (centre, place.bottom - 3.0), &mark.label);
         }
     }
+}
+
+/// Small squares that cover a slanted line.
+fn along((x1, y1): (f64, f64), (x2, y2): (f64, f64)) -> impl Iterator<Item = Rectangle> {
+    const HALF: f64 = 1.5;
+    let longer = (x2 - x1).abs().max((y2 - y1).abs());
+    let count = (longer / (2.0 * HALF)).ceil().max(1.0);
+    (0..=count as u32).map(move |index| {
+        let part = f64::from(index) / count;
+        Rectangle::around(x1 + part * (x2 - x1), y1 + part * (y2 - y1), HALF)
+    })
 }
 
 /// The least and greatest decimal logarithm of those numbers that have one.
