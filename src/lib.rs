@@ -10,6 +10,7 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod solid;
+pub mod stress;
 pub mod tracer;
 
 // Compiles and runs the README's Rust examples.

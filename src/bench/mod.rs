@@ -17,7 +17,7 @@ mod truth;
 
 pub use accuracy::{Accuracy, Contender, Row, Settings, Times, contenders, rival_names};
 pub use machine::Circumstances;
-pub use outputs::{SUMMARY_HEADINGS, figure, full_name, page, summary, table};
+pub use outputs::{SUMMARY_HEADINGS, figure, page, summary, table};
 pub use rivals::{Native, SIDES, Shape, Spaced, Traced};
 pub use statistics::{Spread, p99};
 pub use timing::{Rounds, Timer, WallClock, interleave};

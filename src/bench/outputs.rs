@@ -2,7 +2,7 @@
 
 use super::accuracy::{Accuracy, Row, Times};
 use super::machine::Circumstances;
-use crate::report::{Figure, Mark, Page, Series, Symbol, csv};
+use crate::report::{self, Figure, Mark, Page, Series, Symbol, csv};
 use crate::solid::formulations::Precision;
 
 /// The kinds of contenders in the figure: legend, symbol, whether they are
@@ -86,7 +86,7 @@ fn mark(accuracy: &Accuracy, row: &Row) -> Option<Mark> {
             three_digits(row.ns.deviation),
             error(Some(y)),
             error(worst.map(|(_, error)| error)),
-            percent(row.wrong_percent_mean()),
+            report::figure(row.wrong_percent_mean()),
         ),
         x: row.ns.median,
         y,
@@ -152,11 +152,7 @@ pub fn page(accuracy: &Accuracy, circumstances: &Circumstances) -> String {
     let rows: Vec<Vec<String>> = accuracy
         .rows
         .iter()
-        .map(|row| {
-            let mut cells = vec![full_name(row)];
-            cells.extend(summary(accuracy, row));
-            cells
-        })
+        .map(|row| summary(accuracy, row))
         .collect();
     page.table(&SUMMARY_HEADINGS, &rows);
     page.note(
@@ -164,7 +160,7 @@ pub fn page(accuracy: &Accuracy, circumstances: &Circumstances) -> String {
     );
     page.heading("Wrong hits and misses, % of all cases");
     families(&mut page, accuracy, |errors| {
-        percent(errors.wrong_percent())
+        report::figure(errors.wrong_percent())
     });
     page.heading("Position error in radii, 99th percentile");
     families(&mut page, accuracy, |errors| error(errors.p99_r));
@@ -198,7 +194,7 @@ fn families(page: &mut Page, accuracy: &Accuracy, cell: impl Fn(&super::truth::E
     page.table(&headings, &rows);
 }
 
-/// The name's column and those of [`summary`].
+/// The columns of [`summary`].
 pub const SUMMARY_HEADINGS: [&str; 9] = [
     "contender",
     "times",
@@ -223,20 +219,20 @@ pub fn summary(accuracy: &Accuracy, row: &Row) -> Vec<String> {
         |(family, found)| format!("{} {}", accuracy.families[family], error(Some(found))),
     );
     vec![
+        full_name(row),
         row.times.name().to_owned(),
         three_digits(row.ns.median),
         three_digits(row.ns.deviation),
         ratio,
         error(row.p99_error_r()),
         worst,
-        percent(row.wrong_percent_mean()),
+        report::figure(row.wrong_percent_mean()),
         row.bytes.to_string(),
     ]
 }
 
 /// The name with the precision.
-#[must_use]
-pub fn full_name(row: &Row) -> String {
+fn full_name(row: &Row) -> String {
     format!("{} {}", row.name, row.precision.name())
 }
 
@@ -245,22 +241,8 @@ fn three_digits(x: f64) -> String {
     format!("{x:.decimals$}")
 }
 
-fn percent(x: f64) -> String {
-    if x == 0.0 {
-        String::from("0")
-    } else if x < 0.01 {
-        format!("{x:.0e}")
-    } else {
-        three_digits(x)
-    }
-}
-
 fn error(x: Option<f64>) -> String {
-    match x {
-        None => String::from("–"),
-        Some(x) if x == 0.0 => String::from("0"),
-        Some(x) => format!("{x:.1e}"),
-    }
+    x.map_or_else(|| String::from("–"), report::figure)
 }
 
 #[cfg(test)]
@@ -323,7 +305,7 @@ mod tests {
         }
         assert!(!svg.contains("blind"), "{svg}");
         assert_eq!(svg.matches("<polyline").count(), 1, "{svg}");
-        assert!(svg.contains("in far inf r; 1.50 % wrong hits"), "{svg}");
+        assert!(svg.contains("in far inf r; 1.5 % wrong hits"), "{svg}");
     }
 
     #[test]
@@ -356,6 +338,5 @@ mod tests {
     fn numbers_are_short() {
         let written = [0.123_45, 1.234, 12.34, 1234.5].map(three_digits);
         assert_eq!(written, ["0.12", "1.23", "12.3", "1234"]);
-        assert_eq!([0.0, 0.001_23, 3.21].map(percent), ["0", "1e-3", "3.21"]);
     }
 }

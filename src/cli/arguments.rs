@@ -4,6 +4,7 @@ use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use cyltrace::cases::{Family, Inputs};
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{Film, Integrator};
 
@@ -23,6 +24,7 @@ pub enum Command {
     Trace(TraceArguments),
     Info(InfoArguments),
     Bench(BenchArguments),
+    Stress(StressArguments),
 }
 
 /// What every command takes.
@@ -110,6 +112,43 @@ pub struct InfoArguments {
     pub common: Common,
 }
 
+/// Put hard cases to every formulation and to exact arithmetic
+///
+/// Exits with 1 when a promise of the library's own solvers is broken.
+#[derive(Args, Debug)]
+pub struct StressArguments {
+    /// Only this family; may be repeated [default: all twenty]
+    #[arg(long, value_name = "NAME")]
+    pub family: Vec<Family>,
+    /// Cases of each family and kind of inputs
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    pub cases: u64,
+    /// Chooses the cases
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Only cases of f32 or of f64 numbers [default: both]
+    #[arg(long, value_name = "KIND", value_parser = parse_inputs)]
+    pub inputs: Option<Inputs>,
+    /// Only this formulation, in f32 and f64; may be repeated [default: all]
+    #[arg(long, value_name = "NAME")]
+    pub formulation: Vec<String>,
+    /// Write the tables, the figures and maps into DIR
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+    /// Print what is promised and run nothing
+    #[arg(long, conflicts_with_all = ["replay", "map"])]
+    pub promises: bool,
+    /// Print a case, as a run printed it, and what each formulation says
+    #[arg(long, value_name = "BITS", conflicts_with = "map")]
+    pub replay: Option<String>,
+    /// Draw which formulations are right on neighbouring floats around the
+    /// hardest case of a family
+    #[arg(long, value_name = "FAMILY")]
+    pub map: Option<Family>,
+    #[command(flatten)]
+    pub common: Common,
+}
+
 /// Measure run times and errors
 #[derive(Args, Debug)]
 pub struct BenchArguments {
@@ -186,4 +225,9 @@ fn parse_size(text: &str) -> Result<Film, String> {
         })
     });
     size.ok_or_else(|| "it must be two whole numbers above 0, such as 1280x720".to_owned())
+}
+
+fn parse_inputs(text: &str) -> Result<Inputs, String> {
+    let known = Inputs::ALL.into_iter().find(|inputs| inputs.name() == text);
+    known.ok_or_else(|| "it must be f32 or f64".to_owned())
 }

@@ -8,10 +8,11 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use cyltrace::bench::{
     Accuracy, Circumstances, Contender, JudgedCases, Row, SUMMARY_HEADINGS, Settings, WallClock,
-    contenders, figure, full_name, page, rival_names, summary, table,
+    contenders, figure, page, rival_names, summary, table,
 };
 use cyltrace::cases::Family;
 use cyltrace::render::NewFile;
+use cyltrace::report::Table;
 use cyltrace::solid::formulations;
 use cyltrace::tracer::Options;
 use serde_json::{Value, json};
@@ -114,31 +115,14 @@ fn write(path: &Path, text: &str) -> anyhow::Result<()> {
     Ok(file.finish()?)
 }
 
-/// The table for people, as wide as its cells.
+/// The table for people.
 fn print(found: &Accuracy, circumstances: &Circumstances) {
-    let mut rows = vec![SUMMARY_HEADINGS.map(str::to_owned).to_vec()];
-    rows.extend(found.rows.iter().map(|row| {
-        let mut cells = vec![full_name(row)];
-        cells.extend(summary(found, row));
-        cells
-    }));
-    let widths: Vec<usize> = (0..SUMMARY_HEADINGS.len())
-        .map(|column| {
-            let lengths = rows.iter().map(|row| row[column].chars().count());
-            lengths.max().unwrap_or(0)
-        })
-        .collect();
-    println!("{}", circumstances.sentence());
-    for row in &rows {
-        let cells = row.iter().zip(&widths).enumerate();
-        let line: Vec<String> = cells
-            .map(|(column, (cell, &width))| match column {
-                0 => format!("{cell:<width$}"),
-                _ => format!("{cell:>width$}"),
-            })
-            .collect();
-        println!("{}", line.join("  "));
+    let mut table = Table::new(&SUMMARY_HEADINGS, 2);
+    for row in &found.rows {
+        table.push(summary(found, row));
     }
+    println!("{}", circumstances.sentence());
+    print!("{table}");
 }
 
 /// All figures. A percentile that is not finite, or that no hit gives, is

@@ -14,6 +14,7 @@ mod progress;
 mod ray_table;
 mod render;
 mod scene;
+mod stress;
 mod target;
 mod trace;
 
@@ -23,6 +24,12 @@ use clap::Parser;
 
 use arguments::{Arguments, Command};
 use interrupt::Interrupted;
+
+/// Nothing is wrong.
+const GOOD: u8 = 0;
+
+/// A check failed.
+const CHECK_FAILED: u8 = 1;
 
 /// The command could not run.
 const COULD_NOT_RUN: u8 = 2;
@@ -34,13 +41,14 @@ const INTERRUPTED: u8 = 130;
 pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
     let result = match &arguments.command {
-        Command::Render(arguments) => render::run(arguments),
-        Command::Trace(arguments) => trace::run(arguments),
-        Command::Info(arguments) => info::run(arguments),
-        Command::Bench(arguments) => bench::run(arguments),
+        Command::Render(arguments) => render::run(arguments).map(|()| GOOD),
+        Command::Trace(arguments) => trace::run(arguments).map(|()| GOOD),
+        Command::Info(arguments) => info::run(arguments).map(|()| GOOD),
+        Command::Bench(arguments) => bench::run(arguments).map(|()| GOOD),
+        Command::Stress(arguments) => stress::run(arguments),
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => ExitCode::from(code),
         Err(error) if error.is::<Interrupted>() => {
             eprintln!("error: {error}");
             ExitCode::from(INTERRUPTED)

@@ -4,12 +4,14 @@ mod chord;
 mod cylinder;
 pub mod formulations;
 mod slab;
+mod spawn;
 mod surface;
 pub mod tessellation;
 pub mod triple_product;
 
 pub use chord::{Chord, ChordEnd, Meeting};
 pub use cylinder::{Caps, Cylinder, CylinderError};
+pub use spawn::{SpawnMargin, spawned_ray};
 pub use surface::{SurfacePoint, surface_point};
 
 /// The kinds of solids; [`SolidKind::name`] is the `solid` column of `trace`.

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::math::Ray;
 use crate::scene::{MaterialIndex, PrototypeIndex};
-use crate::solid::{Crossing, Part, SolidKind};
+use crate::solid::{Crossing, Part, SolidKind, spawned_ray};
 
 /// A point where a ray meets the surface of a solid, in world space.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,14 +45,6 @@ impl Hit {
     /// points to.
     #[must_use]
     pub fn spawn(&self, direction: DVec3) -> Ray {
-        let side = if direction.dot(self.normal) < 0.0 {
-            -1.0
-        } else {
-            1.0
-        };
-        Ray::new(
-            self.point + self.normal * (side * self.spawn_offset),
-            direction,
-        )
+        spawned_ray(self.point, self.normal, self.spawn_offset, direction)
     }
 }

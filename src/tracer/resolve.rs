@@ -12,22 +12,13 @@
 //! `4 u |L| |c|`, and the last sum, `u |p|`. The inverse is not used on the way
 //! up, so its error does not enter.
 //!
-//! **Where a spawned ray may start.** A new ray from near the surface must not
-//! meet it there again. Put the start at distance δ outside the tangent plane
-//! of the true surface. All that the next query computes is the exact answer
-//! for a start and a direction that are a little displaced; as the solid is
-//! convex and the direction does not point into it, there is no such meeting
-//! if δ is more than all displacements together, counted in world space:
+//! **Where a spawned ray may start.** `solid::SpawnMargin` says what the solver
+//! may displace. On the way up, counted in the space reached:
 //!
-//! - the point's own `error`, and the rounding of the start, `u |p|`;
 //! - for each placement, `inverse_error` (see `math::placement`) times the
 //!   distance to the child's origin, and times the solid's size for the
 //!   direction;
-//! - for the solver, [`SOLVER_DISPLACEMENT`] times the sizes that it sees;
-//! - for the normal, which is within `16 u` times the conditions of the
-//!   placements of the true one, that angle times the solid's size.
-//!
-//! The sum, taken twice for the terms of second order, is `spawn_offset`.
+//! - for the normal, its angle times the condition of the placement.
 
 use std::sync::Arc;
 
@@ -37,12 +28,7 @@ use super::frame::LocalRay;
 use super::prototype::Prototype;
 use crate::math::{PlacementErrors, Ray, UNIT_ROUNDOFF};
 use crate::scene::Scene;
-use crate::solid::{SolidKind, surface_point};
-
-/// The triple-product solver answers exactly for a ray displaced by at most
-/// this times `|o| + |p0| + |p1| + 2 radius`; `docs/derivations.md`, section 5,
-/// adds up its roundings to 22 u.
-const SOLVER_DISPLACEMENT: f64 = 32.0 * UNIT_ROUNDOFF;
+use crate::solid::{SolidKind, SpawnMargin, surface_point};
 
 /// The answer for the best hit of a query with `ray`.
 pub(crate) fn resolve(scene: &Scene, root: &Arc<Prototype>, ray: &Ray, found: &Found) -> Hit {
@@ -65,16 +51,10 @@ pub(crate) fn resolve(scene: &Scene, root: &Arc<Prototype>, ray: &Ray, found: &F
     let cylinder = record.cylinder();
     let from_p0 = local.origin_from(cylinder.p0()) + local.direction * found.meeting.t_local;
     let surface = surface_point(&cylinder, found.meeting.part, from_p0);
-    let mut size = (cylinder.p1() - cylinder.p0()).length() + 2.0 * cylinder.radius();
-    let seen = surface.point.length()
-        + cylinder.p0().length()
-        + cylinder.p1().length()
-        + 2.0 * cylinder.radius();
+    let mut margin = SpawnMargin::new(&cylinder, &surface);
 
     // Up again to the world.
     let (mut point, mut normal, mut error) = (surface.point, surface.normal, surface.error);
-    let mut displacement = SOLVER_DISPLACEMENT * seen;
-    let mut normal_error = 16.0 * UNIT_ROUNDOFF;
     for (record, parent_from_child) in placements.iter().rev() {
         let way = &record.child_from_parent;
         let errors = PlacementErrors::new(parent_from_child, way);
@@ -83,13 +63,11 @@ pub(crate) fn resolve(scene: &Scene, root: &Arc<Prototype>, ray: &Ray, found: &F
         point = moved + parent_from_child.translation;
         normal = way.parent_normal(normal);
         error = errors.stretch * error + UNIT_ROUNDOFF * (4.0 * terms + point.length());
-        size *= errors.stretch;
-        displacement =
-            errors.stretch * displacement + errors.inverse_error * (moved.length() + error + size);
-        normal_error = errors.condition * (normal_error + 16.0 * UNIT_ROUNDOFF);
+        margin.size *= errors.stretch;
+        margin.displacement = errors.stretch * margin.displacement
+            + errors.inverse_error * (moved.length() + error + margin.size);
+        margin.normal_error = errors.condition * (margin.normal_error + 16.0 * UNIT_ROUNDOFF);
     }
-    let spawn_offset =
-        2.0 * (error + displacement + 2.0 * UNIT_ROUNDOFF * point.length() + normal_error * size);
 
     Hit {
         t: found.meeting.t,
@@ -105,6 +83,6 @@ pub(crate) fn resolve(scene: &Scene, root: &Arc<Prototype>, ray: &Ray, found: &F
         crossing: found.meeting.crossing,
         instance: found.path.to_vec(),
         material: record.material(),
-        spawn_offset,
+        spawn_offset: margin.offset(point, error),
     }
 }

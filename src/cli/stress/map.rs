@@ -1,0 +1,37 @@
+//! `cyltrace stress --map`: a picture of which formulations are right.
+
+use std::path::Path;
+
+use cyltrace::cases::{Family, Inputs};
+use cyltrace::render::Output;
+use cyltrace::report::Table;
+use cyltrace::solid::formulations::Formulation;
+use cyltrace::stress::{to_bits, ulp_map};
+
+use crate::cli::arguments::StressArguments;
+
+/// Draws the map of a family into the report's folder, or the current one.
+pub fn run(
+    arguments: &StressArguments,
+    family: Family,
+    formulations: &[Box<dyn Formulation>],
+) -> anyhow::Result<()> {
+    let inputs = arguments.inputs.unwrap_or(Inputs::F32);
+    let directory = arguments.report.as_deref().unwrap_or(Path::new("."));
+    let name = format!("ulp_map_{}_{}.png", family.name(), inputs.name());
+    let path = directory.join(name);
+    Output::check(&path)?;
+    let map = ulp_map(formulations, family, inputs, arguments.seed);
+    Output::create(&path)?.write(&map.film)?;
+    if arguments.common.prints() {
+        let mut table = Table::new(&["tile", "wrong %"], 1);
+        for (name, wrong) in &map.tiles {
+            table.push(vec![name.clone(), format!("{:.2}", 100.0 * wrong)]);
+        }
+        println!("{}, tiles from the left of the top row:", path.display());
+        print!("{table}");
+        println!("{}", map.legend);
+        println!("the middle of each tile: {}", to_bits(&map.centre));
+    }
+    Ok(())
+}

@@ -1,0 +1,138 @@
+//! What the library promises about its own solvers, in one table.
+
+use std::fmt;
+
+use crate::cases::Inputs;
+use crate::solid::formulations::Precision;
+
+use super::cell::Cell;
+
+/// A row of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct Promise {
+    /// The formulation's name; its precision is f64.
+    pub formulation: &'static str,
+    /// For which inputs, in every family.
+    pub inputs: Inputs,
+    /// What is promised.
+    pub claim: Claim,
+    /// What it rests on.
+    pub why: &'static str,
+}
+
+/// Something that holds of a cell or does not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Claim {
+    /// Every hit, miss and part is the true one.
+    Right,
+    /// The same of cases that are promised, see [`super::Witness::new`].
+    RightWhereDecided,
+    /// The share of 0.999 of `t` rounded to f32 is within so many f32 ulps.
+    ThousandthF32Ulps(f64),
+    /// Every `t` is within so many f64 ulps.
+    EveryF64Ulps(f64),
+    /// Every promised `t` is within the bound of `docs/derivations.md`.
+    WithinBound,
+    /// Every answer is finite.
+    Finite,
+    /// No spawned ray meets the surface where it left it.
+    NoSelfHit,
+}
+
+/// (3) to (6) are those of `docs/derivations.md`, section 2.
+const DERIVED: &str = "derived, (3) to (6)";
+const MEASURED: &str = "measured over 20 families of 10^6";
+const CERTIFIED: &str = "certified by construction";
+const SPAWN: &str = "derived, section 5";
+
+const fn promise(
+    formulation: &'static str,
+    inputs: Inputs,
+    claim: Claim,
+    why: &'static str,
+) -> Promise {
+    Promise {
+        formulation,
+        inputs,
+        claim,
+        why,
+    }
+}
+
+/// Rounding to f32 alone gives 0.5; a tie after the rounding to f64 may go
+/// the wrong way and add the error of `t` in f64, 2^-29 f32 ulps for each.
+const ROUNDED_TO_F32: Claim = Claim::ThousandthF32Ulps(0.501);
+
+/// All promises.
+pub const PROMISES: &[Promise] = &[
+    promise("triple-product", Inputs::F32, Claim::Right, MEASURED),
+    promise("triple-product", Inputs::F32, ROUNDED_TO_F32, MEASURED),
+    promise("triple-product", Inputs::F32, Claim::WithinBound, DERIVED),
+    promise("triple-product", Inputs::F32, Claim::Finite, DERIVED),
+    promise("triple-product", Inputs::F32, Claim::NoSelfHit, SPAWN),
+    promise(
+        "triple-product",
+        Inputs::F64,
+        Claim::RightWhereDecided,
+        DERIVED,
+    ),
+    promise("triple-product", Inputs::F64, Claim::WithinBound, DERIVED),
+    promise("triple-product", Inputs::F64, Claim::Finite, DERIVED),
+    promise("triple-product", Inputs::F64, Claim::NoSelfHit, SPAWN),
+    promise("exact", Inputs::F32, Claim::Right, CERTIFIED),
+    promise("exact", Inputs::F32, Claim::EveryF64Ulps(0.5), CERTIFIED),
+    promise("exact", Inputs::F32, Claim::NoSelfHit, SPAWN),
+    promise("exact", Inputs::F64, Claim::Right, CERTIFIED),
+    promise("exact", Inputs::F64, Claim::EveryF64Ulps(0.5), CERTIFIED),
+    promise("exact", Inputs::F64, Claim::NoSelfHit, SPAWN),
+];
+
+impl Promise {
+    /// The promises about a cell.
+    pub fn about(cell: &Cell) -> impl Iterator<Item = &'static Self> + use<> {
+        let Cell {
+            formulation,
+            inputs,
+            precision,
+            ..
+        } = *cell;
+        PROMISES.iter().filter(move |promise| {
+            precision == Precision::F64
+                && promise.formulation == formulation
+                && promise.inputs == inputs
+        })
+    }
+
+    /// Whether it is kept in the cell.
+    #[must_use]
+    pub fn is_kept(&self, cell: &Cell) -> bool {
+        let figures = &cell.figures;
+        match self.claim {
+            Claim::Right => figures.wrong_hit == 0 && figures.wrong_part == 0,
+            Claim::RightWhereDecided => figures.wrong_decided == 0,
+            Claim::ThousandthF32Ulps(most) => figures.t_f32_ulps.at(0.999) <= most,
+            Claim::EveryF64Ulps(most) => figures.t_f64_ulps.greatest() <= most,
+            Claim::WithinBound => figures.t_bound_used <= 1.0,
+            Claim::Finite => figures.non_finite == 0,
+            Claim::NoSelfHit => figures.self_hits == 0,
+        }
+    }
+}
+
+impl fmt::Display for Claim {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Right => f.write_str("no wrong hit, miss or part"),
+            Self::RightWhereDecided => f.write_str(
+                "no wrong hit, miss or part where wall gap > 16 u (1 + |x|/r + k) and gap > 64 u",
+            ),
+            Self::ThousandthF32Ulps(most) => {
+                write!(f, "99.9 % of t within {most} f32 ulps")
+            }
+            Self::EveryF64Ulps(most) => write!(f, "every t within {most} f64 ulps"),
+            Self::WithinBound => f.write_str("t within (4) to (6) where hit and part are promised"),
+            Self::Finite => f.write_str("every answer finite"),
+            Self::NoSelfHit => f.write_str("no spawned ray meets where it left"),
+        }
+    }
+}
