@@ -82,6 +82,22 @@ fn ray_at(random: &mut Random, inputs: Inputs, cylinder: &Cylinder, distance: f6
     Ray::new(origin, direction)
 }
 
+/// A ray nearly along the axis: at an angle of 1e-1 to 1e-8, from beyond the
+/// ends or between them, 1e-3 to 1e-12 of the radius from touching the wall.
+fn ray_along(random: &mut Random, inputs: Inputs, cylinder: &Cylinder, _distance: f64) -> Ray {
+    let along = cylinder.p1() - cylinder.p0();
+    let axis = along.normalize();
+    let outward = axis.cross(random.direction()).normalize();
+    let sign = |random: &mut Random| if random.below(2) == 0 { 1.0 } else { -1.0 };
+    let graze = 1.0 + sign(random) * random.log_uniform(1e-12, 1e-3);
+    let target =
+        cylinder.p0() + along * random.uniform(0.2, 0.8) + outward * (cylinder.radius() * graze);
+    let heading = axis + outward.cross(axis) * random.log_uniform(1e-8, 1e-1);
+    let way = sign(random) * random.log_uniform(0.1, 10.0) * along.length();
+    let origin = inputs.round(target - heading * way);
+    Ray::new(origin, inputs.round(target - origin))
+}
+
 /// What the judge of a scene found.
 #[derive(Default)]
 struct Tally {
@@ -218,14 +234,19 @@ fn scene_count(default: u64) -> u64 {
     std::env::var("CYLTRACE_SCENES").map_or(default, |count| count.parse().expect("a number"))
 }
 
-fn one_cylinder_scenes(inputs: Inputs, scenes: u64) {
+fn one_cylinder_scenes(
+    name: &str,
+    inputs: Inputs,
+    scenes: u64,
+    ray_of: fn(&mut Random, Inputs, &Cylinder, f64) -> Ray,
+) {
     let tally = Tally::default();
     (0..scenes).into_par_iter().for_each(|scene| {
         let mut random = Random::new(SEED, scene);
         let cylinder = cylinder(&mut random, inputs, [1e-4, 1e4], [1e-4, 1e4]);
         let distance = random.log_uniform(1e-4, 1e4);
         let rays: Vec<Ray> = (0..RAYS)
-            .map(|_| ray_at(&mut random, inputs, &cylinder, distance))
+            .map(|_| ray_of(&mut random, inputs, &cylinder, distance))
             .collect();
         let folder = tempfile::tempdir().unwrap();
         let text = format!("[[cylinder]]\n{}", toml(&cylinder));
@@ -234,17 +255,22 @@ fn one_cylinder_scenes(inputs: Inputs, scenes: u64) {
             judge(inputs, &cylinder, ray, row.as_ref(), &tally);
         }
     });
-    tally.report(&format!("{inputs:?} inputs"));
+    tally.report(name);
 }
 
 #[test]
 fn f32_inputs_agree_with_exact_arithmetic() {
-    one_cylinder_scenes(Inputs::F32, 200);
+    one_cylinder_scenes("f32 inputs", Inputs::F32, 200, ray_at);
 }
 
 #[test]
 fn f64_inputs_agree_outside_their_band() {
-    one_cylinder_scenes(Inputs::F64, scene_count(60));
+    one_cylinder_scenes("f64 inputs", Inputs::F64, scene_count(60), ray_at);
+}
+
+#[test]
+fn rays_nearly_along_the_axis_agree_outside_their_band() {
+    one_cylinder_scenes("along the axis", Inputs::F64, scene_count(60), ray_along);
 }
 
 /// A rotation, scales from 0.1 to 10 that differ by axis, and a translation.

@@ -186,6 +186,46 @@ fn offset_box_has_no_self_hit() {
     });
 }
 
+/// Directions almost within the wall *and* almost along the axis, which random
+/// ones never are: there the roundings of `a × d` weigh most.
+#[test]
+fn long_cylinder_has_no_self_hit_along_its_axis() {
+    let spawned: u64 = (0..ray_count() / 100)
+        .into_par_iter()
+        .map(|number| {
+            let mut random = Random::new(SEED, 2_000_000 + number);
+            let p0 = random.direction() * 100.0;
+            let p1 = p0 + random.direction() * random.log_uniform(1.0, 1e4);
+            let cylinder = Cylinder::new(p0, p1, 1.0, Caps::Both).unwrap();
+            let root = Prototype {
+                cylinders: vec![CylinderRecord::new(&cylinder, 0, MaterialIndex(0))],
+                ..Default::default()
+            };
+            let tracer = Tracer::new(support::scene_of(vec![root]), &Options::default()).unwrap();
+            let axis = (p1 - p0).normalize();
+            for _ in 0..30 {
+                let outward = axis.cross(random.direction()).normalize();
+                let target = p0 + (p1 - p0) * random.uniform(0.1, 0.9) + outward;
+                let from = target + outward * 5.0 + axis * 3.0;
+                let seen = Ray::new(from, DVec3::ZERO).retarget(target);
+                let hit = tracer.closest(&seen).expect("aimed at the wall");
+                let heading = axis * if random.below(2) == 0 { 1.0 } else { -1.0 };
+                let direction = heading
+                    + hit.normal.cross(heading) * random.log_uniform(1e-8, 1.0)
+                    + hit.normal * random.log_uniform(1e-15, 1e-3);
+                let next = tracer.closest(&hit.spawn(direction));
+                assert!(
+                    next.is_none(),
+                    "seed {SEED}, cylinder {number}: {hit:?} spawned {} and met {next:?}",
+                    support::bits(&hit.spawn(direction))
+                );
+            }
+            30
+        })
+        .sum();
+    println!("along long cylinders: {spawned} rays, none met where it left");
+}
+
 #[test]
 fn nested_placements_have_no_self_hit() {
     let mut random = Random::new(SEED, 3);

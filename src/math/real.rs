@@ -9,7 +9,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use glam::{DVec3, Vec3};
 
-use super::Ray;
+use super::{DoubleDouble, Ray};
 
 /// f32 or f64.
 pub trait Real:
@@ -79,6 +79,12 @@ pub trait RealVector<S>:
     #[must_use]
     fn cross(self, other: Self) -> Self;
 
+    /// The vector product with a relative error of one roundoff in every
+    /// component, whatever the angle, if no product underflows: products are
+    /// exact, their difference nearly so, and only then is it rounded.
+    #[must_use]
+    fn cross_of_exact_products(self, other: Self) -> Self;
+
     /// The vector of length 1 in this direction; NaN for zero.
     #[must_use]
     fn normalize(self) -> Self;
@@ -119,7 +125,7 @@ impl<S: Real> RayOf<S> {
 
 /// Hands the trait's methods to those of the type.
 macro_rules! impl_real {
-    ($scalar:ident, $vector:ident) => {
+    ($scalar:ident, $vector:ident, $cross_of_exact_products:ident) => {
         impl Real for $scalar {
             type Vector = $vector;
 
@@ -174,6 +180,11 @@ macro_rules! impl_real {
             }
 
             #[inline]
+            fn cross_of_exact_products(self, other: Self) -> Self {
+                $cross_of_exact_products(self, other)
+            }
+
+            #[inline]
             fn normalize(self) -> Self {
                 $vector::normalize(self)
             }
@@ -181,5 +192,19 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(f32, Vec3);
-impl_real!(f64, DVec3);
+impl_real!(f32, Vec3, cross_through_f64);
+impl_real!(f64, DVec3, cross_through_double_double);
+
+/// Products of f32 are exact in f64.
+fn cross_through_f64(a: Vec3, b: Vec3) -> Vec3 {
+    a.as_dvec3().cross(b.as_dvec3()).as_vec3()
+}
+
+/// Products of f64 are exact in two words, down to 2^-960.
+fn cross_through_double_double(a: DVec3, b: DVec3) -> DVec3 {
+    let difference = |i: usize, j: usize| {
+        let sum = DoubleDouble::product(a[i], b[j]).plus(DoubleDouble::product(-a[j], b[i]));
+        sum.high
+    };
+    DVec3::new(difference(1, 2), difference(2, 0), difference(0, 1))
+}

@@ -181,8 +181,14 @@ mod tests {
     #[test]
     fn shift_moves_the_chord_within_the_range() {
         let chord = chord((1.0, Part::Cap0), (2.0, Part::Side));
-        assert_eq!(chord.first(Caps::Both, 10.0, 11.0, 11.0).unwrap().t, 1.0);
-        assert_eq!(chord.first(Caps::Both, 10.0, 11.5, 13.0).unwrap().t, 2.0);
+        assert_eq!(
+            chord.first(Caps::Both, 10.0, 11.0, 11.0).unwrap().t_local,
+            1.0
+        );
+        assert_eq!(
+            chord.first(Caps::Both, 10.0, 11.5, 13.0).unwrap().t_local,
+            2.0
+        );
         assert_eq!(chord.first(Caps::Both, 10.0, 0.0, 9.0), None);
     }
 

@@ -2,6 +2,7 @@
 
 mod chord;
 mod cylinder;
+pub mod exact;
 pub mod formulations;
 mod slab;
 mod spawn;

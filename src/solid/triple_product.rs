@@ -22,6 +22,12 @@
 //! the relative error of `D` is a few units of 2^-53 times `1 + |x| / radius`.
 //! `|a|` and `√D` are rooted apart, which halves the exponents in play.
 //!
+//! `w` is that only if `n` is perpendicular to `a`. Rounded products leave an
+//! error along `a` of some 2^-53 `|a| |d|`, which `x·n` multiplies with the
+//! whole axial way to the origin: for a ray nearly along a long cylinder it
+//! would exceed all else. So where the angle is below 30 degrees the products
+//! of `n` are exact.
+//!
 //! Where the two terms of a root of (2) cancel, the root is `C / q`, `C` the
 //! constant term of (1) and `q = -(m·n) ± |a| √D` the sum that does not cancel.
 //!
@@ -45,6 +51,10 @@ use crate::math::{Real, RealVector, power_of_two};
 /// by far less than an ulp of its origin. f32 does not reach that far, and
 /// there the limit is its least normal number.
 const PARALLEL_BELOW: f64 = power_of_two(-700);
+
+/// The square of the sine between ray and axis below which the products of
+/// `a × d` have to be exact: `docs/derivations.md`, section 2.
+const LEAST_SQUARED_SINE: f64 = 0.25;
 
 /// What the solver reads of a cylinder: its axis `a`, its radius, and products
 /// of them that may be kept or computed when asked for.
@@ -121,8 +131,12 @@ pub(super) fn axis_chord<S: Real>(
     direction: S::Vector,
 ) -> Option<Chord<S>> {
     let (a, x, d) = (axis.a(), from_p0, direction);
-    let n = a.cross(d);
-    let nn = n.dot(n);
+    let mut n = a.cross(d);
+    let mut nn = n.dot(n);
+    if nn < S::from_f64(LEAST_SQUARED_SINE) * (axis.aa() * d.dot(d)) {
+        n = exact_normal::<S>(a, d);
+        nn = n.dot(n);
+    }
     if nn < parallel_below() {
         return parallel_chord(axis, x, d);
     }
@@ -150,6 +164,13 @@ pub(super) fn axis_chord<S: Real>(
         ((-mn - s) / nn, (s - mn) / nn)
     };
     slab(axis, x, d).overlap(t0, t1)
+}
+
+/// `a × d` from exact products. Those below 2^-960 are not exact in f64, but
+/// then they are nothing against a vector that is not taken for zero.
+#[cold]
+fn exact_normal<S: Real>(a: S::Vector, d: S::Vector) -> S::Vector {
+    a.cross_of_exact_products(d)
 }
 
 /// The chord of a line along the axis: from disc to disc, if it is not farther

@@ -1,0 +1,118 @@
+//! The exact solver: hit, part and order as exact arithmetic has them, for any
+//! f64 inputs.
+//!
+//! Everything that decides the answer is the sign of a polynomial in the inputs,
+//! or of `p + q √s` with such `p`, `q`, `s`. Three stages answer, each only
+//! where the one before is not certain:
+//!
+//! 1. the triple-product solver in f64, with a certificate (`certificate`): if every
+//!    quantity that it compared clears the bound of its rounding, the answer
+//!    stands;
+//! 2. the decisions of `decide` in double-double with a running error bound
+//!    (`bounded`), 106 bits, enough for all but true ties;
+//! 3. the same decisions in binary numbers of any length (`dashu`), which
+//!    settles ties.
+//!
+//! The parameter `t` of the answer is a quotient of such numbers. As f64 from
+//! stage 1 it is within the certificate's bound; [`rounded_t`] rounds it
+//! correctly.
+
+mod big;
+mod bounded;
+mod certificate;
+mod decide;
+mod root;
+
+use std::cmp::Ordering;
+
+use super::{Cylinder, Part, triple_product};
+use crate::math::Ray;
+use crate::solid::Crossing;
+use big::Big;
+use bounded::Bounded;
+use decide::Decision;
+
+/// The stage that settled an answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Stage {
+    /// f64, certified.
+    Double,
+    /// Double-double with a running error bound.
+    DoubleDouble,
+    /// Numbers of any length.
+    AnyLength,
+}
+
+/// The exact answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExactHit {
+    /// The ray's parameter, within `t_error` of the true one.
+    pub t: f64,
+    /// The bound of the error of `t`.
+    pub t_error: f64,
+    /// The part of the surface.
+    pub part: Part,
+    /// The direction of the crossing.
+    pub crossing: Crossing,
+    decision: Decision,
+}
+
+/// A number type in which the decisions are made.
+trait Number: Clone {
+    /// A number as it is.
+    fn of(x: f64) -> Self;
+    /// `a - b`, exactly.
+    fn difference(a: f64, b: f64) -> Self;
+    /// The sum.
+    fn plus(&self, other: &Self) -> Self;
+    /// The difference.
+    fn minus(&self, other: &Self) -> Self;
+    /// The product.
+    fn times(&self, other: &Self) -> Self;
+    /// How the number compares with zero, if that is certain.
+    fn sign(&self) -> Option<Ordering>;
+}
+
+/// The first point of the cylinder's surface in the ray's range, and the stage
+/// that settled it. `None` is a miss, as certain as a hit.
+///
+/// The ray is valid ([`Ray::is_valid`]) and its direction's largest component
+/// is within 2^±100 in size, as for the triple-product solver.
+#[must_use]
+pub fn first(cylinder: &Cylinder, ray: &Ray) -> (Option<ExactHit>, Stage) {
+    let from_p0 = ray.origin - cylinder.p0();
+    let chord = triple_product::chord(cylinder, from_p0, ray.direction);
+    if let Some(answer) = certificate::certify(cylinder, ray, from_p0, chord.as_ref()) {
+        return (answer, Stage::Double);
+    }
+    first_uncertified(cylinder, ray)
+}
+
+#[cold]
+fn first_uncertified(cylinder: &Cylinder, ray: &Ray) -> (Option<ExactHit>, Stage) {
+    let (decision, stage) = match decide::decide::<Bounded>(cylinder, ray) {
+        Some(decision) => (decision, Stage::DoubleDouble),
+        None => {
+            let decision = decide::decide::<Big>(cylinder, ray);
+            let decision = decision.expect("signs of numbers of any length are certain");
+            (decision, Stage::AnyLength)
+        }
+    };
+    let hit = decision.map(|decision| {
+        let t = root::rounded(cylinder, ray, &decision);
+        ExactHit {
+            t,
+            t_error: t.abs() * crate::math::UNIT_ROUNDOFF,
+            part: decision.part,
+            crossing: decision.crossing,
+            decision,
+        }
+    });
+    (hit, stage)
+}
+
+/// The f64 nearest to the true parameter of a hit of this cylinder and ray.
+#[must_use]
+pub fn rounded_t(cylinder: &Cylinder, ray: &Ray, hit: &ExactHit) -> f64 {
+    root::rounded(cylinder, ray, &hit.decision)
+}
