@@ -175,7 +175,7 @@ pub struct AccuracyArguments {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
     /// Samples of each time
-    #[arg(long, value_name = "N", default_value = "31")]
+    #[arg(long, value_name = "N", default_value = "101")]
     pub rounds: NonZeroUsize,
     /// Measure this formulation or rival only, beside triple-product; may be
     /// given several times
