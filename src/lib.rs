@@ -1,6 +1,7 @@
 //! cyltrace traces analytic cylinders through Embree: exact hits, no meshes,
 //! and the proof beside them.
 
+pub mod bench;
 pub mod cases;
 pub mod embree;
 pub mod math;

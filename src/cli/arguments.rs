@@ -1,6 +1,6 @@
 //! The arguments, as clap reads them.
 
-use std::num::{NonZeroU32, NonZeroUsize};
+use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -23,6 +23,7 @@ pub enum Command {
     Render(RenderArguments),
     Trace(TraceArguments),
     Info(InfoArguments),
+    Bench(BenchArguments),
     Stress(StressArguments),
 }
 
@@ -150,6 +151,42 @@ pub struct StressArguments {
     /// hardest case of a family
     #[arg(long, value_name = "FAMILY")]
     pub map: Option<Family>,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Measure run times and errors
+#[derive(Args, Debug)]
+pub struct BenchArguments {
+    #[command(subcommand)]
+    pub bench: Bench,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Bench {
+    Accuracy(AccuracyArguments),
+}
+
+/// Compare the time and the error of every known formulation, of Embree's cone
+/// curve and of meshes, on the same cases
+#[derive(Args, Debug)]
+pub struct AccuracyArguments {
+    /// Write accuracy.svg, accuracy.csv and index.html to DIR
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+    /// Cases of each family; meshes and other rivals get at most 1000 of them
+    #[arg(long, value_name = "N", default_value = "5000")]
+    pub cases: NonZeroU64,
+    /// Chooses the cases
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Samples of each time
+    #[arg(long, value_name = "N", default_value = "101")]
+    pub rounds: NonZeroUsize,
+    /// Measure this formulation or rival only, beside triple-product; may be
+    /// given several times
+    #[arg(long, value_name = "NAME")]
+    pub formulation: Vec<String>,
     #[command(flatten)]
     pub common: Common,
 }

@@ -4,6 +4,7 @@
 //! could not run; 130 it was interrupted.
 
 mod arguments;
+mod bench;
 mod hit_table;
 mod info;
 mod interrupt;
@@ -77,6 +78,7 @@ fn run_command(arguments: &Arguments) -> anyhow::Result<u8> {
         Command::Trace(arguments) => trace::run(arguments).map(|()| GOOD),
         Command::Info(arguments) => info::run(arguments).map(|()| GOOD),
         Command::Stress(arguments) => stress::run(arguments),
+        Command::Bench(arguments) => bench::run(arguments).map(|()| GOOD),
     }
 }
 

@@ -14,6 +14,8 @@
 //! | `object-space` | the ray rotated to the cylinder, a tolerance |
 //! | `triple-product` | the library's solver |
 //! | `triple-product-prepared` | the same with products kept |
+//! | `exact` | certified answers, f64 only |
+//! | `exact-rounded` | the same with `t` rounded correctly |
 //!
 //! All share a meaning: the first hit with `t_min <= t <= t_max` on the wall or
 //! on a disc that the cylinder has. Each is generic over the precision, and
@@ -23,6 +25,7 @@ mod adapter;
 mod centre_dot;
 mod centre_dot_tuned;
 mod cross_product;
+mod exact;
 mod object_space;
 mod projection;
 mod start_cap;
@@ -35,10 +38,11 @@ use glam::DVec3;
 
 use super::{Cylinder, Part};
 use crate::math::Ray;
-use adapter::in_precision;
+use adapter::{in_f64, in_precision};
 use centre_dot::CentreDot;
 use centre_dot_tuned::CentreDotTuned;
 use cross_product::CrossProduct;
+use exact::Exact;
 use object_space::ObjectSpace;
 use projection::Projection;
 use start_cap::StartCap;
@@ -129,12 +133,14 @@ const MAKERS: [Maker; 9] = [
     |precision| in_precision(TripleProductPrepared, precision),
 ];
 
-/// Every formulation, with its usual arguments, in f32 and then in f64.
+/// Every formulation, with its usual arguments, in f32 and then in f64, and the
+/// exact ones, which are f64 only.
 #[must_use]
 pub fn all() -> Vec<Box<dyn Formulation>> {
     MAKERS
         .iter()
         .flat_map(|make| [make(Precision::F32), make(Precision::F64)])
+        .chain([false, true].map(|rounds_t| in_f64(Exact { rounds_t })))
         .collect()
 }
 

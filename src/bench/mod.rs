@@ -1,0 +1,24 @@
+//! Run time against error.
+//!
+//! [`Accuracy::measure`] asks every formulation and rival about the same cases
+//! and compares the answers with the oracle's (`truth`); then it runs them in
+//! turns on the ordinary ones (`timing`). [`Accuracy`] is the outcome, and
+//! [`figure`], [`page`] and [`table`] show it.
+
+mod accuracy;
+mod machine;
+mod outputs;
+mod rivals;
+#[cfg(test)]
+mod samples;
+mod statistics;
+mod timing;
+mod truth;
+
+pub use accuracy::{Accuracy, Contender, Row, Settings, Times, contenders, rival_names};
+pub use machine::Circumstances;
+pub use outputs::{SUMMARY_HEADINGS, figure, page, summary, table};
+pub use rivals::{Native, SIDES, Shape, Spaced, Traced};
+pub use statistics::{Spread, p99};
+pub use timing::{Rounds, Timer, WallClock, interleave};
+pub use truth::{Errors, JudgedCases};

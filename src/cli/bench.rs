@@ -1,0 +1,168 @@
+//! `cyltrace bench`.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+use anyhow::{Context, bail};
+use cyltrace::bench::{
+    Accuracy, Circumstances, Contender, JudgedCases, Row, SUMMARY_HEADINGS, Settings, WallClock,
+    contenders, figure, page, rival_names, summary, table,
+};
+use cyltrace::cases::Family;
+use cyltrace::render::NewFile;
+use cyltrace::report::Table;
+use cyltrace::solid::formulations;
+use cyltrace::tracer::Options;
+use serde_json::{Value, json};
+
+use super::arguments::{AccuracyArguments, Bench, BenchArguments};
+use super::{interrupt, json, progress};
+
+/// Runs the benchmark that is asked for.
+pub fn run(arguments: &BenchArguments) -> anyhow::Result<()> {
+    match &arguments.bench {
+        Bench::Accuracy(arguments) => accuracy(arguments),
+    }
+}
+
+/// Time against error of everything that intersects rays with cylinders.
+fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
+    let common = &arguments.common;
+    json::check(common)?;
+    check_names(&arguments.formulation)?;
+    interrupt::install()?;
+    if let Some(directory) = &arguments.report {
+        fs::create_dir_all(directory)
+            .with_context(|| format!("cannot make the directory {}", directory.display()))?;
+    }
+    let workers = cyltrace::render::workers(common.threads).context("cannot start threads")?;
+
+    let mut settings = Settings::default();
+    settings.rounds.rounds = arguments.rounds.get();
+    let contenders = contenders_of(arguments)?;
+    let steps = Accuracy::steps(Family::ALL.len(), contenders.len(), &settings);
+    let bar = progress::bar(common, (Family::ALL.len() + steps) as u64, "steps");
+    // The truth and the errors are found on all threads; times are taken
+    // later, when nothing else runs.
+    let found = workers.install(|| {
+        let cases: Vec<JudgedCases> = Family::ALL
+            .into_iter()
+            .map(|family| {
+                bar.inc(1);
+                JudgedCases::of(family, arguments.seed, arguments.cases.get())
+            })
+            .collect();
+        Accuracy::measure(&cases, &contenders, &settings, &mut WallClock, &mut || {
+            bar.inc(1);
+        })
+    });
+    bar.finish_and_clear();
+
+    let circumstances = Circumstances::here(
+        common.max_isa,
+        arguments.cases.get(),
+        arguments.seed,
+        arguments.rounds.get(),
+    );
+    interrupt::end_in_order();
+    if let Some(directory) = &arguments.report {
+        write(&directory.join("accuracy.svg"), &figure(&found))?;
+        write(&directory.join("accuracy.csv"), &table(&found))?;
+        write(&directory.join("index.html"), &page(&found, &circumstances))?;
+    }
+    if common.prints() {
+        print(&found, &circumstances);
+        if let Some(directory) = &arguments.report {
+            println!("report: {}", directory.join("index.html").display());
+        }
+    }
+    json::write(common, &figures(&found, &circumstances))
+}
+
+/// Those that take part: all, or the ones that are named.
+fn contenders_of(arguments: &AccuracyArguments) -> anyhow::Result<Vec<Contender>> {
+    let wanted = &arguments.formulation;
+    let is_wanted = |name: &str| wanted.is_empty() || wanted.iter().any(|wanted| wanted == name);
+    let options = Options {
+        threads: arguments.common.threads,
+        max_isa: arguments.common.max_isa,
+    };
+    Ok(contenders(formulations::all(), &options, is_wanted)?)
+}
+
+fn check_names(names: &[String]) -> anyhow::Result<()> {
+    let formulations = formulations::all();
+    let known: BTreeSet<&str> = formulations
+        .iter()
+        .map(|formulation| formulation.name())
+        .chain(rival_names())
+        .collect();
+    for name in names {
+        if !known.contains(name.as_str()) {
+            let known = Vec::from_iter(known).join(", ");
+            bail!("--formulation {name:?} is unknown: it must be one of {known}");
+        }
+    }
+    Ok(())
+}
+
+fn write(path: &Path, text: &str) -> anyhow::Result<()> {
+    let mut file = NewFile::create(path)?;
+    file.write_all(text.as_bytes())
+        .with_context(|| format!("cannot write {}", path.display()))?;
+    Ok(file.finish()?)
+}
+
+/// The table for people.
+fn print(found: &Accuracy, circumstances: &Circumstances) {
+    let mut table = Table::new(&SUMMARY_HEADINGS, 2);
+    for row in &found.rows {
+        table.push(summary(found, row));
+    }
+    println!("{}", circumstances.sentence());
+    print!("{table}");
+}
+
+/// All figures. A percentile that is not finite, or that no hit gives, is
+/// null.
+fn figures(found: &Accuracy, circumstances: &Circumstances) -> Value {
+    let formulation = |row: &Row| {
+        let worst = row.worst();
+        json!({
+            "name": row.name,
+            "precision": row.precision.name(),
+            "ns_median": row.ns.median,
+            "ns_spread": row.ns.deviation,
+            "p99_error_r": row.p99_error_r(),
+            "worst_family": worst.map(|(family, _)| found.families[family]),
+            "worst_p99_error_r": worst.map(|(_, error)| error),
+            "wrong_percent_mean": row.wrong_percent_mean(),
+            "bytes": row.bytes,
+        })
+    };
+    let sample = |row: &Row| {
+        json!({
+            "name": row.name,
+            "precision": row.precision.name(),
+            "times": row.times.name(),
+            "ratio_median": row.ratio.map(|ratio| ratio.median),
+            "ratio_spread": row.ratio.map(|ratio| ratio.deviation),
+            "cases": row.errors.first().map(|errors| errors.cases),
+            "ns_by_round": row.ns_by_round,
+        })
+    };
+    json!({
+        "formulations": found.rows.iter().map(formulation).collect::<Vec<_>>(),
+        "samples": found.rows.iter().map(sample).collect::<Vec<_>>(),
+        "spread": "median absolute deviation",
+        "machine": circumstances.machine,
+        "isa": circumstances.isa,
+        "target_features": circumstances.target_features,
+        "commit": circumstances.commit,
+        "cases": circumstances.cases,
+        "seed": circumstances.seed,
+        "rounds": circumstances.rounds,
+    })
+}
