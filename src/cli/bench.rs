@@ -18,7 +18,8 @@ use cyltrace::tracer::Options;
 use serde_json::{Value, json};
 
 use super::arguments::{AccuracyArguments, Bench, BenchArguments};
-use super::{interrupt, json, progress};
+use super::print::print;
+use super::{interrupt, json, progress, scene};
 
 /// Runs the benchmark that is asked for.
 pub fn run(arguments: &BenchArguments) -> anyhow::Result<()> {
@@ -37,7 +38,7 @@ fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
         fs::create_dir_all(directory)
             .with_context(|| format!("cannot make the directory {}", directory.display()))?;
     }
-    let workers = cyltrace::render::workers(common.threads).context("cannot start threads")?;
+    let workers = scene::workers(common)?;
 
     let mut settings = Settings::default();
     settings.rounds.rounds = arguments.rounds.get();
@@ -72,13 +73,15 @@ fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
         write(&directory.join("accuracy.csv"), &table(&found))?;
         write(&directory.join("index.html"), &page(&found, &circumstances))?;
     }
+    json::write(common, &figures(&found, &circumstances))?;
     if common.prints() {
-        print(&found, &circumstances);
+        let mut text = summary_text(&found, &circumstances);
         if let Some(directory) = &arguments.report {
-            println!("report: {}", directory.join("index.html").display());
+            text += &format!("report: {}\n", directory.join("index.html").display());
         }
+        print(&text)?;
     }
-    json::write(common, &figures(&found, &circumstances))
+    Ok(())
 }
 
 /// Those that take part: all, or the ones that are named.
@@ -116,13 +119,12 @@ fn write(path: &Path, text: &str) -> anyhow::Result<()> {
 }
 
 /// The table for people.
-fn print(found: &Accuracy, circumstances: &Circumstances) {
+fn summary_text(found: &Accuracy, circumstances: &Circumstances) -> String {
     let mut table = Table::new(&SUMMARY_HEADINGS, 2);
     for row in &found.rows {
         table.push(summary(found, row));
     }
-    println!("{}", circumstances.sentence());
-    print!("{table}");
+    format!("{}\n{table}", circumstances.sentence())
 }
 
 /// All figures. A percentile that is not finite, or that no hit gives, is

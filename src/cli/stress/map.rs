@@ -9,6 +9,7 @@ use cyltrace::solid::formulations::Formulation;
 use cyltrace::stress::{to_bits, ulp_map};
 
 use crate::cli::arguments::StressArguments;
+use crate::cli::print::print;
 
 /// Draws the map of a family into the report's folder, or the current one.
 pub fn run(
@@ -28,10 +29,12 @@ pub fn run(
         for (name, wrong) in &map.tiles {
             table.push(vec![name.clone(), format!("{:.2}", 100.0 * wrong)]);
         }
-        println!("{}, tiles from the left of the top row:", path.display());
-        print!("{table}");
-        println!("{}", map.legend);
-        println!("the middle of each tile: {}", to_bits(&map.centre));
+        print(&format!(
+            "{}, tiles from the left of the top row:\n{table}{}\nthe middle of each tile: {}\n",
+            path.display(),
+            map.legend,
+            to_bits(&map.centre)
+        ))?;
     }
     Ok(())
 }

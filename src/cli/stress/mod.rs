@@ -16,13 +16,14 @@ use cyltrace::stress::{self, Cell, Promise, Settings};
 use serde_json::{Value, json};
 
 use super::arguments::StressArguments;
-use super::{CHECK_FAILED, GOOD, interrupt, json, progress};
+use super::print::print;
+use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
 
 /// Runs what the arguments ask for; the exit code says whether promises hold.
 pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
     let common = &arguments.common;
     if arguments.promises {
-        print!("{}", tables::promises());
+        print(&tables::promises())?;
         return Ok(GOOD);
     }
     let formulations = chosen(&arguments.formulation)?;
@@ -36,7 +37,7 @@ pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
             .with_context(|| format!("cannot create {}", directory.display()))?;
     }
     interrupt::install()?;
-    let workers = cyltrace::render::workers(common.threads).context("cannot start threads")?;
+    let workers = scene::workers(common)?;
     if let Some(family) = arguments.map {
         workers.install(|| map::run(arguments, family, &formulations))?;
         return Ok(GOOD);
@@ -71,9 +72,6 @@ pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
         .filter(|(cell, promise)| !promise.is_kept(cell))
         .collect();
     let text = tables::all(&settings, &cells, &broken, elapsed);
-    if common.prints() {
-        print!("{text}");
-    }
     let figures = json!({
         "cases": settings.cases,
         "seed": settings.seed,
@@ -87,6 +85,9 @@ pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
         save(&directory.join("stress.json"), &format!("{figures:#}\n"))?;
     }
     json::write(common, &figures)?;
+    if common.prints() {
+        print(&text)?;
+    }
     Ok(if broken.is_empty() {
         GOOD
     } else {

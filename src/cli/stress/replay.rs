@@ -6,23 +6,33 @@ use cyltrace::report::Table;
 use cyltrace::solid::formulations::{Formulation, Problem};
 use cyltrace::stress::from_bits;
 
+use crate::cli::print::print;
+
 /// Prints the case of a word and the answers to it.
 pub fn run(word: &str, formulations: &[Box<dyn Formulation>]) -> anyhow::Result<()> {
     let problem = from_bits(word)?;
     let Problem { cylinder, ray } = &problem;
     let (p0, p1, o, d) = (cylinder.p0(), cylinder.p1(), ray.origin, ray.direction);
-    println!("p0        {:?} {:?} {:?}", p0.x, p0.y, p0.z);
-    println!("p1        {:?} {:?} {:?}", p1.x, p1.y, p1.z);
-    println!("radius    {:?}", cylinder.radius());
-    println!("caps      {:?}", cylinder.caps());
-    println!("origin    {:?} {:?} {:?}", o.x, o.y, o.z);
-    println!("direction {:?} {:?} {:?}", d.x, d.y, d.z);
-    println!("range     {:?} {:?}", ray.t_min, ray.t_max);
+    let mut text = format!(
+        "p0        {:?} {:?} {:?}\np1        {:?} {:?} {:?}\nradius    {:?}\ncaps      {:?}\n",
+        p0.x,
+        p0.y,
+        p0.z,
+        p1.x,
+        p1.y,
+        p1.z,
+        cylinder.radius(),
+        cylinder.caps()
+    );
+    text += &format!(
+        "origin    {:?} {:?} {:?}\ndirection {:?} {:?} {:?}\nrange     {:?} {:?}\n",
+        o.x, o.y, o.z, d.x, d.y, d.z, ray.t_min, ray.t_max
+    );
 
     let truth = oracle::first_hit(cylinder, ray);
     let gap = oracle::gap(cylinder, ray, truth.hit.as_ref());
-    println!(
-        "gap       {gap:e}, {:e} units of 2^-53",
+    text += &format!(
+        "gap       {gap:e}, {:e} units of 2^-53\n",
         gap / UNIT_ROUNDOFF
     );
 
@@ -58,6 +68,5 @@ pub fn run(word: &str, formulations: &[Box<dyn Formulation>]) -> anyhow::Result<
             found,
         ));
     }
-    print!("{table}");
-    Ok(())
+    print(&format!("{text}{table}"))
 }
