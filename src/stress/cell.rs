@@ -160,10 +160,10 @@ impl Figures {
     ) -> f64 {
         let error = truth.error_of(answer.t);
         let f32_error = truth.error_of(f64::from(answer.t as f32));
-        let mut ulps = f32_error.abs() / ulp(truth.t.high, Precision::F32);
+        let mut ulps = in_ulps(f32_error, truth, Precision::F32);
         self.t_f32_ulps.push(ulps);
         if precision == Precision::F64 {
-            let f64_ulps = error.abs() / ulp(truth.t.high, Precision::F64);
+            let f64_ulps = in_ulps(error, truth, Precision::F64);
             self.t_f64_ulps.push(f64_ulps);
             if inputs == Inputs::F64 {
                 ulps = f64_ulps;
@@ -211,6 +211,12 @@ impl Figures {
             self.note(worst.class, worst.size, worst.index);
         }
     }
+}
+
+/// An error of `t` in ulps of the true one. Where that is zero or almost so,
+/// the quotient overflows and the greatest number stands for it.
+fn in_ulps(error: f64, truth: &TrueAnswer, precision: Precision) -> f64 {
+    (error.abs() / ulp(truth.t.high, precision)).min(f64::MAX)
 }
 
 /// The distance of neighbouring numbers at `x`.

@@ -10,7 +10,7 @@ use cyltrace::stress::{Cell, PROMISES, Promise, Settings, to_bits};
 pub fn promises() -> String {
     let mut table = Table::new(
         &[
-            "formulation",
+            "formulations",
             "inputs",
             "in every family but",
             "promise",
@@ -20,7 +20,7 @@ pub fn promises() -> String {
     );
     for promise in PROMISES {
         table.push(vec![
-            promise.formulation.to_owned(),
+            promise.formulations.join(", "),
             promise.inputs.name().to_owned(),
             promise
                 .except
