@@ -5,7 +5,7 @@ use super::statistics::Spread;
 use super::timing::{Rounds, Timer, interleave};
 use super::truth::{Errors, JudgedCases};
 use crate::embree::DeviceOptions;
-use crate::solid::formulations::{Batch, Formulation, Precision};
+use crate::solid::formulations::{Batch, Formulation, Precision, Problem};
 use crate::tracer::{Options, TracerError};
 
 /// The formulation that times are compared with.
@@ -107,38 +107,23 @@ fn is_baseline(formulation: &dyn Formulation) -> bool {
     (formulation.name(), formulation.precision()) == BASELINE
 }
 
-/// What is measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// How often and how long.
-    pub rounds: Rounds,
-    /// The most cases in a timed batch. Few enough for the second-level cache,
-    /// as the solver in a callback finds its data; enough that branches are
-    /// not learnt by heart.
-    pub timed: usize,
-}
+/// The samples of each contender unless more or fewer are asked for.
+///
+/// Short samples, many of them: where other programs share the processor, a
+/// sample is disturbed if a turn of theirs (some milliseconds) falls into it.
+/// Samples of 2 ms were, in most rounds, and came out three times too long; a
+/// tenth of that is disturbed about one time in ten, which a median doesn't
+/// notice, and is still 10^4 ticks of the clock.
+pub const USUAL_ROUNDS: Rounds = Rounds {
+    rounds: 101,
+    sample_s: 2e-4,
+};
 
-impl Default for Settings {
-    /// Short samples, many of them: where other programs share the processor,
-    /// a sample is disturbed if a turn of theirs (some milliseconds) falls
-    /// into it. Samples of 2 ms were, in most rounds, and came out three times
-    /// too long; a tenth of that is disturbed about one time in ten, which a
-    /// median doesn't notice, and is still 10^4 ticks of the clock.
-    fn default() -> Self {
-        Self {
-            rounds: Rounds {
-                rounds: Self::ROUNDS,
-                sample_s: 2e-4,
-            },
-            timed: 4096,
-        }
-    }
-}
-
-impl Settings {
-    /// The samples of each contender unless more or fewer are asked for.
-    pub const ROUNDS: usize = 101;
-}
+/// How many rays are timed. A processor learns the branches of a batch that is
+/// run again and again: with 1000 rays literal `centre-dot` in f32 took 20 ns,
+/// with 4000 and with 16 000 twice as long, as it does in a callback that
+/// never sees a ray twice. More would only leave the second-level cache.
+pub const USUAL_TIMED: u64 = 8192;
 
 /// What was found of a contender.
 #[derive(Clone, Debug, PartialEq)]
@@ -199,25 +184,26 @@ pub struct Accuracy {
 impl Accuracy {
     /// The steps of which [`Accuracy::measure`] tells.
     #[must_use]
-    pub fn steps(families: usize, contenders: usize, settings: &Settings) -> usize {
-        families * contenders + settings.rounds.rounds
+    pub fn steps(families: usize, contenders: usize, rounds: Rounds) -> usize {
+        families * contenders + rounds.rounds
     }
 
-    /// Measures everybody: errors on all cases, times on the first family.
+    /// Measures everybody: errors on `cases`, of which the first family is the
+    /// ordinary one, and times on the ordinary cases `timed`.
     /// `after_step` is called as often as [`Accuracy::steps`] says.
     ///
     /// # Panics
-    /// When there is no family, or no case in the first one.
+    /// When there is no family, or nothing to time.
     #[must_use]
     pub fn measure(
         cases: &[JudgedCases],
+        timed: &[Problem],
         contenders: &[Contender],
-        settings: &Settings,
+        rounds: Rounds,
         timer: &mut dyn Timer,
         after_step: &mut dyn FnMut(),
     ) -> Self {
-        let ordinary = cases[0].problems();
-        let timed = &ordinary[..ordinary.len().min(settings.timed)];
+        assert!(!cases.is_empty(), "no case to judge");
         assert!(!timed.is_empty(), "no ray to time");
 
         let mut errors = Vec::new();
@@ -234,7 +220,7 @@ impl Accuracy {
             .iter()
             .map(|contender| contender.formulation.batch(timed))
             .collect();
-        let seconds = interleave(timer, &batches, settings.rounds, after_step);
+        let seconds = interleave(timer, &batches, rounds, after_step);
         let baseline = contenders
             .iter()
             .position(|contender| is_baseline(contender.formulation.as_ref()))
@@ -278,6 +264,7 @@ fn ratios(seconds: &[f64], baseline: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::bench::samples::{self, Blind, Shifted};
+    use crate::solid::formulations::Answer;
 
     /// A clock that goes one second further each time it is asked.
     struct Slowing(f64);
@@ -290,12 +277,9 @@ mod tests {
         }
     }
 
-    const SETTINGS: Settings = Settings {
-        rounds: Rounds {
-            rounds: 3,
-            sample_s: 0.0,
-        },
-        timed: 100,
+    const ROUNDS: Rounds = Rounds {
+        rounds: 3,
+        sample_s: 0.0,
     };
 
     fn contender(formulation: impl Formulation + 'static) -> Contender {
@@ -319,13 +303,10 @@ mod tests {
         fn bytes(&self) -> usize {
             self.1.bytes()
         }
-        fn answers(
-            &self,
-            problems: &[crate::solid::formulations::Problem],
-        ) -> Vec<Option<crate::solid::formulations::Answer>> {
+        fn answers(&self, problems: &[Problem]) -> Vec<Option<Answer>> {
             self.1.answers(problems)
         }
-        fn batch(&self, problems: &[crate::solid::formulations::Problem]) -> Box<dyn Batch> {
+        fn batch(&self, problems: &[Problem]) -> Box<dyn Batch> {
             self.1.batch(problems)
         }
     }
@@ -345,12 +326,13 @@ mod tests {
         let mut after = || steps += 1;
         let found = Accuracy::measure(
             &cases,
+            &samples::problems(3, 100),
             &contenders,
-            &SETTINGS,
+            ROUNDS,
             &mut Slowing(0.0),
             &mut after,
         );
-        assert_eq!(steps, Accuracy::steps(2, 3, &SETTINGS));
+        assert_eq!(steps, Accuracy::steps(2, 3, ROUNDS));
         assert_eq!(found.families, ["ordinary", "other"]);
         let [exact, shifted, blind] = &found.rows[..] else {
             panic!("three rows")
@@ -382,8 +364,9 @@ mod tests {
         let contenders = [contender(Shifted(0.5))];
         let mut found = Accuracy::measure(
             &cases,
+            &samples::problems(3, 100),
             &contenders,
-            &SETTINGS,
+            ROUNDS,
             &mut Slowing(0.0),
             &mut || {},
         );

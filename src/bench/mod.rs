@@ -15,10 +15,12 @@ mod statistics;
 mod timing;
 mod truth;
 
-pub use accuracy::{Accuracy, Contender, Row, Settings, Times, contenders, rival_names};
+pub use accuracy::{
+    Accuracy, Contender, Row, Times, USUAL_ROUNDS, USUAL_TIMED, contenders, rival_names,
+};
 pub use machine::Circumstances;
 pub use outputs::{SUMMARY_HEADINGS, figure, page, summary, table};
 pub use rivals::{Native, SIDES, Shape, Spaced, Traced};
 pub use statistics::{Spread, p99};
 pub use timing::{Rounds, Timer, WallClock, interleave};
-pub use truth::{Errors, JudgedCases};
+pub use truth::{Errors, JudgedCases, draw};

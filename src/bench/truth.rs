@@ -69,9 +69,7 @@ impl JudgedCases {
     /// in f32 is asked the same question.
     #[must_use]
     pub fn of(family: Family, seed: u64, count: u64) -> Self {
-        let draw = |index| family.case(seed, index, Inputs::F32);
-        let problems = (0..count).into_par_iter().map(draw).collect();
-        Self::new(family.name(), problems)
+        Self::new(family.name(), draw(family, seed, count))
     }
 
     /// The name of their family.
@@ -111,6 +109,13 @@ impl JudgedCases {
             p99_r: p99(errors),
         }
     }
+}
+
+/// The first `count` cases of a family, in f32 numbers.
+#[must_use]
+pub fn draw(family: Family, seed: u64, count: u64) -> Vec<Problem> {
+    let case = |index| family.case(seed, index, Inputs::F32);
+    (0..count).into_par_iter().map(case).collect()
 }
 
 fn true_t(truth: &CylinderTruth) -> Option<TrueT> {

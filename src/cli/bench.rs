@@ -7,8 +7,8 @@ use std::path::Path;
 
 use anyhow::{Context, bail};
 use cyltrace::bench::{
-    Accuracy, Circumstances, Contender, JudgedCases, Row, SUMMARY_HEADINGS, Settings, WallClock,
-    contenders, figure, page, rival_names, summary, table,
+    Accuracy, Circumstances, Contender, JudgedCases, Rounds, Row, SUMMARY_HEADINGS, USUAL_ROUNDS,
+    USUAL_TIMED, WallClock, contenders, draw, figure, page, rival_names, summary, table,
 };
 use cyltrace::cases::Family;
 use cyltrace::render::NewFile;
@@ -40,10 +40,12 @@ fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
     }
     let workers = scene::workers(common)?;
 
-    let mut settings = Settings::default();
-    settings.rounds.rounds = arguments.rounds.get();
+    let rounds = Rounds {
+        rounds: arguments.rounds.get(),
+        ..USUAL_ROUNDS
+    };
     let contenders = contenders_of(arguments)?;
-    let steps = Accuracy::steps(Family::ALL.len(), contenders.len(), &settings);
+    let steps = Accuracy::steps(Family::ALL.len(), contenders.len(), rounds);
     let bar = progress::bar(common, (Family::ALL.len() + steps) as u64, "steps");
     // The truth and the errors are found on all threads; times are taken
     // later, when nothing else runs.
@@ -55,9 +57,17 @@ fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
                 JudgedCases::of(family, arguments.seed, arguments.cases.get())
             })
             .collect();
-        Accuracy::measure(&cases, &contenders, &settings, &mut WallClock, &mut || {
-            bar.inc(1);
-        })
+        let timed = draw(Family::Nominal, arguments.seed, USUAL_TIMED);
+        Accuracy::measure(
+            &cases,
+            &timed,
+            &contenders,
+            rounds,
+            &mut WallClock,
+            &mut || {
+                bar.inc(1);
+            },
+        )
     });
     bar.finish_and_clear();
 
