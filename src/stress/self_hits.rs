@@ -19,7 +19,12 @@ const STREAM: u64 = 1 << 62;
 /// something about it.
 #[must_use]
 pub fn is_own(formulation: &dyn Formulation) -> bool {
-    let own = ["triple-product", "triple-product-prepared", "exact"];
+    let own = [
+        "triple-product",
+        "triple-product-prepared",
+        "exact",
+        "exact-rounded",
+    ];
     formulation.precision() == Precision::F64 && own.contains(&formulation.name())
 }
 
