@@ -43,6 +43,25 @@ impl DoubleDouble {
         let sum = Self::sum(self.high, other.high);
         Self::sum(sum.high, sum.low + (self.low + other.low))
     }
+
+    /// `self * other` with a relative error below `8 · 2^-106`, under the
+    /// conditions of [`DoubleDouble::product`]: the product of the low words
+    /// is left out and the two mixed ones are rounded.
+    #[must_use]
+    pub fn times(self, other: Self) -> Self {
+        let product = Self::product(self.high, other.high);
+        let mixed = self.high * other.low + self.low * other.high;
+        Self::sum(product.high, product.low + mixed)
+    }
+
+    /// The number with the other sign, exactly.
+    #[must_use]
+    pub fn negated(self) -> Self {
+        Self {
+            high: -self.high,
+            low: -self.low,
+        }
+    }
 }
 
 /// `x` as a sum of two numbers of 26 bits.

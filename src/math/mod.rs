@@ -16,6 +16,6 @@ pub use bounds::Bounds;
 pub use double_double::DoubleDouble;
 pub use placement::{ChildFromParent, PlacementErrors};
 pub use random::Random;
-pub use ray::Ray;
-pub use real::{RayOf, Real, RealVector};
+pub use ray::{Ray, RayOf};
+pub use real::{Real, RealVector, Wide, wide_cross, wide_square};
 pub use rounding::{UNIT_ROUNDOFF, f32_above, f32_below, power_of_two, power_of_two_below};

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use super::{Real, RealVector};
+
 /// The set of points `origin + t * direction` with `t_min <= t <= t_max`.
 ///
 /// The direction need not have unit length; `t` counts in lengths of
@@ -44,5 +46,50 @@ impl Ray {
             && self.direction.is_finite()
             && self.direction != DVec3::ZERO
             && self.t_min <= self.t_max
+    }
+}
+
+/// A [`Ray`] in any precision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayOf<S: Real> {
+    /// The point at `t = 0`.
+    pub origin: S::Vector,
+    /// Any direction of any length.
+    pub direction: S::Vector,
+    /// Least `t` that counts.
+    pub t_min: S,
+    /// Greatest `t` that counts.
+    pub t_max: S,
+}
+
+impl<S: Real> RayOf<S> {
+    /// The ray with every number rounded to nearest.
+    #[must_use]
+    pub fn rounded(ray: &Ray) -> Self {
+        Self {
+            origin: S::Vector::from_f64(ray.origin),
+            direction: S::Vector::from_f64(ray.direction),
+            t_min: S::from_f64(ray.t_min),
+            t_max: S::from_f64(ray.t_max),
+        }
+    }
+
+    /// The same ray in f64.
+    #[inline]
+    #[must_use]
+    pub fn to_f64(&self) -> Ray {
+        Ray {
+            origin: self.origin.to_f64(),
+            direction: self.direction.to_f64(),
+            t_min: self.t_min.to_f64(),
+            t_max: self.t_max.to_f64(),
+        }
+    }
+
+    /// The point at parameter `t`, rounded.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, t: S) -> S::Vector {
+        self.origin + self.direction * t
     }
 }

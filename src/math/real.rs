@@ -9,7 +9,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use glam::{DVec3, Vec3};
 
-use super::{DoubleDouble, Ray};
+use super::DoubleDouble;
 
 /// f32 or f64.
 pub trait Real:
@@ -27,6 +27,8 @@ pub trait Real:
 {
     /// Three of them.
     type Vector: RealVector<Self>;
+    /// Numbers of about twice the precision.
+    type Wide: Wide<Self>;
 
     /// Zero.
     const ZERO: Self;
@@ -79,55 +81,103 @@ pub trait RealVector<S>:
     #[must_use]
     fn cross(self, other: Self) -> Self;
 
-    /// The vector product with a relative error of one roundoff in every
-    /// component, whatever the angle, if no product underflows: products are
-    /// exact, their difference nearly so, and only then is it rounded.
-    #[must_use]
-    fn cross_of_exact_products(self, other: Self) -> Self;
+    /// The three numbers.
+    fn components(self) -> [S; 3];
+
+    /// The vector of three numbers.
+    fn of(components: [S; 3]) -> Self;
 
     /// The vector of length 1 in this direction; NaN for zero.
     #[must_use]
     fn normalize(self) -> Self;
 }
 
-/// A [`Ray`] in any precision.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RayOf<S: Real> {
-    /// The point at `t = 0`.
-    pub origin: S::Vector,
-    /// Any direction of any length.
-    pub direction: S::Vector,
-    /// Least `t` that counts.
-    pub t_min: S,
-    /// Greatest `t` that counts.
-    pub t_max: S,
+/// A number in which products of two `S` are exact, if they do not underflow.
+pub trait Wide<S>: Copy {
+    /// `a b`, exactly.
+    fn product(a: S, b: S) -> Self;
+
+    /// The sum.
+    #[must_use]
+    fn plus(self, other: Self) -> Self;
+
+    /// The difference.
+    #[must_use]
+    fn minus(self, other: Self) -> Self;
+
+    /// The product.
+    #[must_use]
+    fn times(self, other: Self) -> Self;
+
+    /// The number rounded to `S`.
+    fn rounded(self) -> S;
 }
 
-impl<S: Real> RayOf<S> {
-    /// The ray with every number rounded to nearest.
-    #[must_use]
-    pub fn rounded(ray: &Ray) -> Self {
-        Self {
-            origin: S::Vector::from_f64(ray.origin),
-            direction: S::Vector::from_f64(ray.direction),
-            t_min: S::from_f64(ray.t_min),
-            t_max: S::from_f64(ray.t_max),
-        }
+impl Wide<f32> for f64 {
+    fn product(a: f32, b: f32) -> Self {
+        Self::from(a) * Self::from(b)
     }
 
-    /// The point at parameter `t`, rounded.
-    #[inline]
-    #[must_use]
-    pub fn at(&self, t: S) -> S::Vector {
-        self.origin + self.direction * t
+    fn plus(self, other: Self) -> Self {
+        self + other
     }
+
+    fn minus(self, other: Self) -> Self {
+        self - other
+    }
+
+    fn times(self, other: Self) -> Self {
+        self * other
+    }
+
+    fn rounded(self) -> f32 {
+        self as f32
+    }
+}
+
+impl Wide<f64> for DoubleDouble {
+    fn product(a: f64, b: f64) -> Self {
+        Self::product(a, b)
+    }
+
+    fn plus(self, other: Self) -> Self {
+        self.plus(other)
+    }
+
+    fn minus(self, other: Self) -> Self {
+        self.plus(other.negated())
+    }
+
+    fn times(self, other: Self) -> Self {
+        self.times(other)
+    }
+
+    fn rounded(self) -> f64 {
+        self.high
+    }
+}
+
+/// `a × b` as wide numbers; every product is exact and only the differences
+/// are rounded.
+pub fn wide_cross<S: Real>(a: S::Vector, b: S::Vector) -> [S::Wide; 3] {
+    let (a, b) = (a.components(), b.components());
+    let term =
+        |i: usize, j: usize| S::Wide::product(a[i], b[j]).minus(S::Wide::product(a[j], b[i]));
+    [term(1, 2), term(2, 0), term(0, 1)]
+}
+
+/// `v·v` of wide numbers.
+pub fn wide_square<S: Real>(v: [S::Wide; 3]) -> S::Wide {
+    let [x, y, z] = v.map(|component| component.times(component));
+    x.plus(y).plus(z)
 }
 
 /// Hands the trait's methods to those of the type.
 macro_rules! impl_real {
-    ($scalar:ident, $vector:ident, $cross_of_exact_products:ident) => {
+    ($scalar:ident, $vector:ident, $wide:ident) => {
         impl Real for $scalar {
             type Vector = $vector;
+            type Wide = $wide;
 
             const ZERO: Self = 0.0;
             const MIN_POSITIVE: Self = $scalar::MIN_POSITIVE;
@@ -180,8 +230,13 @@ macro_rules! impl_real {
             }
 
             #[inline]
-            fn cross_of_exact_products(self, other: Self) -> Self {
-                $cross_of_exact_products(self, other)
+            fn components(self) -> [$scalar; 3] {
+                self.to_array()
+            }
+
+            #[inline]
+            fn of(components: [$scalar; 3]) -> Self {
+                $vector::from_array(components)
             }
 
             #[inline]
@@ -192,19 +247,5 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(f32, Vec3, cross_through_f64);
-impl_real!(f64, DVec3, cross_through_double_double);
-
-/// Products of f32 are exact in f64.
-fn cross_through_f64(a: Vec3, b: Vec3) -> Vec3 {
-    a.as_dvec3().cross(b.as_dvec3()).as_vec3()
-}
-
-/// Products of f64 are exact in two words, down to 2^-960.
-fn cross_through_double_double(a: DVec3, b: DVec3) -> DVec3 {
-    let difference = |i: usize, j: usize| {
-        let sum = DoubleDouble::product(a[i], b[j]).plus(DoubleDouble::product(-a[j], b[i]));
-        sum.high
-    };
-    DVec3::new(difference(1, 2), difference(2, 0), difference(0, 1))
-}
+impl_real!(f32, Vec3, f64);
+impl_real!(f64, DVec3, DoubleDouble);

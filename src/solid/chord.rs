@@ -70,7 +70,7 @@ impl<S: Real> Chord<S> {
     }
 
     /// The first of [`Chord::meetings`].
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn first(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> Option<Meeting<S>> {
         self.entry(caps, shift, t_min, t_max)
@@ -109,8 +109,8 @@ impl<S: Real> Chord<S> {
 
 impl<S: Real> ChordEnd<S> {
     /// The end as a meeting, if the surface is there and it is in range.
-    #[inline]
-    fn meeting(
+    #[inline(always)]
+    pub(super) fn meeting(
         &self,
         crossing: Crossing,
         caps: Caps,

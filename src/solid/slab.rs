@@ -7,8 +7,8 @@
 //! overlap are judged by `y` at the wall's roots: wall and discs are chosen
 //! from the same numbers, so that no ray slips between them at a rim.
 
-use super::Part;
-use super::chord::{Chord, ChordEnd};
+use super::chord::{Chord, ChordEnd, Meeting};
+use super::{Caps, Crossing, Part};
 use crate::math::Real;
 
 /// A line as seen along the axis.
@@ -22,62 +22,226 @@ pub(super) struct Slab<S> {
     pub slope: S,
 }
 
-impl<S: Real> Slab<S> {
-    /// The chord of a line that is inside the infinite wall from `t0` to `t1`.
-    ///
-    /// Which disc comes first depends on the sign of the slope, which no
-    /// processor predicts. So nothing branches on it: the planes are numbers
-    /// that are computed from the sign, and both ends are choices between two
-    /// computed values.
+/// Where a line is inside the infinite wall; either end is computed when asked
+/// for.
+pub(super) trait Wall<S> {
+    /// The `t` at which it comes in.
+    fn enter(&self) -> S;
+    /// The `t` at which it goes out.
+    fn leave(&self) -> S;
+}
+
+/// A slab and a wall: a chord of which an end is computed when asked for.
+pub(super) struct Overlap<S, W> {
+    slab: Slab<S>,
+    wall: W,
+}
+
+/// What is asked of a chord. A type, not a closure: its methods are inlined,
+/// so that nothing of the chord has to be kept in memory.
+pub(super) trait Question<S> {
+    /// What is answered if there is a chord.
+    type Answer;
+
+    /// Asked of a chord that is known.
+    fn of_chord(self, chord: Chord<S>) -> Option<Self::Answer>;
+
+    /// Asked of wall and slab, which may have no chord in common.
+    fn of_overlap(self, overlap: &Overlap<S, impl Wall<S>>) -> Option<Self::Answer>;
+}
+
+/// Asks for [`Chord::first`]. The end at which the line leaves is computed only
+/// if the one at which it enters is no hit.
+pub(super) struct FirstMeeting<S> {
+    pub caps: Caps,
+    pub shift: S,
+    pub t_min: S,
+    pub t_max: S,
+}
+
+impl<S: Real> Question<S> for FirstMeeting<S> {
+    type Answer = Meeting<S>;
+
+    #[inline]
+    fn of_chord(self, chord: Chord<S>) -> Option<Meeting<S>> {
+        chord.first(self.caps, self.shift, self.t_min, self.t_max)
+    }
+
     #[inline(always)]
-    pub fn overlap(&self, t0: S, t1: S) -> Option<Chord<S>> {
-        if self.slope == S::ZERO {
-            return self.across(t0, t1);
+    fn of_overlap(self, overlap: &Overlap<S, impl Wall<S>>) -> Option<Meeting<S>> {
+        if overlap.slab.slope == S::ZERO {
+            return self.of_chord(overlap.across()?);
         }
-        // The planes at which the line goes into the slab and out of it: at
-        // 0 and at `height`, or the other way round, exactly. The zero is -0.0,
-        // from which anything can be taken away without a change but of sign.
-        let sign = S::from_f64(1.0).copysign(self.slope);
-        let half = S::from_f64(-0.5) * self.height;
-        let near = (sign - S::from_f64(1.0)) * half;
-        let far = (S::from_f64(-1.0) - sign) * half;
-
-        // How far beyond the near plane the roots are, in the ray's direction.
-        let (y0, y1) = (
-            self.position + t0 * self.slope,
-            self.position + t1 * self.slope,
-        );
-        let (y_enter, y_leave) = (near + sign * y0, near + sign * y1);
-        if !((y_enter <= self.height) & (y_leave >= S::ZERO)) {
-            return None;
+        let discs = Discs::of(&overlap.slab);
+        let meeting = |end: ChordEnd<S>, crossing| {
+            end.meeting(crossing, self.caps, self.shift, self.t_min, self.t_max)
+        };
+        let enter = overlap.enter(&discs)?;
+        if let Some(entry) = meeting(enter, Crossing::Enter) {
+            return Some(entry);
         }
+        meeting(overlap.leave(&discs, enter.t), Crossing::Leave)
+    }
+}
 
-        let (near_part, far_part) = if self.slope > S::ZERO {
-            (Part::Cap0, Part::Cap1)
-        } else {
-            (Part::Cap1, Part::Cap0)
-        };
-        let end = |is_side: bool, t: S, y: S, plane: S, cap: Part| ChordEnd {
-            t: if is_side {
-                t
-            } else {
-                (plane - self.position) / self.slope
-            },
-            part: if is_side { Part::Side } else { cap },
-            on_rim: !is_side & (y == plane),
-        };
-        let enter = end(y_enter > S::ZERO, t0, y0, near, near_part);
-        let leave = end(y_leave < self.height, t1, y1, far, far_part);
-        // At an edge the two may come out in the wrong order by a rounding.
-        let leave = ChordEnd {
-            t: if leave.t < enter.t { enter.t } else { leave.t },
-            ..leave
-        };
+/// Asks for the chord.
+pub(super) struct WholeChord;
+
+impl<S: Real> Question<S> for WholeChord {
+    type Answer = Chord<S>;
+
+    #[inline]
+    fn of_chord(self, chord: Chord<S>) -> Option<Chord<S>> {
+        Some(chord)
+    }
+
+    #[inline(always)]
+    fn of_overlap(self, overlap: &Overlap<S, impl Wall<S>>) -> Option<Chord<S>> {
+        if overlap.slab.slope == S::ZERO {
+            return overlap.across();
+        }
+        let discs = Discs::of(&overlap.slab);
+        let enter = overlap.enter(&discs)?;
         Some(Chord {
             enter,
-            leave,
+            leave: overlap.leave(&discs, enter.t),
             lies_on: None,
         })
+    }
+}
+
+/// The discs in the order in which a line that is not across the axis comes
+/// through their planes.
+///
+/// Which comes first depends on the sign of the slope, which no processor
+/// predicts. So nothing branches on it: the planes are numbers that are
+/// computed from the sign.
+struct Discs<S> {
+    sign: S,
+    near: S,
+    far: S,
+}
+
+impl<S: Real> Discs<S> {
+    #[inline(always)]
+    fn of(slab: &Slab<S>) -> Self {
+        // The planes are at 0 and at `height`, or the other way round, exactly.
+        let sign = S::from_f64(1.0).copysign(slab.slope);
+        let half = S::from_f64(-0.5) * slab.height;
+        Self {
+            sign,
+            near: (sign - S::from_f64(1.0)) * half,
+            far: (S::from_f64(-1.0) - sign) * half,
+        }
+    }
+
+    #[inline(always)]
+    fn near_part(&self) -> Part {
+        if self.sign > S::ZERO {
+            Part::Cap0
+        } else {
+            Part::Cap1
+        }
+    }
+
+    #[inline(always)]
+    fn far_part(&self) -> Part {
+        if self.sign > S::ZERO {
+            Part::Cap1
+        } else {
+            Part::Cap0
+        }
+    }
+}
+
+impl<S: Real, W: Wall<S>> Overlap<S, W> {
+    /// The chord of a line across the axis.
+    #[cold]
+    fn across(&self) -> Option<Chord<S>> {
+        self.slab.across(self.wall.enter(), self.wall.leave())
+    }
+
+    /// Where the line enters the solid, if it does.
+    #[inline(always)]
+    fn enter(&self, discs: &Discs<S>) -> Option<ChordEnd<S>> {
+        let slab = &self.slab;
+        let t = self.wall.enter();
+        let height = slab.beyond_near(discs, t);
+        if height > S::ZERO {
+            return if height < slab.height {
+                Some(ChordEnd {
+                    t,
+                    part: Part::Side,
+                    on_rim: false,
+                })
+            } else if height == slab.height {
+                // A single point, where the wall ends.
+                Some(ChordEnd {
+                    t,
+                    part: discs.far_part(),
+                    on_rim: true,
+                })
+            } else {
+                None
+            };
+        }
+        if !(slab.beyond_near(discs, self.wall.leave()) >= S::ZERO) {
+            return None;
+        }
+        Some(ChordEnd {
+            t: slab.at(discs.near),
+            part: discs.near_part(),
+            on_rim: height == S::ZERO,
+        })
+    }
+
+    /// Where the line that enters at `enter` leaves the solid.
+    #[inline(always)]
+    fn leave(&self, discs: &Discs<S>, enter: S) -> ChordEnd<S> {
+        let slab = &self.slab;
+        let t = self.wall.leave();
+        let height = slab.beyond_near(discs, t);
+        let end = if height < slab.height {
+            let on_rim = height == S::ZERO;
+            let part = if on_rim {
+                discs.near_part()
+            } else {
+                Part::Side
+            };
+            ChordEnd { t, part, on_rim }
+        } else {
+            ChordEnd {
+                t: slab.at(discs.far),
+                part: discs.far_part(),
+                on_rim: height == slab.height,
+            }
+        };
+        // At an edge the two may come out in the wrong order by a rounding.
+        ChordEnd {
+            t: if end.t < enter { enter } else { end.t },
+            ..end
+        }
+    }
+}
+
+impl<S: Real> Slab<S> {
+    /// How far beyond the near disc's plane the line is at `t`, in its own
+    /// direction.
+    #[inline(always)]
+    fn beyond_near(&self, discs: &Discs<S>, t: S) -> S {
+        discs.near + discs.sign * (self.position + t * self.slope)
+    }
+
+    /// Where the line comes through a plane.
+    #[inline(always)]
+    fn at(&self, plane: S) -> S {
+        (plane - self.position) / self.slope
+    }
+
+    /// The part of a wall between the discs.
+    #[inline(always)]
+    pub fn overlap<W: Wall<S>>(self, wall: W) -> Overlap<S, W> {
+        Overlap { slab: self, wall }
     }
 
     /// The chord of a line along the axis that is inside the wall, or on it

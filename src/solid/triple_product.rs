@@ -30,19 +30,21 @@
 //!
 //! Where the two terms of a root of (2) cancel, the root is `C / q`, `C` the
 //! constant term of (1) and `q = -(m·n) ± |a| √D` the sum that does not cancel.
+//! For an origin next to the wall `C` cancels as well, and is computed from
+//! exact products.
 //!
 //! The axial position of a point is `y = x·a + t d·a`, inside the slab between
-//! the discs iff `0 <= y <= |a|²`; `slab.rs` overlaps wall and slab.
+//! the discs iff `0 <= y <= |a|²`; `slab.rs` overlaps wall and slab, and asks for
+//! the second root only where the first does not settle the answer.
 //!
 //! A derivation of the error bounds is in `docs/derivations.md`, section 2. It
 //! is for f64, in which the tracer solves; f32 exists for comparison.
 
 use glam::DVec3;
 
-use super::Cylinder;
-use super::chord::Chord;
-use super::slab::Slab;
-use crate::math::{Real, RealVector, power_of_two};
+use super::slab::{FirstMeeting, Question, Slab, Wall, WholeChord};
+use super::{Chord, Cylinder, Meeting};
+use crate::math::{Real, RealVector, Wide, power_of_two, wide_cross, wide_square};
 
 /// Below this (2^-700), `radius² |n|²` could lose bits to underflow and the ray
 /// is taken as parallel to the axis. `|a| |d|` is at least 2^-250 (the least
@@ -60,13 +62,21 @@ const PARALLEL_BELOW: f64 = power_of_two(-700);
 /// 20 u and 10 u; at 1/4 it would be 13 % and 16 u and 8 u.
 const LEAST_SQUARED_SINE: f64 = 1.0 / 16.0;
 
+/// Below this, relative to `radius² |a|²`, the constant term of (1) is computed
+/// from exact products.
+///
+/// It trades time for bits of a `t` near zero: at 2^-20, the rounded term has
+/// 30 bits left, more than an f32 has; and rays spawned at a wall, whose offset
+/// is an ulp of f32 of their coordinates, rarely need the exact products.
+const LEAST_CONSTANT_TERM: f64 = power_of_two(-20);
+
 /// What the solver reads of a cylinder: its axis `a`, its radius, and products
 /// of them that may be kept or computed when asked for.
 pub(super) trait Axis<S: Real>: Copy {
     /// `a = p1 - p0`.
     fn a(&self) -> S::Vector;
-    /// `radius²`.
-    fn rr(&self) -> S;
+    /// The radius.
+    fn radius(&self) -> S;
     /// `|a|²`.
     fn aa(&self) -> S;
     /// `|a|`.
@@ -84,6 +94,17 @@ pub(super) struct StatedAxis<S: Real> {
     pub radius: S,
 }
 
+impl StatedAxis<f64> {
+    /// The axis of a cylinder.
+    #[inline]
+    pub fn of(cylinder: &Cylinder) -> Self {
+        Self {
+            a: cylinder.p1() - cylinder.p0(),
+            radius: cylinder.radius(),
+        }
+    }
+}
+
 impl<S: Real> Axis<S> for StatedAxis<S> {
     #[inline]
     fn a(&self) -> S::Vector {
@@ -91,8 +112,8 @@ impl<S: Real> Axis<S> for StatedAxis<S> {
     }
 
     #[inline]
-    fn rr(&self) -> S {
-        self.radius * self.radius
+    fn radius(&self) -> S {
+        self.radius
     }
 
     #[inline]
@@ -107,90 +128,241 @@ impl<S: Real> Axis<S> for StatedAxis<S> {
 
     #[inline]
     fn rr_aa(&self) -> S {
-        self.rr() * self.aa()
+        self.radius * self.radius * self.aa()
     }
 }
 
-/// The interval in which the line `p0 + from_p0 + t * direction` is inside the
-/// closed solid, or `None` where it is not.
+/// The first point, among those with `t_min <= t + shift <= t_max`, of the line
+/// `p0 + from_p0 + t * direction` on the cylinder's surface.
 ///
-/// `from_p0` is the ray's origin as seen from the cylinder's `p0`. `direction`
-/// has a largest component between 2^-100 and 2^100 in size; with the range of
+/// `from_p0` is the ray's origin as seen from the cylinder's `p0`, and `shift`
+/// is where it is on the whole ray, as in [`Chord::first`]. `direction` has a
+/// largest component between 2^-100 and 2^100 in size; with the range of
 /// [`Cylinder`] nothing then overflows. A non-finite argument is a miss.
 #[inline]
 #[must_use]
-pub fn chord(cylinder: &Cylinder, from_p0: DVec3, direction: DVec3) -> Option<Chord> {
-    let axis = StatedAxis {
-        a: cylinder.p1() - cylinder.p0(),
-        radius: cylinder.radius(),
+pub fn first(
+    cylinder: &Cylinder,
+    from_p0: DVec3,
+    direction: DVec3,
+    shift: f64,
+    t_min: f64,
+    t_max: f64,
+) -> Option<Meeting> {
+    let question = FirstMeeting {
+        caps: cylinder.caps(),
+        shift,
+        t_min,
+        t_max,
     };
-    axis_chord(&axis, from_p0, direction)
+    answer(&StatedAxis::of(cylinder), from_p0, direction, question)
 }
 
-/// The same for any form of the cylinder and either precision.
+/// The interval in which that line is inside the closed solid, or `None` where
+/// it is not; under the conditions of [`first`].
+#[inline]
+#[must_use]
+pub fn chord(cylinder: &Cylinder, from_p0: DVec3, direction: DVec3) -> Option<Chord> {
+    answer(&StatedAxis::of(cylinder), from_p0, direction, WholeChord)
+}
+
+/// The answer to what is asked of that chord, for any form of the cylinder and
+/// either precision. `None` if there is no chord.
 #[inline(always)]
-pub(super) fn axis_chord<S: Real>(
-    axis: &impl Axis<S>,
+pub(super) fn answer<S: Real, A: Axis<S>, Q: Question<S>>(
+    axis: &A,
     from_p0: S::Vector,
     direction: S::Vector,
-) -> Option<Chord<S>> {
-    let (a, x, d) = (axis.a(), from_p0, direction);
-    let mut n = a.cross(d);
-    let mut nn = n.dot(n);
-    if nn < S::from_f64(LEAST_SQUARED_SINE) * (axis.aa() * d.dot(d)) {
-        n = exact_normal::<S>(a, d);
-        nn = n.dot(n);
+    question: Q,
+) -> Option<Q::Answer> {
+    let (x, d) = (from_p0, direction);
+    let line = Line::new(axis, x, d);
+    if line.is_parallel() {
+        // From disc to disc, if it is not farther from the axis than the wall.
+        let chord = parallel_chord(constant_term(axis, x, axis.a().cross(x)), slab(axis, x, d))?;
+        return question.of_chord(chord);
     }
-    if nn < parallel_below() {
-        return parallel_chord(axis, x, d);
-    }
-
-    // Does the line reach the infinite wall? Written so that NaN is a miss.
-    let w = x.dot(n);
-    let discriminant = axis.rr() * nn - w * w;
-    if !(discriminant >= S::ZERO) {
+    // Does it reach the infinite wall? Written so that NaN is a miss.
+    if !(line.discriminant >= S::ZERO) {
         return None;
     }
+    let roots = Roots::new(axis, x, &line);
+    question.of_overlap(&slab(axis, x, d).overlap(roots))
+}
 
-    // The roots of the wall.
-    let m = a.cross(x);
-    let mn = m.dot(n);
-    let s = axis.length() * discriminant.sqrt();
-    let (t0, t1) = if (s - mn.abs()).abs() < S::from_f64(0.5) * mn.abs() {
-        let c = m.dot(m) - axis.rr_aa();
-        let q = if mn < S::ZERO { s - mn } else { -mn - s };
-        if mn < S::ZERO {
-            (c / q, q / nn)
-        } else {
-            (q / nn, c / q)
+/// How a line passes an axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line<S: Real> {
+    /// `a × d`.
+    pub n: S::Vector,
+    /// `|n|²`.
+    pub nn: S,
+    /// The triple product `x·n`.
+    pub w: S,
+    /// `radius² |n|² - w²`.
+    pub discriminant: S,
+}
+
+impl<S: Real> Line<S> {
+    #[inline(always)]
+    pub fn new(axis: &impl Axis<S>, x: S::Vector, d: S::Vector) -> Self {
+        let a = axis.a();
+        let mut n = a.cross(d);
+        let mut nn = n.dot(n);
+        if nn < S::from_f64(LEAST_SQUARED_SINE) * (axis.aa() * d.dot(d)) {
+            n = exact_normal::<S>(a, d);
+            nn = n.dot(n);
         }
-    } else {
-        ((-mn - s) / nn, (s - mn) / nn)
-    };
-    slab(axis, x, d).overlap(t0, t1)
+        let w = x.dot(n);
+        Self {
+            n,
+            nn,
+            w,
+            discriminant: axis.radius() * axis.radius() * nn - w * w,
+        }
+    }
+
+    /// Whether the line is taken as parallel to the axis.
+    #[inline]
+    pub fn is_parallel(&self) -> bool {
+        self.nn < parallel_below()
+    }
+}
+
+/// The two roots of the wall.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Roots<S: Real, A> {
+    axis: A,
+    m: S::Vector,
+    x: S::Vector,
+    nn: S,
+    /// `m·n`.
+    pub mn: S,
+    /// `|a| √D`.
+    pub s: S,
+}
+
+/// Which of two roots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Root {
+    /// With the minus sign in (2), where the line comes in.
+    First,
+    /// With the plus sign.
+    Second,
+}
+
+/// A root as a quotient of two numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quotient<S> {
+    pub numerator: S,
+    pub denominator: S,
+    /// Whether it is `C / q`, not a sum over `|n|²`.
+    pub is_indirect: bool,
+}
+
+impl<S: Real, A: Axis<S>> Roots<S, A> {
+    #[inline(always)]
+    pub fn new(axis: &A, x: S::Vector, line: &Line<S>) -> Self {
+        let m = axis.a().cross(x);
+        Self {
+            axis: *axis,
+            m,
+            x,
+            nn: line.nn,
+            mn: m.dot(line.n),
+            s: axis.length() * line.discriminant.sqrt(),
+        }
+    }
+
+    /// A root by the form in which its terms do not cancel.
+    #[inline(always)]
+    pub fn quotient(&self, root: Root) -> Quotient<S> {
+        let (sum, other) = match root {
+            Root::First => (-self.mn - self.s, self.s - self.mn),
+            Root::Second => (self.s - self.mn, -self.mn - self.s),
+        };
+        if sum.abs() < S::from_f64(0.5) * self.mn.abs() {
+            Quotient {
+                numerator: constant_term(&self.axis, self.x, self.m),
+                denominator: other,
+                is_indirect: true,
+            }
+        } else {
+            Quotient {
+                numerator: sum,
+                denominator: self.nn,
+                is_indirect: false,
+            }
+        }
+    }
+}
+
+/// `C = |m|² - radius² |a|²`, where `m = a × x`.
+#[inline(always)]
+fn constant_term<S: Real>(axis: &impl Axis<S>, x: S::Vector, m: S::Vector) -> S {
+    let least = axis.rr_aa();
+    let c = m.dot(m) - least;
+    if c.abs() < S::from_f64(LEAST_CONSTANT_TERM) * least {
+        let ([ax, ay, az], [xx, xy, xz]) = (axis.a().components(), x.components());
+        return exact_constant_term(ax, ay, az, xx, xy, xz, axis.radius());
+    }
+    c
+}
+
+#[cold]
+#[inline(never)]
+fn exact_constant_term<S: Real>(ax: S, ay: S, az: S, xx: S, xy: S, xz: S, radius: S) -> S {
+    let (a, x) = ([ax, ay, az], [xx, xy, xz]);
+    let aa = wide_square::<S>(a.map(|one| S::Wide::product(one, S::from_f64(1.0))));
+    let mm = wide_square::<S>(wide_cross::<S>(S::Vector::of(a), S::Vector::of(x)));
+    mm.minus(S::Wide::product(radius, radius).times(aa))
+        .rounded()
+}
+
+impl<S: Real, A: Axis<S>> Wall<S> for Roots<S, A> {
+    #[inline(always)]
+    fn enter(&self) -> S {
+        let root = self.quotient(Root::First);
+        root.numerator / root.denominator
+    }
+
+    #[inline(always)]
+    fn leave(&self) -> S {
+        let root = self.quotient(Root::Second);
+        root.numerator / root.denominator
+    }
 }
 
 /// `a × d` from exact products. Those below 2^-960 are not exact in f64, but
 /// then they are nothing against a vector that is not taken for zero.
-#[cold]
+#[inline(always)]
 fn exact_normal<S: Real>(a: S::Vector, d: S::Vector) -> S::Vector {
-    a.cross_of_exact_products(d)
+    let ([ax, ay, az], [dx, dy, dz]) = (a.components(), d.components());
+    S::Vector::of(cross_of_exact_products(ax, ay, az, dx, dy, dz))
 }
 
-/// The chord of a line along the axis: from disc to disc, if it is not farther
-/// from the axis than the wall. Its squared distance is `|m|² / |a|²`.
+/// Takes numbers one by one: they are handed over in registers, and the caller
+/// need not have its vectors in memory for a case that is rare.
 #[cold]
-fn parallel_chord<S: Real>(axis: &impl Axis<S>, x: S::Vector, d: S::Vector) -> Option<Chord<S>> {
-    let m = axis.a().cross(x);
-    let (mm, rr_aa) = (m.dot(m), axis.rr_aa());
-    if !(mm <= rr_aa) {
+#[inline(never)]
+fn cross_of_exact_products<S: Real>(ax: S, ay: S, az: S, dx: S, dy: S, dz: S) -> [S; 3] {
+    let (a, d) = (S::Vector::of([ax, ay, az]), S::Vector::of([dx, dy, dz]));
+    wide_cross::<S>(a, d).map(S::Wide::rounded)
+}
+
+/// The chord of a line along the axis, of which the constant term says how far
+/// it is from the wall.
+#[cold]
+fn parallel_chord<S: Real>(constant_term: S, slab: Slab<S>) -> Option<Chord<S>> {
+    if !(constant_term <= S::ZERO) {
         return None;
     }
-    slab(axis, x, d).along(mm == rr_aa)
+    slab.along(constant_term == S::ZERO)
 }
 
-#[inline]
-fn slab<S: Real>(axis: &impl Axis<S>, x: S::Vector, d: S::Vector) -> Slab<S> {
+/// The line as seen along the axis.
+#[inline(always)]
+pub(super) fn slab<S: Real>(axis: &impl Axis<S>, x: S::Vector, d: S::Vector) -> Slab<S> {
     Slab {
         height: axis.aa(),
         position: x.dot(axis.a()),

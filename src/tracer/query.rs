@@ -9,7 +9,7 @@ use super::frame::{Frame, Level, LocalRay};
 use crate::embree::Ray32;
 use crate::math::Ray;
 use crate::scene::{CylinderRecord, PrototypeIndex};
-use crate::solid::{Chord, Cylinder, triple_product};
+use crate::solid::{Cylinder, Meeting, triple_product};
 
 /// A query on its way.
 #[derive(Debug)]
@@ -69,46 +69,63 @@ impl Query {
             .expect("callbacks run within a prototype")
     }
 
-    /// The stretch of the ray inside a cylinder of the current prototype.
+    /// The first point, up to `t_max`, where the ray meets a cylinder of the
+    /// current prototype.
     #[inline]
-    fn chord(&self, cylinder: &Cylinder) -> Option<Chord> {
-        let ray = &self.level().ray;
-        triple_product::chord(cylinder, ray.origin_from(cylinder.p0()), ray.direction)
+    fn first_meeting(&self, cylinder: &Cylinder, t_max: f64) -> Option<Meeting> {
+        let LocalRay {
+            direction, shift, ..
+        } = self.level().ray;
+        let from_p0 = self.level().ray.origin_from(cylinder.p0());
+        triple_product::first(cylinder, from_p0, direction, shift, self.t_min, t_max)
     }
 
     /// Whether the ray meets a cylinder of the current prototype.
     #[inline]
     pub fn meets(&self, record: &CylinderRecord) -> bool {
-        let (cylinder, shift) = (record.cylinder(), self.level().ray.shift);
-        self.chord(&cylinder)
-            .and_then(|chord| chord.first(cylinder.caps(), shift, self.t_min, self.t_max))
-            .is_some()
+        self.first_meeting(&record.cylinder(), self.t_max).is_some()
     }
 
     /// Keeps of the points where the ray meets a cylinder of the current
     /// prototype those that are wanted.
     #[inline]
     pub fn visit(&mut self, record: &CylinderRecord, prototype: PrototypeIndex, position: u32) {
-        let (cylinder, shift) = (record.cylinder(), self.level().ray.shift);
-        let Some(chord) = self.chord(&cylinder) else {
-            return;
-        };
-        let primitive = record.primitive();
-        let meetings = chord.meetings(cylinder.caps(), shift, self.t_min, self.bound());
-        let wanted = match self.keep {
-            Keep::First(_) => 1,
-            Keep::Next { .. } => 2,
-        };
-        for meeting in meetings.take(wanted) {
-            self.keep
-                .offer(meeting, &self.path, primitive, |meeting, path| Found {
-                    meeting,
-                    prototype,
-                    record: position,
-                    primitive,
-                    path: path.clone(),
-                });
+        let cylinder = record.cylinder();
+        match self.keep {
+            Keep::First(_) => {
+                if let Some(meeting) = self.first_meeting(&cylinder, self.bound()) {
+                    self.offer(meeting, record.primitive(), prototype, position);
+                }
+            }
+            Keep::Next { .. } => {
+                let ray = &self.level().ray;
+                let (from_p0, shift) = (ray.origin_from(cylinder.p0()), ray.shift);
+                let Some(chord) = triple_product::chord(&cylinder, from_p0, ray.direction) else {
+                    return;
+                };
+                for meeting in chord.meetings(cylinder.caps(), shift, self.t_min, self.bound()) {
+                    self.offer(meeting, record.primitive(), prototype, position);
+                }
+            }
         }
+    }
+
+    #[inline]
+    fn offer(
+        &mut self,
+        meeting: Meeting,
+        primitive: u32,
+        prototype: PrototypeIndex,
+        position: u32,
+    ) {
+        self.keep
+            .offer(meeting, &self.path, primitive, |meeting, path| Found {
+                meeting,
+                prototype,
+                record: position,
+                primitive,
+                path: path.clone(),
+            });
     }
 
     /// The `t_far` that leaves room for all hits that would be kept.

@@ -1,8 +1,7 @@
 //! Double-doubles that know how far off they may be.
 //!
 //! `value` is within `error` of the number meant. Sums of the double-double
-//! format are within `4 · 2^-106` of the sum of the sizes; products, which
-//! leave out the product of the low words and round two mixed ones, within
+//! format are within `4 · 2^-106` of the sum of the sizes, products within
 //! `8 · 2^-106` of the product of the sizes. Both constants are doubled here,
 //! which covers the roundings of the bounds themselves. What is exact stays
 //! known to be: products of plain f64s, and differences that vanish.
@@ -39,10 +38,7 @@ impl Bounded {
 
     fn negated(&self) -> Self {
         Self {
-            value: DoubleDouble {
-                high: -self.value.high,
-                low: -self.value.low,
-            },
+            value: self.value.negated(),
             error: self.error,
         }
     }
@@ -79,15 +75,13 @@ impl Number for Bounded {
 
     fn times(&self, other: &Self) -> Self {
         let (a, b) = (self.value, other.value);
-        let high = DoubleDouble::product(a.high, b.high);
-        let is_zero = high.high == 0.0
-            && (self.is_plain() && a.high == 0.0 || other.is_plain() && b.high == 0.0);
+        let size = (a.high * b.high).abs();
+        let is_zero =
+            size == 0.0 && (self.is_plain() && a.high == 0.0 || other.is_plain() && b.high == 0.0);
         if is_zero {
             return Self::of(0.0);
         }
-        let mixed = a.high * b.low + a.low * b.high;
-        let value = DoubleDouble::sum(high.high, high.low + mixed);
-        let size = high.high.abs();
+        let value = a.times(b);
         let inherited =
             a.high.abs() * other.error + b.high.abs() * self.error + 2.0 * self.error * other.error;
         let rounding = if self.is_plain() && other.is_plain() && size >= LEAST_PRODUCT {

@@ -17,8 +17,8 @@ use super::adapter::Solver;
 use super::textbook::CentreRecord;
 use super::{CentreDot, triple_product};
 use crate::math::{RayOf, Real, RealVector};
-use crate::solid::slab::Slab;
-use crate::solid::{Chord, Cylinder, Part};
+use crate::solid::slab::{Question, Slab, Wall};
+use crate::solid::{Cylinder, Part};
 
 /// The formulation.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,8 @@ impl<S: Real> Solver<S> for CentreDotTuned {
 
     #[inline(always)]
     fn first(&self, record: &Self::Record, ray: &RayOf<S>) -> Option<(S, Part)> {
-        triple_product::first_of(chord(record, ray)?, record.caps, ray)
+        let hit = answer(record, ray, triple_product::first_of(record.caps, ray))?;
+        Some((hit.t, hit.part))
     }
 
     fn normal(&self, record: &Self::Record, ray: &RayOf<S>, t: S, part: Part) -> S::Vector {
@@ -45,8 +46,31 @@ impl<S: Real> Solver<S> for CentreDotTuned {
     }
 }
 
-#[inline]
-fn chord<S: Real>(record: &CentreRecord<S>, ray: &RayOf<S>) -> Option<Chord<S>> {
+/// The roots of the wall.
+struct Roots<S> {
+    a: S,
+    b: S,
+    s: S,
+}
+
+impl<S: Real> Wall<S> for Roots<S> {
+    #[inline(always)]
+    fn enter(&self) -> S {
+        (-self.b - self.s) / self.a
+    }
+
+    #[inline(always)]
+    fn leave(&self) -> S {
+        (self.s - self.b) / self.a
+    }
+}
+
+#[inline(always)]
+fn answer<S: Real, Q: Question<S>>(
+    record: &CentreRecord<S>,
+    ray: &RayOf<S>,
+    question: Q,
+) -> Option<Q::Answer> {
     let (d, axis) = (ray.direction, record.axis);
     let oc = ray.origin - record.centre;
     let (d_axis, oc_axis) = (d.dot(axis), oc.dot(axis));
@@ -60,7 +84,7 @@ fn chord<S: Real>(record: &CentreRecord<S>, ray: &RayOf<S>) -> Option<Chord<S>> 
     };
     if !(a > S::ZERO) {
         return if c <= S::ZERO {
-            slab.along(c == S::ZERO)
+            question.of_chord(slab.along(c == S::ZERO)?)
         } else {
             None
         };
@@ -70,5 +94,5 @@ fn chord<S: Real>(record: &CentreRecord<S>, ray: &RayOf<S>) -> Option<Chord<S>> 
         return None;
     }
     let s = discriminant.sqrt();
-    slab.overlap((-b - s) / a, (s - b) / a)
+    question.of_overlap(&slab.overlap(Roots { a, b, s }))
 }

@@ -6,7 +6,7 @@
 //! in f32 endpoints and radius are rounded to f32.
 //!
 //! `triple-product-prepared` keeps what does not depend on the ray: `a`,
-//! `radius²`, `|a|²`, `|a|` and `radius² |a|²`. It computes the same numbers,
+//! `|a|²`, `|a|` and `radius² |a|²`. It computes the same numbers,
 //! so its answers are the same to the last bit; it spares some products and a
 //! root for more memory a cylinder.
 //!
@@ -16,8 +16,9 @@ use glam::DVec3;
 
 use super::adapter::Solver;
 use crate::math::{RayOf, Real, RealVector};
-use crate::solid::triple_product::{Axis, StatedAxis, axis_chord};
-use crate::solid::{Caps, Chord, Cylinder, Part, surface_point};
+use crate::solid::slab::FirstMeeting;
+use crate::solid::triple_product::{Axis, StatedAxis, answer};
+use crate::solid::{Caps, Cylinder, Part, surface_point};
 
 /// The formulation that stores the cylinder as stated.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +31,15 @@ pub(super) struct StatedRecord<S: Real> {
     p1: S::Vector,
     radius: S,
     caps: Caps,
+}
+
+impl<S: Real> StatedRecord<S> {
+    /// The cylinder, in f64 numbers.
+    #[inline]
+    pub fn cylinder(&self) -> Cylinder {
+        let (p0, p1) = (self.p0.to_f64(), self.p1.to_f64());
+        Cylinder::from_valid(p0, p1, self.radius.to_f64(), self.caps)
+    }
 }
 
 impl<S: Real> Solver<S> for TripleProduct {
@@ -54,8 +64,9 @@ impl<S: Real> Solver<S> for TripleProduct {
             a: record.p1 - record.p0,
             radius: record.radius,
         };
-        let chord = axis_chord(&axis, ray.origin - record.p0, ray.direction)?;
-        first_of(chord, record.caps, ray)
+        let first = first_of(record.caps, ray);
+        let hit = answer(&axis, ray.origin - record.p0, ray.direction, first)?;
+        Some((hit.t, hit.part))
     }
 
     fn normal(&self, record: &Self::Record, ray: &RayOf<S>, t: S, part: Part) -> S::Vector {
@@ -72,7 +83,7 @@ pub(super) struct TripleProductPrepared;
 pub(super) struct PreparedRecord<S: Real> {
     p0: S::Vector,
     a: S::Vector,
-    rr: S,
+    radius: S,
     aa: S,
     length: S,
     rr_aa: S,
@@ -86,8 +97,8 @@ impl<S: Real> Axis<S> for PreparedRecord<S> {
     }
 
     #[inline]
-    fn rr(&self) -> S {
-        self.rr
+    fn radius(&self) -> S {
+        self.radius
     }
 
     #[inline]
@@ -122,7 +133,7 @@ impl<S: Real> Solver<S> for TripleProductPrepared {
         PreparedRecord {
             p0: stated.p0,
             a: axis.a,
-            rr: axis.rr(),
+            radius: axis.radius,
             aa: axis.aa(),
             length: axis.length(),
             rr_aa: axis.rr_aa(),
@@ -132,8 +143,9 @@ impl<S: Real> Solver<S> for TripleProductPrepared {
 
     #[inline(always)]
     fn first(&self, record: &Self::Record, ray: &RayOf<S>) -> Option<(S, Part)> {
-        let chord = axis_chord(record, ray.origin - record.p0, ray.direction)?;
-        first_of(chord, record.caps, ray)
+        let first = first_of(record.caps, ray);
+        let hit = answer(record, ray.origin - record.p0, ray.direction, first)?;
+        Some((hit.t, hit.part))
     }
 
     fn normal(&self, record: &Self::Record, ray: &RayOf<S>, t: S, part: Part) -> S::Vector {
@@ -141,11 +153,15 @@ impl<S: Real> Solver<S> for TripleProductPrepared {
     }
 }
 
-/// The first hit of a chord in the ray's range.
-#[inline]
-pub(super) fn first_of<S: Real>(chord: Chord<S>, caps: Caps, ray: &RayOf<S>) -> Option<(S, Part)> {
-    let hit = chord.first(caps, S::ZERO, ray.t_min, ray.t_max)?;
-    Some((hit.t, hit.part))
+/// Asks for the first hit in the ray's range.
+#[inline(always)]
+pub(super) fn first_of<S: Real>(caps: Caps, ray: &RayOf<S>) -> FirstMeeting<S> {
+    FirstMeeting {
+        caps,
+        shift: S::ZERO,
+        t_min: ray.t_min,
+        t_max: ray.t_max,
+    }
 }
 
 /// The normal that the library reports for a hit. It depends neither on the
