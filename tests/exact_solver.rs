@@ -23,7 +23,7 @@ fn assert_agrees(cylinder: &Cylinder, ray: &Ray, case: &str) -> Stage {
             hit.t,
             hit.t_error
         );
-        let t = exact::rounded_t(cylinder, ray, &hit);
+        let t: f64 = exact::rounded_t(cylinder, ray, &hit);
         assert_eq!(t, truth.t_f64(), "{case}, {stage:?}: {cylinder:?} {ray:?}");
     }
     stage

@@ -8,26 +8,11 @@ use cyltrace::stress::{Cell, PROMISES, Promise, Settings, to_bits};
 
 /// The table of promises.
 pub fn promises() -> String {
-    let mut table = Table::new(
-        &[
-            "formulations",
-            "inputs",
-            "in every family but",
-            "promise",
-            "because",
-        ],
-        4,
-    );
+    let mut table = Table::new(&["formulations", "inputs", "promise", "because"], 4);
     for promise in PROMISES {
         table.push(vec![
             promise.formulations.join(", "),
             promise.inputs.name().to_owned(),
-            promise
-                .except
-                .iter()
-                .map(|family| family.name())
-                .collect::<Vec<_>>()
-                .join(", "),
             promise.claim.to_string(),
             promise.why.to_owned(),
         ]);

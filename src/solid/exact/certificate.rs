@@ -19,13 +19,19 @@
 //! A quotient `p / q` with `E_q <= |q| / 4` is off by at most
 //! `4/3 (E_p + |p/q| E_q) / |q| + u |p/q|`. All bounds are taken once more for the
 //! roundings of the bounds themselves, by the factor [`MARGIN`].
+//!
+//! The bounds are written for speed, as they are computed for every ray: for
+//! the lengths of `x` and `d` stand the sums of their components' sizes, which
+//! are at most √3 times as long and take no root.
 
 use glam::DVec3;
 
 use super::ExactHit;
-use super::decide::{At, Decision};
+use super::decide::At;
 use crate::math::{Ray, UNIT_ROUNDOFF as U};
-use crate::solid::{Chord, Crossing, Cylinder, Part};
+use crate::solid::slab::Slab;
+use crate::solid::triple_product::{self, Axis, Line, Quotient, Root, Roots, StatedAxis};
+use crate::solid::{Crossing, Cylinder, Part};
 
 /// Room for the roundings of the bounds, some 30 operations of positive
 /// numbers each: 1 + 2^-40 would do.
@@ -38,6 +44,50 @@ struct Near {
     error: f64,
 }
 
+impl Near {
+    /// Whether the number is certainly above the limit.
+    #[inline(always)]
+    fn above(&self, limit: f64) -> bool {
+        self.value - self.error * MARGIN > limit
+    }
+
+    /// Whether the number is certainly below the limit.
+    #[inline(always)]
+    fn below(&self, limit: f64) -> bool {
+        self.value + self.error * MARGIN < limit
+    }
+
+    /// The quotient by a number that is certainly not zero.
+    #[inline(always)]
+    fn over(&self, denominator: Self) -> Option<Self> {
+        let size = denominator.value.abs();
+        let value = self.value / denominator.value;
+        let factor = (4.0 / 3.0) / size;
+        (denominator.error * MARGIN <= 0.25 * size).then(|| Self {
+            value,
+            error: factor * (self.error + value.abs() * denominator.error) + U * value.abs(),
+        })
+    }
+}
+
+/// Where a line is inside the wall and between the discs, with bounds.
+struct Certifier<'a> {
+    cylinder: &'a Cylinder,
+    ray: &'a Ray,
+    roots: Roots<f64, StatedAxis<f64>>,
+    slab: Slab<f64>,
+    nn: Near,
+    /// The bound of a sum `-(m·n) ∓ s`.
+    sum_error: f64,
+    /// The bound of the constant term.
+    constant_error: f64,
+    /// The bound of `x·a` and of the roundings of a height, `t` and the slope
+    /// apart.
+    position_error: f64,
+    /// The bound of `d·a`.
+    slope_error: f64,
+}
+
 /// Where a height is between the discs, in the ray's direction.
 #[derive(Clone, Copy, PartialEq)]
 enum Height {
@@ -46,172 +96,196 @@ enum Height {
     Beyond,
 }
 
-impl Near {
-    /// Whether the number is certainly above the limit.
-    fn above(&self, limit: f64) -> bool {
-        self.value - self.error * MARGIN > limit
+/// The exact answer, if what the f64 solver computes certainly gives it.
+#[inline(always)]
+pub(super) fn first(cylinder: &Cylinder, ray: &Ray) -> Option<Option<ExactHit>> {
+    let (x, d) = (ray.origin - cylinder.p0(), ray.direction);
+    let axis = StatedAxis::of(cylinder);
+    let line = Line::new(&axis, x, d);
+
+    let rr = axis.radius * axis.radius;
+    let (aa, a_size) = (axis.aa(), axis.length());
+    let x_size = sum_of_sizes(x);
+    let k = a_size * sum_of_sizes(d);
+    let n_size = line.nn.sqrt() + 5.0 * U * k;
+    let off = 10.0 * U * x_size * k;
+    let discriminant = Near {
+        value: line.discriminant,
+        error: U * k * (20.0 * rr * n_size + 21.0 * x_size * line.w.abs()) + off * off,
+    };
+    if discriminant.below(0.0) {
+        return Some(None);
+    }
+    if line.is_parallel() || !(discriminant.value > 4.0 * discriminant.error * MARGIN) {
+        return None;
     }
 
-    /// Whether the number is certainly below the limit.
-    fn below(&self, limit: f64) -> bool {
-        self.value + self.error * MARGIN < limit
+    let roots = Roots::new(&axis, x, &line);
+    let s_error = roots.s * (0.54 * discriminant.error / discriminant.value + 6.0 * U);
+    let slab = triple_product::slab(&axis, x, d);
+    Certifier {
+        cylinder,
+        ray,
+        nn: Near {
+            value: line.nn,
+            error: 13.0 * U * k * n_size,
+        },
+        sum_error: 14.0 * U * a_size * x_size * k + s_error + U * (roots.mn.abs() + roots.s),
+        constant_error: U * aa * (17.0 * x_size * x_size + 8.0 * rr),
+        position_error: U * (8.0 * a_size * x_size + 6.0 * aa),
+        slope_error: 4.0 * U * k,
+        roots,
+        slab,
     }
-
-    /// A quotient that was computed as `value`.
-    fn quotient(value: f64, numerator_error: f64, denominator: Near) -> Option<Self> {
-        let size = denominator.value.abs();
-        (denominator.error * MARGIN <= 0.25 * size).then(|| Self {
-            value,
-            error: (4.0 / 3.0) * (numerator_error + value.abs() * denominator.error) / size
-                + U * value.abs(),
-        })
-    }
+    .first()
 }
 
-/// The exact answer, if the chord that the f64 solver found (or that it found
-/// none) is certainly right.
-pub(super) fn certify(
-    cylinder: &Cylinder,
-    ray: &Ray,
-    x: DVec3,
-    chord: Option<&Chord>,
-) -> Option<Option<ExactHit>> {
-    let (d, r) = (ray.direction, cylinder.radius());
-    let a = cylinder.p1() - cylinder.p0();
-    let n = a.cross(d);
-    let nn = n.dot(n);
-    let (w, rr) = (x.dot(n), r * r);
-    let discriminant = rr * nn - w * w;
-    let aa = a.dot(a);
-    let (a_size, x_size) = (aa.sqrt(), x.length());
-    let k = a_size * d.length();
-    let n_size = nn.sqrt() + 5.0 * U * k;
+#[inline(always)]
+fn sum_of_sizes(v: DVec3) -> f64 {
+    v.x.abs() + v.y.abs() + v.z.abs()
+}
 
-    let off = 10.0 * U * x_size * k;
-    let discriminant_error = U * k * (20.0 * rr * n_size + 21.0 * x_size * w.abs()) + off * off;
-    if discriminant + discriminant_error * MARGIN < 0.0 {
-        return Some(None);
-    }
-    if !(discriminant > 4.0 * discriminant_error * MARGIN) {
-        return None;
+impl Certifier<'_> {
+    /// The first end that is on the surface and in range.
+    #[inline(always)]
+    fn first(&self) -> Option<Option<ExactHit>> {
+        let enter = self.root(Root::First)?;
+        match self.height(enter)? {
+            Height::Beyond => Some(None),
+            Height::Inside => {
+                if let Some(answer) = self.hit(enter, At::FirstRoot, Part::Side, Crossing::Enter)? {
+                    return Some(Some(answer));
+                }
+                self.leave(self.root(Root::Second)?, enter)
+            }
+            Height::Before => {
+                let leave = self.root(Root::Second)?;
+                if self.height(leave)? == Height::Before {
+                    return Some(None);
+                }
+                let (plane, at, part) = self.disc(self.is_forward())?;
+                if let Some(answer) = self.hit(plane, at, part, Crossing::Enter)? {
+                    return Some(Some(answer));
+                }
+                self.leave(leave, plane)
+            }
+        }
     }
 
-    // The roots of the wall, as the solver computes them.
-    let m = a.cross(x);
-    let mn = m.dot(n);
-    let s = a_size * discriminant.sqrt();
-    let s_error = s * (0.54 * discriminant_error / discriminant + 6.0 * U);
-    let numerator_error = 14.0 * U * a_size * x_size * k + s_error + U * (mn.abs() + s);
-    let nn = Near {
-        value: nn,
-        error: 13.0 * U * k * n_size,
-    };
-    let direct = |q: f64| Near::quotient(q / nn.value, numerator_error, nn);
-    let (t0, t1) = if (s - mn.abs()).abs() < 0.5 * mn.abs() {
-        let c = m.dot(m) - rr * aa;
-        let c_error = U * aa * (17.0 * x_size * x_size + 8.0 * rr);
-        let q = if mn < 0.0 { s - mn } else { -mn - s };
+    /// The end at which the line leaves, if it is on the surface and in range.
+    #[inline]
+    fn leave(&self, root: Near, enter: Near) -> Option<Option<ExactHit>> {
+        let (t, at, part) = match self.height(root)? {
+            Height::Before => return None,
+            Height::Inside => (root, At::SecondRoot, Part::Side),
+            Height::Beyond => self.disc(!self.is_forward())?,
+        };
+        // The solver puts ends that a rounding swapped in order.
+        let t = Near {
+            value: t.value.max(enter.value),
+            error: t.error + (enter.value - t.value).max(0.0),
+        };
+        self.hit(t, at, part, Crossing::Leave)
+    }
+
+    /// Whether the line comes through the disc at `p0` first.
+    #[inline(always)]
+    fn is_forward(&self) -> bool {
+        self.slab.slope > 0.0
+    }
+
+    #[inline(always)]
+    fn root(&self, root: Root) -> Option<Near> {
+        let Quotient {
+            numerator,
+            denominator,
+            is_indirect,
+        } = self.roots.quotient(root);
+        if is_indirect {
+            let constant = Near {
+                value: numerator,
+                error: self.constant_error,
+            };
+            return constant.over(Near {
+                value: denominator,
+                error: self.sum_error,
+            });
+        }
         let sum = Near {
-            value: q,
-            error: numerator_error,
+            value: numerator,
+            error: self.sum_error,
         };
-        let indirect = Near::quotient(c / q, c_error, sum)?;
-        if mn < 0.0 {
-            (indirect, direct(q)?)
-        } else {
-            (direct(q)?, indirect)
-        }
-    } else {
-        (direct(-mn - s)?, direct(s - mn)?)
-    };
-
-    // The heights of the roots, and whether discs are met.
-    let ya = x.dot(a);
-    let yd = Near {
-        value: d.dot(a),
-        error: 4.0 * U * k,
-    };
-    let height_error = |t: &Near| {
-        let along = (t.value * yd.value).abs();
-        5.0 * U * a_size * x_size
-            + t.value.abs() * yd.error
-            + yd.value.abs() * t.error
-            + 3.0 * U * (along + ya.abs())
-            + 6.0 * U * aa
-    };
-    let forward = yd.value >= 0.0;
-    let height = |t: &Near| {
-        let y = ya + t.value * yd.value;
-        let from_first = Near {
-            value: if forward { y } else { aa - y },
-            error: height_error(t),
-        };
-        if from_first.below(0.0) {
-            Some(Height::Before)
-        } else if from_first.above(aa) {
-            Some(Height::Beyond)
-        } else if from_first.above(0.0) && from_first.below(aa) {
-            Some(Height::Inside)
-        } else {
-            None
-        }
-    };
-    let heights = (height(&t0)?, height(&t1)?);
-    if heights != (Height::Inside, Height::Inside) && !(yd.value.abs() > 4.0 * yd.error * MARGIN) {
-        // Which disc is met first depends on the sign of d·a.
-        return None;
-    }
-    if heights.0 == Height::Beyond || heights.1 == Height::Before {
-        return Some(None);
+        sum.over(self.nn)
     }
 
-    // The first end on the surface and in range.
-    let chord = chord?;
-    let plane = |part: Part| {
-        let numerator_error = 6.0 * U * (a_size * x_size + aa);
-        let (value, at) = match part {
-            Part::Cap1 => ((aa - ya) / yd.value, At::Plane1),
-            _ => (-ya / yd.value, At::Plane0),
+    /// Where the line is at a root. A height outside of the slab is certain
+    /// only if the sign of `d·a` is: it says which disc is meant.
+    #[inline(always)]
+    fn height(&self, t: Near) -> Option<Height> {
+        let Slab {
+            height,
+            position,
+            slope,
+        } = self.slab;
+        let size = t.value.abs();
+        let y = Near {
+            value: position + t.value * slope,
+            error: self.position_error
+                + size * self.slope_error
+                + slope.abs() * (t.error + 3.0 * U * size),
         };
-        Some((Near::quotient(value, numerator_error, yd)?, at, part))
-    };
-    let (first_disc, last_disc) = if forward {
-        (Part::Cap0, Part::Cap1)
-    } else {
-        (Part::Cap1, Part::Cap0)
-    };
-    let enter = match heights.0 {
-        Height::Inside => (t0, At::FirstRoot, Part::Side),
-        _ => plane(first_disc)?,
-    };
-    let leave = match heights.1 {
-        Height::Inside => (t1, At::SecondRoot, Part::Side),
-        _ => plane(last_disc)?,
-    };
-    for ((t, at, part), crossing, end) in [
-        (enter, Crossing::Enter, chord.enter),
-        (leave, Crossing::Leave, chord.leave),
-    ] {
+        let (below, above) = (y.below(0.0), y.above(height));
+        if below | above {
+            if !(slope.abs() > 4.0 * self.slope_error * MARGIN) {
+                return None;
+            }
+            let is_before = below == self.is_forward();
+            return Some(if is_before {
+                Height::Before
+            } else {
+                Height::Beyond
+            });
+        }
+        (y.above(0.0) & y.below(height)).then_some(Height::Inside)
+    }
+
+    /// Where the line meets the plane of the disc at `p0` or at `p1`.
+    #[inline]
+    fn disc(&self, at_p0: bool) -> Option<(Near, At, Part)> {
+        let (plane, at, part) = if at_p0 {
+            (0.0, At::Plane0, Part::Cap0)
+        } else {
+            (self.slab.height, At::Plane1, Part::Cap1)
+        };
+        let way = Near {
+            value: plane - self.slab.position,
+            error: self.position_error,
+        };
+        let slope = Near {
+            value: self.slab.slope,
+            error: self.slope_error,
+        };
+        Some((way.over(slope)?, at, part))
+    }
+
+    /// The end as a hit, if the surface is there and it is in range.
+    #[inline(always)]
+    fn hit(&self, t: Near, at: At, part: Part, crossing: Crossing) -> Option<Option<ExactHit>> {
+        let caps = self.cylinder.caps();
         let is_there = match part {
             Part::Side => true,
-            Part::Cap0 => cylinder.caps().at_p0(),
-            Part::Cap1 => cylinder.caps().at_p1(),
+            Part::Cap0 => caps.at_p0(),
+            Part::Cap1 => caps.at_p1(),
         };
-        if !is_there || t.below(ray.t_min) || t.above(ray.t_max) {
-            continue;
+        if !is_there | t.below(self.ray.t_min) | t.above(self.ray.t_max) {
+            return Some(None);
         }
-        if !(t.above(ray.t_min) && t.below(ray.t_max)) {
-            return None;
-        }
-        return Some(Some(ExactHit {
-            // The solver's own t, which may have been put in order with the
-            // other end's; it is then within the error of this one as well.
-            t: end.t,
-            t_error: (t.error * MARGIN).max((end.t - t.value).abs() + t.error),
+        (t.above(self.ray.t_min) & t.below(self.ray.t_max)).then_some(Some(ExactHit {
+            t: t.value,
+            t_error: t.error * MARGIN,
             part,
             crossing,
-            decision: Decision { at, part, crossing },
-        }));
+            at,
+        }))
     }
-    Some(None)
 }

@@ -25,12 +25,13 @@ mod root;
 
 use std::cmp::Ordering;
 
-use super::{Cylinder, Part, triple_product};
+use super::{Cylinder, Part};
 use crate::math::Ray;
 use crate::solid::Crossing;
 use big::Big;
 use bounded::Bounded;
-use decide::Decision;
+use decide::At;
+pub use root::Target;
 
 /// The stage that settled an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -54,7 +55,7 @@ pub struct ExactHit {
     pub part: Part,
     /// The direction of the crossing.
     pub crossing: Crossing,
-    decision: Decision,
+    at: At,
 }
 
 /// A number type in which the decisions are made.
@@ -78,18 +79,20 @@ trait Number: Clone {
 ///
 /// The ray is valid ([`Ray::is_valid`]) and its direction's largest component
 /// is within 2^±100 in size, as for the triple-product solver.
+#[inline]
 #[must_use]
 pub fn first(cylinder: &Cylinder, ray: &Ray) -> (Option<ExactHit>, Stage) {
-    let from_p0 = ray.origin - cylinder.p0();
-    let chord = triple_product::chord(cylinder, from_p0, ray.direction);
-    if let Some(answer) = certificate::certify(cylinder, ray, from_p0, chord.as_ref()) {
-        return (answer, Stage::Double);
+    match certificate::first(cylinder, ray) {
+        Some(answer) => (answer, Stage::Double),
+        None => first_uncertified(*cylinder, *ray),
     }
-    first_uncertified(cylinder, ray)
 }
 
+/// Takes copies, so that the caller need not have what it was given in memory
+/// for a case that is rare.
 #[cold]
-fn first_uncertified(cylinder: &Cylinder, ray: &Ray) -> (Option<ExactHit>, Stage) {
+fn first_uncertified(cylinder: Cylinder, ray: Ray) -> (Option<ExactHit>, Stage) {
+    let (cylinder, ray) = (&cylinder, &ray);
     let (decision, stage) = match decide::decide::<Bounded>(cylinder, ray) {
         Some(decision) => (decision, Stage::DoubleDouble),
         None => {
@@ -99,20 +102,27 @@ fn first_uncertified(cylinder: &Cylinder, ray: &Ray) -> (Option<ExactHit>, Stage
         }
     };
     let hit = decision.map(|decision| {
-        let t = root::rounded(cylinder, ray, &decision);
+        let t = root::rounded::<f64>(*cylinder, *ray, decision.at);
         ExactHit {
             t,
             t_error: t.abs() * crate::math::UNIT_ROUNDOFF,
             part: decision.part,
             crossing: decision.crossing,
-            decision,
+            at: decision.at,
         }
     });
     (hit, stage)
 }
 
-/// The f64 nearest to the true parameter of a hit of this cylinder and ray.
+/// The f32 or f64 nearest to the true parameter of a hit of this cylinder and
+/// ray; of two, the even one.
+#[inline]
 #[must_use]
-pub fn rounded_t(cylinder: &Cylinder, ray: &Ray, hit: &ExactHit) -> f64 {
-    root::rounded(cylinder, ray, &hit.decision)
+pub fn rounded_t<S: Target>(cylinder: &Cylinder, ray: &Ray, hit: &ExactHit) -> S {
+    // Rounding keeps order, so what is between the two rounds to the same.
+    let nearest = S::from_f64(hit.t - hit.t_error);
+    if nearest == S::from_f64(hit.t + hit.t_error) {
+        return nearest;
+    }
+    root::rounded(*cylinder, *ray, hit.at)
 }

@@ -4,17 +4,17 @@
 //! quotient by one correction, with the bound of what the terms and these steps
 //! are off (`2^-100` of the size covers the steps). If the sum `high + low` keeps
 //! its `high` with the bound added to `low` on either side, `high` is the nearest
-//! f64. Otherwise the quotient is approximated by long numbers, and the
-//! neighbouring midpoints between f64s are compared with the true parameter
+//! f64; to f32 it is rounded with the bound added on either side. Otherwise the quotient is approximated by long numbers, and the
+//! neighbouring midpoints are compared with the true parameter
 //! exactly.
 
 use std::cmp::Ordering;
 
 use super::big::Big;
 use super::bounded::Bounded;
-use super::decide::{At, Decision, Terms};
+use super::decide::{At, Terms};
 use super::{Cylinder, Number, Ray};
-use crate::math::{DoubleDouble, power_of_two};
+use crate::math::{DoubleDouble, Real, UNIT_ROUNDOFF, power_of_two};
 
 /// The bound of a double-double root or quotient, relative to its size.
 const STEP_ERROR: f64 = power_of_two(-100);
@@ -24,14 +24,73 @@ const STEP_ERROR: f64 = power_of_two(-100);
 /// this number, makes the result right.
 const LONG: usize = 400;
 
-/// The f64 nearest to the parameter of a hit; of two, the even one.
-pub(super) fn rounded(cylinder: &Cylinder, ray: &Ray, decision: &Decision) -> f64 {
-    if decision.at == At::Start {
-        return ray.t_min;
+/// What a parameter can be rounded to: f32 or f64.
+pub trait Target: Real {
+    /// The number next to `high + low` and to all that is within `error` of it,
+    /// if it is the same one.
+    fn nearest(t: DoubleDouble, error: f64) -> Option<Self>;
+
+    /// The least number above.
+    #[must_use]
+    fn next_up(self) -> Self;
+
+    /// The greatest number below.
+    #[must_use]
+    fn next_down(self) -> Self;
+
+    /// Whether the last bit is set.
+    fn is_odd(self) -> bool;
+}
+
+impl Target for f64 {
+    fn nearest(t: DoubleDouble, error: f64) -> Option<Self> {
+        let keeps = |off: f64| t.high + (t.low + off) == t.high;
+        (keeps(error) && keeps(-error)).then_some(t.high)
     }
-    let terms = Terms::<Bounded>::new(cylinder, ray);
-    in_double_double(&terms, decision.at)
-        .unwrap_or_else(|| in_long_numbers(&Terms::new(cylinder, ray), decision.at))
+
+    fn next_up(self) -> Self {
+        self.next_up()
+    }
+
+    fn next_down(self) -> Self {
+        self.next_down()
+    }
+
+    fn is_odd(self) -> bool {
+        self.to_bits() & 1 == 1
+    }
+}
+
+impl Target for f32 {
+    fn nearest(t: DoubleDouble, error: f64) -> Option<Self> {
+        // Twice the way, for the roundings of these sums.
+        let way = 2.0 * (t.low.abs() + error) + t.high.abs() * UNIT_ROUNDOFF;
+        let (below, above) = ((t.high - way) as Self, (t.high + way) as Self);
+        (below == above).then_some(below)
+    }
+
+    fn next_up(self) -> Self {
+        self.next_up()
+    }
+
+    fn next_down(self) -> Self {
+        self.next_down()
+    }
+
+    fn is_odd(self) -> bool {
+        self.to_bits() & 1 == 1
+    }
+}
+
+/// The number nearest to the parameter of a hit; of two, the even one. Takes
+/// copies for the sake of callers that rarely need it.
+pub(super) fn rounded<S: Target>(cylinder: Cylinder, ray: Ray, at: At) -> S {
+    if at == At::Start {
+        return S::from_f64(ray.t_min);
+    }
+    let terms = Terms::<Bounded>::new(&cylinder, &ray);
+    in_double_double(&terms, at)
+        .unwrap_or_else(|| in_long_numbers(&Terms::new(&cylinder, &ray), at))
 }
 
 /// The numerator and denominator of the parameter, the root left to `root`.
@@ -53,7 +112,7 @@ fn quotient<N: Number>(
     })
 }
 
-fn in_double_double(terms: &Terms<Bounded>, at: At) -> Option<f64> {
+fn in_double_double<S: Target>(terms: &Terms<Bounded>, at: At) -> Option<S> {
     let (numerator, denominator) = quotient(terms, at, bounded_root)?;
     let divisor = denominator.value.high;
     let first = numerator.value.high / divisor;
@@ -61,8 +120,7 @@ fn in_double_double(terms: &Terms<Bounded>, at: At) -> Option<f64> {
     let t = DoubleDouble::sum(first, rest.value.high / divisor);
     let error = 2.0 * (rest.error / divisor.abs()) + STEP_ERROR * first.abs();
     let is_certain = denominator.error < 0.25 * divisor.abs() && error.is_finite();
-    let keeps = |off: f64| t.high + (t.low + off) == t.high;
-    (is_certain && keeps(error) && keeps(-error)).then_some(t.high)
+    is_certain.then(|| S::nearest(t, error))?
 }
 
 /// The root of a number that is not negative, if it is known to be positive.
@@ -79,25 +137,25 @@ fn bounded_root(s: &Bounded) -> Option<Bounded> {
     })
 }
 
-fn in_long_numbers(terms: &Terms<Big>, at: At) -> f64 {
+fn in_long_numbers<S: Target>(terms: &Terms<Big>, at: At) -> S {
     let long = |x: &Big| Big(x.0.clone().with_precision(LONG).value());
     let root = |s: &Big| Some(Big(long(s).0.sqrt()));
     let (numerator, denominator) = quotient(terms, at, root).expect("the hit has a quotient");
-    let mut t = (long(&numerator).0 / long(&denominator).0).to_f64().value();
-    // Step to the f64 whose midpoints with its neighbours enclose the parameter.
+    let mut t = S::from_f64((long(&numerator).0 / long(&denominator).0).to_f64().value());
+    // Step to the number whose midpoints with its neighbours enclose the
+    // parameter.
     loop {
-        let beyond = |neighbour: f64| {
+        let beyond = |neighbour: S| {
             let half = Big::of(0.5);
-            let midpoint = Big::of(t).plus(&Big::of(neighbour)).times(&half);
+            let sum = Big::of(t.to_f64()).plus(&Big::of(neighbour.to_f64()));
             terms
-                .compare(at, &midpoint)
+                .compare(at, &sum.times(&half))
                 .expect("long numbers are certain")
         };
-        let is_odd = t.to_bits() & 1 == 1;
         let (up, down) = (beyond(t.next_up()), beyond(t.next_down()));
-        if up == Ordering::Greater || (up == Ordering::Equal && is_odd) {
+        if up == Ordering::Greater || (up == Ordering::Equal && t.is_odd()) {
             t = t.next_up();
-        } else if down == Ordering::Less || (down == Ordering::Equal && is_odd) {
+        } else if down == Ordering::Less || (down == Ordering::Equal && t.is_odd()) {
             t = t.next_down();
         } else {
             return t;

@@ -35,13 +35,8 @@ pub(super) fn in_precision<F: Solver<f32> + Solver<f64>>(
 ) -> Box<dyn Formulation> {
     match precision {
         Precision::F32 => Box::new(Adapter::<f32, F>::new(solver, precision)),
-        Precision::F64 => in_f64(solver),
+        Precision::F64 => Box::new(Adapter::<f64, F>::new(solver, precision)),
     }
-}
-
-/// A solver that there is in f64 only, or its form in f64, as a formulation.
-pub(super) fn in_f64<F: Solver<f64>>(solver: F) -> Box<dyn Formulation> {
-    Box::new(Adapter::<f64, F>::new(solver, Precision::F64))
 }
 
 struct Adapter<S: Real, F: Solver<S>> {

@@ -1,57 +1,48 @@
-//! `exact`: hit and part as exact arithmetic has them, in f64.
+//! `exact`: hit and part as exact arithmetic has them.
 //!
-//! The solver and its three stages are [`crate::solid::exact`]. `exact` answers
-//! with the `t` of the stage that was certain; `exact-rounded` rounds every
-//! `t` correctly, which the library does for the final hit alone, so its time
-//! less that of `exact` is what that rounding costs. There is no f32 form:
-//! what is certain does not depend on the precision it is asked in.
+//! The solver and its three stages are [`crate::solid::exact`], which solves
+//! in f64 and longer numbers. `exact` answers with the `t` of the stage that was
+//! certain; `exact-rounded` rounds every `t` correctly, which the library does
+//! for the final hit alone, so its time less that of `exact` is what that
+//! rounding costs. In f32, cylinder, ray and `t` are f32, and what is computed
+//! between them is not: the `t` of `exact-rounded` is the f32 nearest to the
+//! true one.
 
 use super::adapter::Solver;
-use super::triple_product::TripleProduct;
-use crate::math::{Ray, RayOf};
-use crate::solid::{Cylinder, Part, exact};
+use super::triple_product::{StatedRecord, TripleProduct};
+use crate::math::RayOf;
+use crate::solid::exact::{self, Target};
+use crate::solid::{Cylinder, Part};
 
-/// The exact solver.
+/// The exact solver; `ROUNDS` says whether `t` is the number nearest to the
+/// true one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Exact {
-    /// Whether `t` is the f64 nearest to the true one.
-    pub rounds_t: bool,
-}
+pub(super) struct Exact<const ROUNDS: bool>;
 
-impl Solver<f64> for Exact {
-    type Record = Cylinder;
+impl<S: Target, const ROUNDS: bool> Solver<S> for Exact<ROUNDS> {
+    type Record = StatedRecord<S>;
 
     fn name(&self) -> &'static str {
-        if self.rounds_t {
-            "exact-rounded"
-        } else {
-            "exact"
-        }
+        if ROUNDS { "exact-rounded" } else { "exact" }
     }
 
-    fn record(&self, cylinder: &Cylinder) -> Cylinder {
-        *cylinder
+    fn record(&self, cylinder: &Cylinder) -> Self::Record {
+        TripleProduct.record(cylinder)
     }
 
     #[inline(always)]
-    fn first(&self, cylinder: &Cylinder, ray: &RayOf<f64>) -> Option<(f64, Part)> {
-        let ray = Ray {
-            origin: ray.origin,
-            direction: ray.direction,
-            t_min: ray.t_min,
-            t_max: ray.t_max,
-        };
-        let hit = exact::first(cylinder, &ray).0?;
-        let t = if self.rounds_t {
-            exact::rounded_t(cylinder, &ray, &hit)
+    fn first(&self, record: &Self::Record, ray: &RayOf<S>) -> Option<(S, Part)> {
+        let (cylinder, ray) = (record.cylinder(), ray.to_f64());
+        let hit = exact::first(&cylinder, &ray).0?;
+        let t = if ROUNDS {
+            exact::rounded_t(&cylinder, &ray, &hit)
         } else {
-            hit.t
+            S::from_f64(hit.t)
         };
         Some((t, hit.part))
     }
 
-    fn normal(&self, cylinder: &Cylinder, ray: &RayOf<f64>, t: f64, part: Part) -> glam::DVec3 {
-        let record = Solver::<f64>::record(&TripleProduct, cylinder);
-        TripleProduct.normal(&record, ray, t, part)
+    fn normal(&self, record: &Self::Record, ray: &RayOf<S>, t: S, part: Part) -> S::Vector {
+        TripleProduct.normal(record, ray, t, part)
     }
 }

@@ -38,7 +38,7 @@ use glam::DVec3;
 
 use super::{Cylinder, Part};
 use crate::math::Ray;
-use adapter::{in_f64, in_precision};
+use adapter::in_precision;
 use centre_dot::CentreDot;
 use centre_dot_tuned::CentreDotTuned;
 use cross_product::CrossProduct;
@@ -121,7 +121,7 @@ pub trait Batch: Send {
 type Maker = fn(Precision) -> Box<dyn Formulation>;
 
 /// Every formulation, in the order of tables.
-const MAKERS: [Maker; 9] = [
+const MAKERS: [Maker; 11] = [
     |precision| in_precision(CentreDot, precision),
     |precision| in_precision(CentreDotTuned, precision),
     |precision| in_precision(StartCap, precision),
@@ -131,16 +131,16 @@ const MAKERS: [Maker; 9] = [
     |precision| object_space(DEFAULT_TOLERANCE, precision),
     |precision| in_precision(TripleProduct, precision),
     |precision| in_precision(TripleProductPrepared, precision),
+    |precision| in_precision(Exact::<false>, precision),
+    |precision| in_precision(Exact::<true>, precision),
 ];
 
-/// Every formulation, with its usual arguments, in f32 and then in f64, and the
-/// exact ones, which are f64 only.
+/// Every formulation, with its usual arguments, in f32 and then in f64.
 #[must_use]
 pub fn all() -> Vec<Box<dyn Formulation>> {
     MAKERS
         .iter()
         .flat_map(|make| [make(Precision::F32), make(Precision::F64)])
-        .chain([false, true].map(|rounds_t| in_f64(Exact { rounds_t })))
         .collect()
 }
 
