@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use cyltrace::render::{Film, RenderError, Settings, render, workers};
 use cyltrace::scene::{
     self, Camera, CylinderRecord, Frame, Integrator, Material, MaterialIndex, Projection,
-    Prototype, RenderSettings, Scene, Sky, Sun,
+    Prototype, Scene, Sky, Sun,
 };
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{Options, Tracer};
@@ -23,11 +23,11 @@ fn scene(cylinders: &[(DVec3, DVec3, f64, Caps)]) -> Scene {
             let cylinder = Cylinder::new(p0, p1, radius, caps).expect("a cylinder");
             CylinderRecord::new(&cylinder, primitive, MaterialIndex(0))
         });
+    let root = Prototype {
+        cylinders: records.collect(),
+        ..Prototype::default()
+    };
     Scene {
-        prototypes: vec![Prototype {
-            cylinders: records.collect(),
-            ..Prototype::default()
-        }],
         materials: vec![Material {
             name: String::new(),
             color: DVec3::new(0.5, 0.25, 1.0),
@@ -44,14 +44,8 @@ fn scene(cylinders: &[(DVec3, DVec3, f64, Caps)]) -> Scene {
             width: SIZE,
             height: SIZE,
         },
-        render: RenderSettings {
-            integrator: Integrator::Sun,
-            spp: 4,
-        },
-        sun: None,
-        sky: None,
         background: DVec3::new(0.0, 0.5, 0.25),
-        skipped_rows: 0,
+        ..Scene::new(vec![root])
     }
 }
 

@@ -40,6 +40,18 @@ fn scene(text: &str) -> Scene {
     load(&path).unwrap_or_else(|error| panic!("{text}\n{error}"))
 }
 
+#[test]
+fn scene_stated_by_its_solids_alone_is_a_new_scene_of_them() {
+    let stated = scene(SOLID);
+    let new = Scene::new(stated.prototypes.clone());
+    assert_eq!(stated.materials, new.materials);
+    assert_eq!(stated.camera, new.camera);
+    assert_eq!((stated.film, stated.render), (new.film, new.render));
+    assert_eq!((stated.sun, stated.sky), (new.sun, new.sky));
+    assert_eq!(stated.background, new.background);
+    assert_eq!(stated.skipped_rows, new.skipped_rows);
+}
+
 /// Primitive number, ends and radius of every cylinder.
 fn cylinders(prototype: &Prototype) -> Vec<(u32, [f64; 3], [f64; 3], f64)> {
     let record = |record: &cyltrace::scene::CylinderRecord| {

@@ -10,9 +10,10 @@ use std::sync::Arc;
 
 use cyltrace::embree::MaxIsa;
 use cyltrace::math::{Random, Ray};
-use cyltrace::scene::{CylinderRecord, Placement, Prototype, PrototypeIndex, Scene};
+use cyltrace::scene::{CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene};
+use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{Options, Tracer};
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rayon::prelude::*;
 
 const SEED: u64 = 20_261_122;
@@ -206,6 +207,121 @@ fn nested_placements_lose_no_hit() {
                     direction: image.transform_vector3(ray.direction),
                     ..ray
                 }
+            });
+        }
+    }
+}
+
+/// The point of a cylinder that is farthest in a direction, one of them where
+/// there are many.
+fn farthest_point(cylinder: &Cylinder, outward: DVec3) -> DVec3 {
+    let along = cylinder.p1() - cylinder.p0();
+    let end = if along.dot(outward) > 0.0 {
+        cylinder.p1()
+    } else {
+        cylinder.p0()
+    };
+    let across = outward - along * (outward.dot(along) / along.length_squared());
+    end + across.normalize_or_zero() * cylinder.radius()
+}
+
+/// A ray that passes just inside what touches a face, or is farthest towards an
+/// edge or a corner, of the box around all cylinders, and along that face or
+/// across the edge or corner. It meets nothing of the box but its outermost
+/// layer, so that a box or a sphere that is too small loses it.
+fn ray_along_the_box(random: &mut Random, cylinders: &[Cylinder]) -> Ray {
+    let outward = loop {
+        let sides: [f64; 3] = std::array::from_fn(|_| random.below(3) as f64 - 1.0);
+        if sides != [0.0; 3] {
+            break DVec3::from_array(sides).normalize();
+        }
+    };
+    let farthest = cylinders
+        .iter()
+        .map(|one| (farthest_point(one, outward), one))
+        .max_by(|(one, _), (other, _)| one.dot(outward).total_cmp(&other.dot(outward)));
+    let (point, cylinder) = farthest.expect("there are cylinders");
+    let middle = (cylinder.p0() + cylinder.p1()) / 2.0;
+    let target = point.lerp(middle, random.log_uniform(1e-12, 1e-3));
+    let level = random.direction();
+    let heading = (level - outward * level.dot(outward)).normalize();
+    let origin = target - heading * random.log_uniform(1e-3, 1e2);
+    let scale = random.log_uniform(1e-30, 1e30);
+    let t_min = [0.0, f64::NEG_INFINITY][random.below(2) as usize];
+    Ray {
+        t_min,
+        ..Ray::new(origin, heading * scale)
+    }
+}
+
+#[test]
+fn box_of_cylinders_loses_no_hit_in_its_outermost_layer() {
+    let records = support::cylinders_in_a_box(SEED, 1000);
+    let cylinders: Vec<Cylinder> = records.iter().map(CylinderRecord::cylinder).collect();
+    let root = Prototype {
+        cylinders: records,
+        ..Default::default()
+    };
+    for (isa, rays, tracer) in tracers(&support::scene_of(vec![root])) {
+        let name = format!("{isa}, along the box");
+        assert_nothing_lost(&name, &tracer, rays / 5, |random| {
+            ray_along_the_box(random, &cylinders)
+        });
+    }
+}
+
+/// A box with a small cylinder in each corner, and a box with such a box in
+/// each corner: so their bounding spheres have something at their surface too.
+#[test]
+fn boxes_in_corners_of_boxes_lose_no_hit_in_their_outermost_layer() {
+    const SIDE: f64 = 4.0;
+    const SCALE: f64 = 0.25;
+    let corners = (0..8).map(|corner| {
+        let at = |bit: u32| f64::from(corner >> bit & 1);
+        DVec3::new(at(0), at(1), at(2))
+    });
+    let (radius, length) = (1e-3, 4e-3);
+    let in_corner = |corner: DVec3| {
+        let inward = DVec3::ONE - corner * 2.0;
+        let p0 = corner + inward * DVec3::new(0.0, radius, radius);
+        Cylinder::new(p0, p0 + inward * DVec3::X * length, radius, Caps::Both).unwrap()
+    };
+    let small: Vec<Cylinder> = corners.clone().map(in_corner).collect();
+    let record = |(i, one)| CylinderRecord::new(one, i, MaterialIndex(0));
+    let leaf = Prototype {
+        cylinders: (0..).zip(&small).map(record).collect(),
+        ..Default::default()
+    };
+    let offsets: Vec<DVec3> = corners.map(|corner| corner * (SIDE - SCALE)).collect();
+    let place = |offset: &DVec3| Placement {
+        of: PrototypeIndex(1),
+        parent_from_child: DAffine3::from_scale_rotation_translation(
+            DVec3::splat(SCALE),
+            DQuat::IDENTITY,
+            *offset,
+        ),
+    };
+    let root = Prototype {
+        placements: offsets.iter().map(place).collect(),
+        ..Default::default()
+    };
+    let placed = |offset: DVec3, one: &Cylinder| {
+        let [p0, p1] = [one.p0(), one.p1()].map(|end| end * SCALE + offset);
+        Cylinder::new(p0, p1, one.radius() * SCALE, one.caps()).unwrap()
+    };
+    let all: Vec<Cylinder> = offsets
+        .iter()
+        .flat_map(|&offset| small.iter().map(move |one| placed(offset, one)))
+        .collect();
+    let scenes = [
+        ("a box", vec![leaf.clone()], small),
+        ("placed", vec![root, leaf], all),
+    ];
+    for (kind, prototypes, cylinders) in scenes {
+        for (isa, rays, tracer) in tracers(&support::scene_of(prototypes)) {
+            let name = format!("{isa}, {kind}, along the box");
+            assert_nothing_lost(&name, &tracer, rays / 5, |random| {
+                ray_along_the_box(random, &cylinders)
             });
         }
     }

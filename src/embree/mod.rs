@@ -69,6 +69,7 @@ mod user;
 
 pub use device::{Device, DeviceOptions, Version};
 pub use error::Error;
+pub use float_mode::with_flushed_denormals;
 pub use isa::{MaxIsa, UnknownIsa};
 pub use ray::{Box32, GREATEST_COORDINATE, NativeHit, Ray32};
 pub use scene::{GeometryId, Scene, SceneBuilder};

@@ -48,23 +48,36 @@ void cyltrace_occluded1(RTCScene scene, struct RTCRay *ray, void *query) {
 
 /* Round to nearest, all exceptions masked, no flushing to zero. */
 #define DEFAULT_MXCSR 0x1f80u
+/* FTZ, which is of results, and DAZ, which is of operands. */
+#define FLUSHING_MXCSR (DEFAULT_MXCSR | 0x8000u | 0x0040u)
 
-uint64_t cyltrace_enter_default_float_mode(void) {
+static uint64_t enter_float_mode(unsigned int mode) {
   const uint64_t former = _mm_getcsr();
-  _mm_setcsr(DEFAULT_MXCSR);
+  _mm_setcsr(mode);
   return former;
 }
+
+uint64_t cyltrace_enter_default_float_mode(void) { return enter_float_mode(DEFAULT_MXCSR); }
+
+uint64_t cyltrace_enter_flushing_float_mode(void) { return enter_float_mode(FLUSHING_MXCSR); }
 
 void cyltrace_restore_float_mode(uint64_t former) { _mm_setcsr((unsigned int)former); }
 
 #elif defined(__aarch64__) && defined(__GNUC__)
 
-uint64_t cyltrace_enter_default_float_mode(void) {
+/* FZ, which is of results and operands. */
+#define FLUSHING_FPCR ((uint64_t)1 << 24)
+
+static uint64_t enter_float_mode(uint64_t mode) {
   uint64_t former;
   __asm__ volatile("mrs %0, fpcr" : "=r"(former));
-  __asm__ volatile("msr fpcr, %0" : : "r"((uint64_t)0));
+  __asm__ volatile("msr fpcr, %0" : : "r"(mode));
   return former;
 }
+
+uint64_t cyltrace_enter_default_float_mode(void) { return enter_float_mode(0); }
+
+uint64_t cyltrace_enter_flushing_float_mode(void) { return enter_float_mode(FLUSHING_FPCR); }
 
 void cyltrace_restore_float_mode(uint64_t former) {
   __asm__ volatile("msr fpcr, %0" : : "r"(former));

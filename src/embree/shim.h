@@ -31,9 +31,11 @@ void cyltrace_intersect1(RTCScene scene, struct RTCRayHit *rayhit, void *query);
 void cyltrace_occluded1(RTCScene scene, struct RTCRay *ray, void *query);
 
 /* Embree builds scenes with denormal numbers flushed to zero, callbacks
- * included. The first gives this thread the mode that Rust and C code expect
- * and returns the former one, the second restores that. */
+ * included. The first gives this thread the mode that Rust and C code expect,
+ * the second that mode with denormal results and operands taken for zero; both
+ * return the former mode, which the third restores. */
 uint64_t cyltrace_enter_default_float_mode(void);
+uint64_t cyltrace_enter_flushing_float_mode(void);
 void cyltrace_restore_float_mode(uint64_t former);
 
 #endif

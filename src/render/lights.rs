@@ -97,28 +97,13 @@ fn default_sky() -> Sky {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Camera, Film, Frame, Integrator, Projection, RenderSettings};
 
     fn scene(sun: Option<Sun>, sky: Option<Sky>) -> Scene {
         Scene {
-            prototypes: Vec::new(),
-            materials: Vec::new(),
-            camera: Camera {
-                projection: Projection::Orthographic { height: None },
-                frame: Frame::Auto,
-            },
-            film: Film {
-                width: 1,
-                height: 1,
-            },
-            render: RenderSettings {
-                integrator: Integrator::Sun,
-                spp: 1,
-            },
             sun,
             sky,
             background: DVec3::new(0.1, 0.2, 0.3),
-            skipped_rows: 0,
+            ..Scene::new(Vec::new())
         }
     }
 

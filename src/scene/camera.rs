@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::defaults;
 use super::description::{Camera, Frame, Projection};
 use super::document::{CameraKeys, Triple};
 use super::error::SceneError;
@@ -9,8 +10,6 @@ use super::settings::vector;
 use super::source::Source;
 use super::transform::unit;
 use crate::solid::Cylinder;
-
-const DEFAULT_FOV_DEGREES: f64 = 40.0;
 
 /// Least sine of the angle between `up` and the view: below it, the picture's
 /// sides would be made of rounding errors.
@@ -57,7 +56,7 @@ fn projection(source: &Source, keys: &CameraKeys) -> Result<Projection, SceneErr
             "the picture's height in pixels belongs to [film]",
         )),
         (false, None, None) => Ok(Projection::Perspective {
-            fov_degrees: DEFAULT_FOV_DEGREES,
+            fov_degrees: defaults::FOV_DEGREES,
         }),
         (false, Some(key), None) => {
             let fov_degrees = key.get_ref().0;

@@ -180,14 +180,13 @@ pub struct RenderSettings {
 }
 
 /// What a pixel shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Integrator {
     /// The world normal as a colour.
     Normal,
     /// Ambient occlusion.
     Ao,
     /// Sun and sky with shadows.
-    #[default]
     Sun,
 }
 

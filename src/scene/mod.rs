@@ -9,6 +9,7 @@
 
 mod camera;
 mod census;
+mod defaults;
 mod description;
 mod document;
 mod error;

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use toml::Spanned;
 
+use super::defaults;
 use super::description::{Film, Integrator, Material, MaterialIndex, RenderSettings, Sky, Sun};
 use super::document::{FilmKeys, MaterialKeys, RenderKeys, SkyKeys, SunKeys, Triple};
 use super::error::SceneError;
@@ -16,10 +17,7 @@ use super::values::{Keys, Number, Whole};
 
 /// Most pixels across and down.
 const GREATEST_SIDE: u32 = 65_536;
-/// The reflectance of solids that name no material.
-const DEFAULT_REFLECTANCE: f64 = 0.5;
 
-const DEFAULT_BACKGROUND: DVec3 = DVec3::new(0.8, 0.9, 1.0);
 const DEFAULT_SUN_COLOR: DVec3 = DVec3::new(1.0, 0.95, 0.9);
 const DEFAULT_SUN_STRENGTH: f64 = 3.0;
 const DEFAULT_SUN_DEGREES: (f64, f64) = (40.0, 135.0);
@@ -52,7 +50,7 @@ pub(super) fn lights(
     Ok(Lights {
         sun: sun.map(|keys| self::sun(source, keys)).transpose()?,
         sky: sky_keys.map(sky).transpose()?,
-        background: color(source, background, DEFAULT_BACKGROUND)?,
+        background: color(source, background, defaults::BACKGROUND)?,
     })
 }
 
@@ -98,8 +96,8 @@ fn sun(source: &Source, keys: &SunKeys) -> Result<Sun, SceneError> {
 /// The picture's size.
 pub(super) fn film(source: &Source, keys: &FilmKeys) -> Result<Film, SceneError> {
     let side = |name, key| count(source, name, key, GREATEST_SIDE);
-    let width = side("width", keys.width.as_ref())?.unwrap_or(1280);
-    let height = side("height", keys.height.as_ref())?.unwrap_or(720);
+    let width = side("width", keys.width.as_ref())?.unwrap_or(defaults::FILM.width);
+    let height = side("height", keys.height.as_ref())?.unwrap_or(defaults::FILM.height);
     let key = keys.width.as_ref().or(keys.height.as_ref());
     if let Some(key) = key
         && u64::from(width) * u64::from(height) > GREATEST_PIXELS
@@ -122,9 +120,9 @@ pub(super) fn render(source: &Source, keys: &RenderKeys) -> Result<RenderSetting
     Ok(RenderSettings {
         integrator: match &keys.integrator {
             Some(word) => source.choose("integrator", word, &INTEGRATORS)?,
-            None => Integrator::default(),
+            None => defaults::RENDER.integrator,
         },
-        spp: count(source, "spp", keys.spp.as_ref(), u32::MAX)?.unwrap_or(4),
+        spp: count(source, "spp", keys.spp.as_ref(), u32::MAX)?.unwrap_or(defaults::RENDER.spp),
     })
 }
 
@@ -158,10 +156,7 @@ impl Materials {
     /// The default material and all `[[material]]`s.
     pub fn new(source: &Source, entries: &[Keys<MaterialKeys>]) -> Result<Self, SceneError> {
         let mut materials = Self {
-            list: vec![Material {
-                name: String::new(),
-                color: DVec3::splat(DEFAULT_REFLECTANCE),
-            }],
+            list: vec![defaults::material()],
             index: HashMap::new(),
         };
         check_names(

@@ -39,14 +39,11 @@ impl MemoryEstimate {
 mod tests {
     use std::sync::Arc;
 
-    use glam::{DAffine3, DVec3};
+    use glam::DAffine3;
 
     use super::*;
     use crate::math::Random;
-    use crate::scene::{
-        Camera, Film, Frame, Integrator, MaterialIndex, Projection, Prototype, PrototypeIndex,
-        RenderSettings, Scene,
-    };
+    use crate::scene::{MaterialIndex, Prototype, PrototypeIndex, Scene};
     use crate::solid::{Caps, Cylinder};
     use crate::tracer::{Options, Tracer};
 
@@ -69,26 +66,7 @@ mod tests {
                 .collect(),
             ..Prototype::default()
         };
-        Scene {
-            prototypes: vec![root, prototype],
-            materials: Vec::new(),
-            camera: Camera {
-                projection: Projection::Orthographic { height: None },
-                frame: Frame::Auto,
-            },
-            film: Film {
-                width: 1,
-                height: 1,
-            },
-            render: RenderSettings {
-                integrator: Integrator::Normal,
-                spp: 1,
-            },
-            sun: None,
-            sky: None,
-            background: DVec3::ZERO,
-            skipped_rows: 0,
-        }
+        Scene::new(vec![root, prototype])
     }
 
     #[test]

@@ -8,10 +8,7 @@ use std::sync::Arc;
 
 use assert_cmd::Command;
 use cyltrace::math::{Random, Ray};
-use cyltrace::scene::{
-    Camera, CylinderRecord, Film, Frame, MaterialIndex, Projection, Prototype, RenderSettings,
-    Scene,
-};
+use cyltrace::scene::{CylinderRecord, MaterialIndex, Prototype, Scene};
 use cyltrace::solid::{Caps, Cylinder};
 use glam::{DMat3, DVec3};
 
@@ -98,26 +95,7 @@ pub fn bits(ray: &Ray) -> String {
 
 /// A scene of prototypes, the first of which is the root, and nothing else.
 pub fn scene_of(prototypes: Vec<Prototype>) -> Arc<Scene> {
-    Arc::new(Scene {
-        prototypes,
-        materials: Vec::new(),
-        camera: Camera {
-            projection: Projection::Perspective { fov_degrees: 40.0 },
-            frame: Frame::Auto,
-        },
-        film: Film {
-            width: 1,
-            height: 1,
-        },
-        render: RenderSettings {
-            integrator: Default::default(),
-            spp: 1,
-        },
-        sun: None,
-        sky: None,
-        background: DVec3::ZERO,
-        skipped_rows: 0,
-    })
+    Arc::new(Scene::new(prototypes))
 }
 
 /// `count` cylinders in the unit cube: long and short, thick and thin, of all

@@ -17,11 +17,57 @@ mod traced;
 
 use glam::DVec3;
 
+use crate::solid::formulations::{Answer, Batch, Formulation, Precision, Problem};
 use crate::solid::{Caps, Cylinder};
 
 pub use native::{Native, SIDES, Shape};
 pub use spaced::Spaced;
 pub use traced::Traced;
+
+/// What answers by whole scenes.
+trait Rival: Send + Sync {
+    /// What tables say of it.
+    fn row(&self) -> Row;
+
+    /// The answer for a problem whose cylinder is a scene of its own; `None`
+    /// also where the scene or the ray is refused.
+    fn answer(&self, problem: &Problem) -> Option<Answer>;
+
+    /// One scene and rays into it, ready to be timed.
+    fn timed(&self, spaced: Spaced) -> Box<dyn Batch>;
+}
+
+/// See [`Formulation`].
+struct Row {
+    name: &'static str,
+    precision: Precision,
+    bytes: usize,
+}
+
+impl<R: Rival> Formulation for R {
+    fn name(&self) -> &'static str {
+        self.row().name
+    }
+
+    fn precision(&self) -> Precision {
+        self.row().precision
+    }
+
+    fn bytes(&self) -> usize {
+        self.row().bytes
+    }
+
+    fn answers(&self, problems: &[Problem]) -> Vec<Option<Answer>> {
+        problems
+            .iter()
+            .map(|problem| self.answer(problem))
+            .collect()
+    }
+
+    fn batch(&self, problems: &[Problem]) -> Box<dyn Batch> {
+        self.timed(Spaced::new(problems, CYLINDERS_TIMED))
+    }
+}
 
 /// Cylinders in the scene that is timed. The finest mesh has 4096 triangles a
 /// cylinder, a million in all; fewer cylinders would leave too little of a

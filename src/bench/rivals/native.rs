@@ -4,12 +4,12 @@
 use glam::DVec3;
 
 use super::spaced::Spaced;
-use super::{CYLINDERS_TIMED, measured_cylinders};
+use super::{CYLINDERS_TIMED, Rival, Row, measured_cylinders};
 use crate::embree::{
     Device, DeviceOptions, Error, GREATEST_COORDINATE, NativeHit, Ray32, Scene, SceneBuilder,
 };
 use crate::math::Ray;
-use crate::solid::formulations::{Answer, Batch, Formulation, Precision, Problem};
+use crate::solid::formulations::{Answer, Batch, Precision, Problem};
 use crate::solid::tessellation::{Mesh, inscribed_prism};
 use crate::solid::{Caps, Cylinder, Part};
 
@@ -78,20 +78,6 @@ impl Native {
         builder.commit()
     }
 
-    /// The answer for a problem whose cylinder is a scene of its own; `None`
-    /// also where Embree takes the cylinder or the ray for none.
-    fn answer(&self, problem: &Problem) -> Option<Answer> {
-        let ray = ray_for_embree(&problem.ray)?;
-        let scene = self.build(&[problem.cylinder]).ok()?;
-        let hit = scene.closest_native(&ray, &mut ())?;
-        let normal = DVec3::from_array(hit.normal.map(f64::from));
-        Some(Answer {
-            t: f64::from(hit.t),
-            part: self.part(&problem.cylinder, &hit, normal),
-            normal: normal.normalize(),
-        })
-    }
-
     /// A mesh has its walls first and its discs after them, in the order of
     /// the ends. A curve does not say; its normal is along the axis on the
     /// discs and across it on the wall.
@@ -112,28 +98,28 @@ impl Native {
     }
 }
 
-impl Formulation for Native {
-    fn name(&self) -> &'static str {
-        self.name
+impl Rival for Native {
+    fn row(&self) -> Row {
+        Row {
+            name: self.name,
+            precision: Precision::F32,
+            bytes: self.bytes,
+        }
     }
 
-    fn precision(&self) -> Precision {
-        Precision::F32
+    fn answer(&self, problem: &Problem) -> Option<Answer> {
+        let ray = ray_for_embree(&problem.ray)?;
+        let scene = self.build(&[problem.cylinder]).ok()?;
+        let hit = scene.closest_native(&ray, &mut ())?;
+        let normal = DVec3::from_array(hit.normal.map(f64::from));
+        Some(Answer {
+            t: f64::from(hit.t),
+            part: self.part(&problem.cylinder, &hit, normal),
+            normal: normal.normalize(),
+        })
     }
 
-    fn bytes(&self) -> usize {
-        self.bytes
-    }
-
-    fn answers(&self, problems: &[Problem]) -> Vec<Option<Answer>> {
-        problems
-            .iter()
-            .map(|problem| self.answer(problem))
-            .collect()
-    }
-
-    fn batch(&self, problems: &[Problem]) -> Box<dyn Batch> {
-        let spaced = Spaced::new(problems, CYLINDERS_TIMED);
+    fn timed(&self, spaced: Spaced) -> Box<dyn Batch> {
         Box::new(NativeBatch {
             scene: self
                 .build(&spaced.cylinders)
@@ -222,6 +208,7 @@ fn ray_for_embree(ray: &Ray) -> Option<Ray32> {
 mod tests {
     use super::*;
     use crate::bench::samples::{self, Shifted};
+    use crate::solid::formulations::Formulation;
     use crate::solid::tessellation::sagitta;
 
     const SEED: u64 = 6;

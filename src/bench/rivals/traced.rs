@@ -3,17 +3,12 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
-
 use super::spaced::Spaced;
-use super::{CYLINDERS_TIMED, measured_cylinders};
+use super::{Rival, Row, measured_cylinders};
 use crate::math::Ray;
-use crate::scene::{
-    Camera, CylinderRecord, Film, Frame, Integrator, MaterialIndex, Projection, Prototype,
-    RenderSettings, Scene,
-};
+use crate::scene::{CylinderRecord, MaterialIndex, Prototype, Scene};
 use crate::solid::Cylinder;
-use crate::solid::formulations::{Answer, Batch, Formulation, Precision, Problem};
+use crate::solid::formulations::{Answer, Batch, Precision, Problem};
 use crate::tracer::{Options, Tracer, TracerError};
 
 /// Cylinders as the tracer keeps them.
@@ -41,9 +36,17 @@ impl Traced {
             bytes: bytes / cylinders.len(),
         })
     }
+}
 
-    /// The answer for a problem whose cylinder is a scene of its own; `None`
-    /// also where the tracer refuses the scene.
+impl Rival for Traced {
+    fn row(&self) -> Row {
+        Row {
+            name: Self::NAME,
+            precision: Precision::F64,
+            bytes: self.bytes,
+        }
+    }
+
     fn answer(&self, problem: &Problem) -> Option<Answer> {
         let tracer = Tracer::new(scene_of(&[problem.cylinder]), &self.options).ok()?;
         let hit = tracer.closest(&problem.ray)?;
@@ -53,30 +56,8 @@ impl Traced {
             normal: hit.normal,
         })
     }
-}
 
-impl Formulation for Traced {
-    fn name(&self) -> &'static str {
-        Self::NAME
-    }
-
-    fn precision(&self) -> Precision {
-        Precision::F64
-    }
-
-    fn bytes(&self) -> usize {
-        self.bytes
-    }
-
-    fn answers(&self, problems: &[Problem]) -> Vec<Option<Answer>> {
-        problems
-            .iter()
-            .map(|problem| self.answer(problem))
-            .collect()
-    }
-
-    fn batch(&self, problems: &[Problem]) -> Box<dyn Batch> {
-        let spaced = Spaced::new(problems, CYLINDERS_TIMED);
+    fn timed(&self, spaced: Spaced) -> Box<dyn Batch> {
         Box::new(TracedBatch {
             tracer: Tracer::new(scene_of(&spaced.cylinders), &self.options)
                 .expect("Embree takes a scene of cylinders of usual size"),
@@ -111,32 +92,14 @@ fn scene_of(cylinders: &[Cylinder]) -> Arc<Scene> {
             .collect(),
         ..Prototype::default()
     };
-    Arc::new(Scene {
-        prototypes: vec![root],
-        materials: Vec::new(),
-        camera: Camera {
-            projection: Projection::Orthographic { height: None },
-            frame: Frame::Auto,
-        },
-        film: Film {
-            width: 1,
-            height: 1,
-        },
-        render: RenderSettings {
-            integrator: Integrator::default(),
-            spp: 1,
-        },
-        sun: None,
-        sky: None,
-        background: DVec3::ZERO,
-        skipped_rows: 0,
-    })
+    Arc::new(Scene::new(vec![root]))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::bench::samples::{self, Shifted};
+    use crate::solid::formulations::Formulation;
 
     #[test]
     fn tracer_answers_as_its_solver_does() {

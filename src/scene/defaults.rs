@@ -1,0 +1,57 @@
+//! What a scene is where nothing is stated, for files that leave it out and for
+//! scenes made without a file.
+
+use glam::DVec3;
+
+use super::description::{
+    Camera, Film, Frame, Integrator, Material, Projection, Prototype, RenderSettings, Scene,
+};
+
+pub(super) const FOV_DEGREES: f64 = 40.0;
+
+pub(super) const FILM: Film = Film {
+    width: 1280,
+    height: 720,
+};
+
+pub(super) const RENDER: RenderSettings = RenderSettings {
+    integrator: Integrator::Sun,
+    spp: 4,
+};
+
+pub(super) const BACKGROUND: DVec3 = DVec3::new(0.8, 0.9, 1.0);
+
+/// The reflectance of solids that name no material.
+const REFLECTANCE: f64 = 0.5;
+
+/// The material of solids that name none.
+pub(super) fn material() -> Material {
+    Material {
+        name: String::new(),
+        color: DVec3::splat(REFLECTANCE),
+    }
+}
+
+impl Scene {
+    /// The scene of these prototypes, the first of which is the root, with all
+    /// else as in a scene file that states nothing else.
+    #[must_use]
+    pub fn new(prototypes: Vec<Prototype>) -> Self {
+        Self {
+            prototypes,
+            materials: vec![material()],
+            camera: Camera {
+                projection: Projection::Perspective {
+                    fov_degrees: FOV_DEGREES,
+                },
+                frame: Frame::Auto,
+            },
+            film: FILM,
+            render: RENDER,
+            sun: None,
+            sky: None,
+            background: BACKGROUND,
+            skipped_rows: 0,
+        }
+    }
+}
