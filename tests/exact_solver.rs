@@ -38,32 +38,54 @@ fn coarse_vector(random: &mut Random) -> DVec3 {
     DVec3::new(coarse(random), coarse(random), coarse(random))
 }
 
+/// A case on the coarse grid, lengths times `size` and the direction times
+/// `stretch`, or `None` where it is no case.
+fn coarse_case(case: u64, size: f64, stretch: f64) -> Option<(Cylinder, Ray)> {
+    let mut random = Random::new(SEED, case);
+    let caps = [Caps::None, Caps::P0, Caps::P1, Caps::Both][random.below(4) as usize];
+    let radius = size * 0.25 * (1 + random.below(8)) as f64;
+    let (p0, p1) = (coarse_vector(&mut random), coarse_vector(&mut random));
+    let cylinder = Cylinder::new(p0 * size, p1 * size, radius, caps).ok()?;
+    let by_t = size / stretch;
+    let t_min = [0.0, -by_t, 0.5 * by_t, f64::NEG_INFINITY][random.below(4) as usize];
+    let t_max = [f64::INFINITY, by_t, 2.0 * by_t][random.below(3) as usize];
+    let (origin, direction) = (coarse_vector(&mut random), coarse_vector(&mut random));
+    let ray = Ray {
+        t_min,
+        t_max,
+        ..Ray::new(origin * size, direction * stretch)
+    };
+    ray.is_valid().then_some((cylinder, ray))
+}
+
 #[test]
 fn ties_on_a_coarse_grid_are_decided_exactly() {
     let mut stages = [0_u64; 3];
-    let mut case = 0;
-    while stages.iter().sum::<u64>() < 40_000 {
-        case += 1;
-        let mut random = Random::new(SEED, case);
-        let caps = [Caps::None, Caps::P0, Caps::P1, Caps::Both][random.below(4) as usize];
-        let radius = 0.25 * (1 + random.below(8)) as f64;
-        let (p0, p1) = (coarse_vector(&mut random), coarse_vector(&mut random));
-        let Ok(cylinder) = Cylinder::new(p0, p1, radius, caps) else {
-            continue;
-        };
-        let ray = Ray {
-            t_min: [0.0, -1.0, 0.5, f64::NEG_INFINITY][random.below(4) as usize],
-            t_max: [f64::INFINITY, 1.0, 2.0][random.below(3) as usize],
-            ..Ray::new(coarse_vector(&mut random), coarse_vector(&mut random))
-        };
-        if !ray.is_valid() {
-            continue;
+    for case in 0..50_000 {
+        if let Some((cylinder, ray)) = coarse_case(case, 1.0, 1.0) {
+            let stage = assert_agrees(&cylinder, &ray, &format!("seed {SEED}, case {case}"));
+            stages[stage as usize] += 1;
         }
-        let stage = assert_agrees(&cylinder, &ray, &format!("seed {SEED}, case {case}"));
-        stages[stage as usize] += 1;
     }
     println!("settled in f64, double-double, any length: {stages:?}");
     assert!(stages[0] > 20_000 && stages[1] > 100, "{stages:?}");
+}
+
+/// Products of the double-double stage overflow or vanish there.
+#[test]
+fn ties_at_the_ends_of_the_range_are_decided_exactly() {
+    let mut decided = 0;
+    for (size, stretch) in [(148, 98), (148, -98), (-147, 98), (-147, -98)] {
+        let power = |exponent| 2.0_f64.powi(exponent);
+        for case in 0..10_000 {
+            if let Some((cylinder, ray)) = coarse_case(case, power(size), power(stretch)) {
+                let name = format!("seed {SEED}, case {case}, sizes 2^{size}, 2^{stretch}");
+                assert_agrees(&cylinder, &ray, &name);
+                decided += 1;
+            }
+        }
+    }
+    assert!(decided > 30_000, "{decided}");
 }
 
 #[test]

@@ -103,10 +103,11 @@ impl Number for Bounded {
 
     fn sign(&self) -> Option<Ordering> {
         let high = self.value.high;
-        // The low word is below an ulp of the high one; half is generous.
+        // The low word is below an ulp of the high one; half is generous. A
+        // product that overflowed is not a number and has no sign.
         if 0.5 * high.abs() > self.error {
             high.partial_cmp(&0.0)
-        } else if self.error == 0.0 {
+        } else if high == 0.0 && self.error == 0.0 {
             Some(Ordering::Equal)
         } else {
             None
