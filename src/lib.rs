@@ -3,6 +3,7 @@
 
 pub mod bench;
 pub mod cases;
+pub mod check;
 pub mod embree;
 pub mod math;
 pub mod oracle;

@@ -1,0 +1,26 @@
+//! Analytic hits against meshes that Embree traces: a regression check with a
+//! proof instead of a tolerance.
+//!
+//! For N sides, the *inscribed* prism lies inside the capped cylinder and the
+//! *circumscribed* one holds it. What a ray meets of the three is therefore
+//! ordered (`sandwich`), and an intersector that answers outside of that order
+//! is wrong, whatever the number of sides. Here is what makes that true of the
+//! meshes that Embree really holds:
+//!
+//! - `placed`: every solid of a window of the scene, with its placements composed
+//!   exactly; the tracer's own placement code has no part in it;
+//! - `mesh_frame`: the f32 space of the meshes, in which rays are exact;
+//! - `prism`, `containment`: prisms grown or shrunk by what f32 rounds, and the
+//!   exact proof that they contain or are contained;
+//! - `rays`: classes of rays that reach what is hard;
+//! - `sandwich`: the bounds of the first hit from what a ray meets of both;
+//! - `retrial`: suspects judged again, exactly, on the f32 triangles;
+//! - `compare`: all of it over many rays, and the outcome.
+
+mod finding;
+mod outcome;
+mod settings;
+
+pub use finding::{Finding, Intersector, Place};
+pub use outcome::{ClassRow, Convergence, Outcome, Violation, Witness};
+pub use settings::{CheckError, Class, Settings};
