@@ -47,7 +47,7 @@ const EXACT_ROUNDED: &[&str] = &["exact-rounded"];
 
 /// (3) to (6) are those of `docs/derivations.md`, section 2.
 const DERIVED: &str = "derived, (3) to (6)";
-const MEASURED: &str = "measured, 20 families of 10^5";
+const MEASURED: &str = "measured, 20 families of 10^6";
 const CERTIFIED: &str = "certified by construction";
 const SPAWN: &str = "derived, section 5";
 
