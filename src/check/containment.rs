@@ -44,7 +44,7 @@
 //! times that and by `8 u |y| |a|` for `fl(a)` and the products. The normal of a
 //! triangle with the sides `d1` and `d2` from `v0` errs by `8 u |d1| |d2| = e`, `m`
 //! by `|M| (e + 5 u |n|) = f`, `m·a` and `m × a` by `|a| f + 8 u |m| |a|`, and
-//! `n·q` by `e |q| + |n| (5 u |q| + u |b|)`. All bounds are taken with twice the
+//! `n·q` by `e (|q| + u |b|) + |n| (5 u |q| + u |b|)`. All bounds are taken with twice the
 //! number of u, for what rounds in the bounds themselves; a NaN fails.
 
 use glam::DVec3;
@@ -132,7 +132,7 @@ fn is_surely_outside(solid: &MeshSolid, [v0, v1, v2]: [DVec3; 3]) -> bool {
     let q = v0 - solid.base;
     let (reach, base) = (q.length(), solid.base.length());
     let height = n.dot(q);
-    let height_error = n_error * reach + size * UNIT * (5.0 * reach + base);
+    let height_error = n_error * (reach + UNIT * base) + size * UNIT * (5.0 * reach + base);
     let ends = m.dot(a).max(0.0);
     let error = height_error + m_error + UNIT * (height.abs() + ends);
     let disc = solid.radius * (m.cross(a).length() + m_error) / length;

@@ -369,22 +369,14 @@ mod tests {
     }
 
     #[test]
-    fn forest_has_windows_in_little_time() {
-        let scene = load("forest.toml");
-        let start = std::time::Instant::now();
-        let all = windows(&scene, 400_000, 1);
-        let seconds = start.elapsed().as_secs_f64();
-        for window in &all {
-            let bounds = window.bounds.expect("a part of the scene");
-            println!(
-                "{} solids in {:.3}, resolved: {}",
-                window.solids.len(),
-                bounds.extent().x,
-                window.is_resolved()
-            );
-            assert!((1..=50_000).contains(&window.solids.len()));
-        }
-        println!("{} windows in {seconds:.2} s", all.len());
+    fn forest_has_windows_that_f32_resolves() {
+        let all = windows(&load("forest.toml"), 400_000, 1);
         assert_eq!(all.len(), 8);
+        for window in &all {
+            assert!((1_000..=50_000).contains(&window.solids.len()));
+            let bounds = window.bounds.expect("a part of the scene");
+            assert!(bounds.extent().max_element() < 20.0, "{bounds:?}");
+            assert!(window.is_resolved());
+        }
     }
 }

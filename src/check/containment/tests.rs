@@ -99,8 +99,10 @@ fn points_near_the_surface_are_never_taken_for_inside_wrongly() {
         inside += u32::from(truth);
         decided += u32::from(filtered);
     }
-    println!("{inside} inside, {decided} of them surely");
-    assert!(decided > inside / 2 && decided < inside);
+    assert!(
+        decided > inside / 2 && decided < inside,
+        "{inside} inside, {decided} of them surely"
+    );
 }
 
 #[test]
@@ -155,6 +157,8 @@ fn planes_near_the_surface_are_never_taken_for_outside_wrongly() {
         outside += u32::from(truth);
         decided += u32::from(filtered);
     }
-    println!("{outside} outside, {decided} of them surely");
-    assert!(decided > outside / 2 && decided < outside);
+    assert!(
+        decided > outside / 2 && decided < outside,
+        "{outside} outside, {decided} of them surely"
+    );
 }

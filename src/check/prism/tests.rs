@@ -2,7 +2,6 @@
 
 use std::collections::HashSet;
 use std::path::Path;
-use std::time::Instant;
 
 use super::*;
 use crate::check::containment::tests::{holds_all_exactly, is_enclosed_exactly, random_window};
@@ -47,10 +46,9 @@ fn triangles_form_a_closed_surface() {
 /// sides of the solid by volume.
 #[test]
 fn random_solids_have_proven_prisms() {
-    for (segments, cases) in [(3, 2_000), (8, 2_000), (64, 400), (1024, 25)] {
+    for (segments, cases) in [(3, 1_000), (8, 1_000), (64, 400), (1024, 25)] {
         let mut random = Random::new(71, u64::from(segments));
         let (mut empty, mut unbounded) = (0, 0);
-        let mut widest = 0.0_f64;
         for case in 0..cases {
             let window = random_window(&mut random);
             let frame = MeshFrame::new(&window);
@@ -70,14 +68,13 @@ fn random_solids_have_proven_prisms() {
             if inner.empty.is_empty() && outer.unbounded.is_empty() {
                 let [inner, outer] = [volume(&inner), volume(&outer)];
                 assert!(0.0 < inner && inner < outer, "case {case}: {inner} {outer}");
-                widest = widest.max(outer / inner);
             }
         }
-        println!(
-            "{segments} sides: {cases} solids, {empty} empty, {unbounded} unbounded, volumes differ by {:.3e} at most",
-            widest - 1.0
+        assert_eq!(
+            (empty, unbounded),
+            (0, 0),
+            "of {cases} with {segments} sides"
         );
-        assert!(empty + unbounded == 0, "{empty} {unbounded}");
     }
 }
 
@@ -111,8 +108,10 @@ fn prisms_without_margins_are_caught() {
                 *caught += i32::from(!truth);
             }
         }
-        println!("{segments} sides: of {cases}, {caught:?} were caught");
-        assert!(caught.iter().all(|&caught| caught >= cases * 99 / 100));
+        assert!(
+            caught.iter().all(|&caught| caught >= cases * 99 / 100),
+            "{segments} sides: of {cases}, {caught:?} were caught"
+        );
     }
 }
 
@@ -139,7 +138,7 @@ fn solids_below_the_last_bit_are_unwitnessed() {
     }
 }
 
-/// `scenes/lattice.toml` at 64 sides, timed.
+/// `scenes/lattice.toml` at 64 sides.
 #[test]
 fn lattice_has_all_prisms() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/lattice.toml");
@@ -147,14 +146,7 @@ fn lattice_has_all_prisms() {
     let window = windows(&scene, 1 << 17, 0).remove(0);
     let frame = MeshFrame::new(&window);
     for side in BOTH {
-        let start = Instant::now();
         let prisms = prisms(&window, &frame, 64, side);
-        println!(
-            "{side:?}: {} prisms in {:.2} s on {} threads",
-            prisms.solid_of.len(),
-            start.elapsed().as_secs_f64(),
-            rayon::current_num_threads()
-        );
         assert_eq!(prisms.solid_of.len(), window.solids.len());
         assert_eq!(
             prisms.triangles.len(),
@@ -186,10 +178,9 @@ fn memory_is_near_the_estimate() {
         drop(scenes);
         let estimate = bytes_needed(solids as u64, segments);
         let ratio = held as f64 / estimate as f64;
-        println!(
-            "{solids} solids of {segments} sides: {held} bytes, {ratio:.3} of the estimate, {:.1} a triangle; Embree held {} at most",
-            held as f64 / (8.0 * f64::from(segments) * solids as f64),
-            device.peak_memory_bytes()
+        assert!(
+            (0.9..1.1).contains(&ratio),
+            "{solids} solids of {segments} sides: {ratio} of the estimate"
         );
     }
 }
