@@ -10,6 +10,7 @@
 //! - `placed`: every solid of a window of the scene, with its placements composed
 //!   exactly; the tracer's own placement code has no part in it;
 //! - `mesh_frame`: the f32 space of the meshes, in which rays are exact;
+//! - `mesh_solid`: a placed solid there, in f64 with bounds of its errors;
 //! - `prism`, `containment`: prisms grown or shrunk by what f32 rounds, and the
 //!   exact proof that they contain or are contained;
 //! - `rays`: classes of rays that reach what is hard;
@@ -17,8 +18,13 @@
 //! - `retrial`: suspects judged again, exactly, on the f32 triangles;
 //! - `compare`: all of it over many rays, and the outcome.
 
+mod containment;
 mod finding;
+mod mesh_frame;
+mod mesh_solid;
 mod outcome;
+mod placed;
+mod prism;
 mod settings;
 
 pub use finding::{Finding, Intersector, Place};
