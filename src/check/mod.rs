@@ -10,6 +10,7 @@
 //! - `placed`: every solid of a window of the scene, with its placements composed
 //!   exactly; the tracer's own placement code has no part in it;
 //! - `mesh_frame`: the f32 space of the meshes, in which rays are exact;
+//! - `mesh_solid`: a placed solid there, in f64 with bounds of its errors;
 //! - `prism`, `containment`: prisms grown or shrunk by what f32 rounds, and the
 //!   exact proof that they contain or are contained;
 //! - `rays`: classes of rays that reach what is hard;
@@ -22,11 +23,16 @@
 //! - `compare`: all of it over many rays, and the outcome.
 
 mod compare;
+mod containment;
 mod finding;
 mod judge;
+mod mesh_frame;
+mod mesh_solid;
 mod meshes;
 mod open_ends;
 mod outcome;
+mod placed;
+mod prism;
 mod rays;
 mod retrial;
 mod sandwich;
