@@ -96,10 +96,7 @@ impl Meshes {
         let of_solids = window.solids.par_iter();
         Ok(Self {
             segments,
-            boxes: of_solids
-                .clone()
-                .map(PlacedSolid::bounds)
-                .collect(),
+            boxes: of_solids.clone().map(PlacedSolid::bounds).collect(),
             open_ends: of_solids.map(|solid| OpenEnds::new(solid, frame)).collect(),
             inner,
             outer,
@@ -160,7 +157,11 @@ impl Meshes {
         for of_solid in crossings.chunk_by(|one, other| one.solid == other.solid) {
             let (mut outer, mut inner) = (Crossings::NONE, Crossings::NONE);
             for crossing in of_solid {
-                let prism = if crossing.is_outer { &mut outer } else { &mut inner };
+                let prism = if crossing.is_outer {
+                    &mut outer
+                } else {
+                    &mut inner
+                };
                 prism.add(crossing.t, crossing.enters);
             }
             let solid = of_solid[0].solid;

@@ -154,13 +154,7 @@ fn within((mut ray32, mut ray): (Ray32, Ray), given: &Ray) -> Option<(Ray32, Ray
 }
 
 impl Replayed {
-    fn describe(
-        &mut self,
-        which: &Replay,
-        about: &Subject,
-        ray: &Ray,
-        answer: Option<&Finding>,
-    ) {
+    fn describe(&mut self, which: &Replay, about: &Subject, ray: &Ray, answer: Option<&Finding>) {
         let lines = &mut self.lines;
         lines.push(format!("ray {}", Replay::Given(*ray)));
         lines.push(format!("    {ray:?}"));

@@ -109,6 +109,11 @@ impl Interval {
         }
     }
 
+    /// Whether a hit and a miss are both allowed for a ray that ends at `t_max`.
+    pub fn is_open(&self, t_max: f64) -> bool {
+        self.low <= t_max && self.low < f64::INFINITY && self.allows(None, t_max)
+    }
+
     /// Whether an answer for a ray that ends at `t_max` is allowed.
     pub fn allows(&self, t: Option<f64>, t_max: f64) -> bool {
         match t {
@@ -173,8 +178,7 @@ pub(crate) fn solid_bounds(
         let inner = is_certain_entry.then_some(inner.enter);
         return bounds(outer.enter, high, inner, is_odd);
     }
-    let is_odd = 
-        inner.last_leave > outer.last_leave || (enters && inner.leave == f64::INFINITY);
+    let is_odd = inner.last_leave > outer.last_leave || (enters && inner.leave == f64::INFINITY);
     if inner.starts_inside() {
         let (low, high) = (inner.last_leave, exit());
         bounds(low, high, high.is_finite().then_some(low), is_odd)
@@ -237,6 +241,9 @@ mod tests {
         assert!(odd(&[(1.0, true)], &[]));
         assert!(odd(&[(1.0, true), (3.0, false)], &[(2.0, true)]));
         assert!(odd(&[(1.0, true), (3.0, false)], &[(2.0, false)]));
-        assert!(odd(&[(1.0, true), (3.0, false)], &[(0.5, true), (2.0, false)]));
+        assert!(odd(
+            &[(1.0, true), (3.0, false)],
+            &[(0.5, true), (2.0, false)]
+        ));
     }
 }
