@@ -146,7 +146,7 @@ impl<'a> RaySource<'a> {
 
     fn from_sphere(&self, random: &mut Random) -> (DVec3, DVec3) {
         let origin = self.centre + random.direction() * (1.5 * self.reach);
-        let point = self.target(random).any_point(random);
+        let point = self.target(random).point_around(random);
         (origin, point - origin)
     }
 
@@ -213,6 +213,15 @@ impl<'a> Target<'a> {
     fn any_point(&self, random: &mut Random) -> DVec3 {
         let off = self.outward(random) * (self.radius * random.unit().sqrt());
         self.world_point(self.object_point(self.length * random.unit(), off))
+    }
+
+    /// A random point of a cylinder a quarter thicker and longer, in the world.
+    /// What is aimed at points of the solid itself hardly ever passes just
+    /// beside it, so silhouettes would get too few rays.
+    fn point_around(&self, random: &mut Random) -> DVec3 {
+        let off = self.outward(random) * (1.25 * self.radius * random.unit().sqrt());
+        let height = self.length * random.uniform(-0.125, 1.125);
+        self.world_point(self.object_point(height, off))
     }
 
     /// From a point inside, a third of the time from next to the wall or a

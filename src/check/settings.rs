@@ -8,7 +8,7 @@ use std::str::FromStr;
 pub enum Class {
     /// From the scene's camera through its picture.
     Camera,
-    /// From a sphere around the scene to random points of it.
+    /// From a sphere around the scene to random points in and around solids.
     Sphere,
     /// From inside solids, and from between the prisms.
     Inside,
