@@ -8,7 +8,7 @@ use std::str::FromStr;
 pub enum Class {
     /// From the scene's camera through its picture.
     Camera,
-    /// From a sphere around the scene to random points of it.
+    /// From a sphere around the scene to random points in and around solids.
     Sphere,
     /// From inside solids, and from between the prisms.
     Inside,
@@ -104,6 +104,9 @@ pub enum CheckError {
         /// [`Settings::max_memory`].
         allowed: u64,
     },
+    /// Progress was told to stop.
+    #[error("interrupted")]
+    Interrupted,
     /// Nothing to check.
     #[error("the scene holds no solid")]
     Empty,
