@@ -15,12 +15,39 @@
 //! - `rays`: classes of rays that reach what is hard;
 //! - `sandwich`: the bounds of the first hit from what a ray meets of both;
 //! - `retrial`: suspects judged again, exactly, on the f32 triangles;
-//! - `compare`: all of it over many rays, and the outcome.
+//! - `compare`: all of it over many rays, and the outcome;
+//! - `agreement`: hits told from elsewhere, within a stated distance: those of
+//!   another program (`user_hits`), or of a mesh from a file (`mesh_file`,
+//!   `user_mesh`);
+//! - `report`, `pictures`: tables and the page; `replay_text`: rays as words.
 
+mod agreement;
 mod finding;
+mod mesh_file;
 mod outcome;
+mod pictures;
+mod replay_text;
+mod report;
 mod settings;
+mod user_hits;
+mod user_mesh;
 
+use std::ops::ControlFlow;
+
+pub use agreement::{Agreement, Disagreement, F32_TOLERANCE, oracle_t};
 pub use finding::{Finding, Intersector, Place};
+pub use mesh_file::{MeshFile, MeshFileError, read_mesh};
 pub use outcome::{ClassRow, Convergence, Outcome, Violation, Witness};
+pub use pictures::{Pictures, PicturesError, pictures};
+pub use replay_text::{RayTextError, ray_from_text, ray_to_text};
+pub use report::{
+    PageContent, TABLE_HEADINGS, TABLE_NAMES, disagreement_text, page, percent, table_rows,
+    verdict, violation_text,
+};
 pub use settings::{CheckError, Class, Settings};
+pub use user_hits::compare_hits;
+pub use user_mesh::{TracedMesh, TriangleHit, compare_mesh, rays_around};
+
+/// Is told how many of how many rays are done, and of what, from any thread, and
+/// says whether to go on.
+pub type Progress<'a> = &'a (dyn Fn(u64, u64, &str) -> ControlFlow<()> + Sync);
