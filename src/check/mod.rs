@@ -22,6 +22,7 @@
 //! - `report`, `pictures`: tables and the page; `replay_text`: rays as words.
 
 mod agreement;
+mod compare;
 mod finding;
 mod mesh_file;
 mod outcome;
@@ -35,6 +36,7 @@ mod user_mesh;
 use std::ops::ControlFlow;
 
 pub use agreement::{Agreement, Disagreement, F32_TOLERANCE, oracle_t};
+pub use compare::compare_with;
 pub use finding::{Finding, Intersector, Place};
 pub use mesh_file::{MeshFile, MeshFileError, read_mesh};
 pub use outcome::{ClassRow, Convergence, Outcome, Violation, Witness};

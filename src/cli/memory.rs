@@ -30,9 +30,51 @@ pub fn readable(bytes: u64) -> String {
     format!("{value:.decimals$} {}", units[unit])
 }
 
+/// A number of bytes from a text such as `500MB` or `4GiB`.
+pub fn parse(text: &str) -> Result<u64, String> {
+    const UNITS: [(&str, u64); 9] = [
+        ("", 1),
+        ("B", 1),
+        ("kB", 1000),
+        ("MB", 1_000_000),
+        ("GB", 1_000_000_000),
+        ("KiB", 1 << 10),
+        ("MiB", 1 << 20),
+        ("GiB", 1 << 30),
+        ("TiB", 1 << 40),
+    ];
+    let end = text.find(|c: char| !c.is_ascii_digit());
+    let (number, unit) = text.split_at(end.unwrap_or(text.len()));
+    let unit = unit.trim();
+    let factor = UNITS
+        .iter()
+        .find(|(name, _)| name.eq_ignore_ascii_case(unit));
+    let number: Option<u64> = number.parse().ok();
+    number
+        .zip(factor)
+        .and_then(|(number, (_, factor))| number.checked_mul(*factor))
+        .filter(|&bytes| bytes > 0)
+        .ok_or_else(|| "it must be a size such as 500MB or 4GiB".to_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sizes_with_and_without_units() {
+        for (text, bytes) in [
+            ("1", 1),
+            ("500MB", 500_000_000),
+            ("4GiB", 4 << 30),
+            ("64 kib", 64 << 10),
+        ] {
+            assert_eq!(parse(text), Ok(bytes));
+        }
+        for text in ["", "0", "GiB", "4 Gibberish", "-1", "99999999999TiB"] {
+            assert!(parse(text).is_err(), "{text}");
+        }
+    }
 
     #[test]
     fn status_with_peak_read_in_bytes() {
