@@ -10,10 +10,15 @@
 //! - `placed`: every solid of a window of the scene, with its placements composed
 //!   exactly; the tracer's own placement code has no part in it;
 //! - `mesh_frame`: the f32 space of the meshes, in which rays are exact;
+//! - `mesh_solid`: a placed solid there, in f64 with bounds of its errors;
 //! - `prism`, `containment`: prisms grown or shrunk by what f32 rounds, and the
 //!   exact proof that they contain or are contained;
 //! - `rays`: classes of rays that reach what is hard;
 //! - `sandwich`: the bounds of the first hit from what a ray meets of both;
+//! - `surface`, `judge`: an answer held against the bounds, its part and normal
+//!   against what the bounds leave;
+//! - `truth`: the same sandwich with exact cylinders in place of prisms, on a
+//!   sample;
 //! - `retrial`: suspects judged again, exactly, on the f32 triangles;
 //! - `compare`: all of it over many rays, and the outcome;
 //! - `agreement`: hits told from elsewhere, within a stated distance: those of
@@ -23,20 +28,32 @@
 
 mod agreement;
 mod compare;
+mod containment;
 mod finding;
+mod judge;
 mod mesh_file;
+mod mesh_frame;
+mod mesh_solid;
+mod meshes;
+mod open_ends;
 mod outcome;
 mod pictures;
+mod placed;
+mod prism;
+mod rays;
 mod replay_text;
 mod report;
+mod retrial;
+mod sandwich;
 mod settings;
+mod surface;
+mod tally;
+mod truth;
 mod user_hits;
 mod user_mesh;
 
-use std::ops::ControlFlow;
-
 pub use agreement::{Agreement, Disagreement, F32_TOLERANCE, oracle_t};
-pub use compare::compare_with;
+pub use compare::{Progress, compare, compare_with};
 pub use finding::{Finding, Intersector, Place};
 pub use mesh_file::{MeshFile, MeshFileError, read_mesh};
 pub use outcome::{ClassRow, Convergence, Outcome, Violation, Witness};
@@ -49,7 +66,3 @@ pub use report::{
 pub use settings::{CheckError, Class, Settings};
 pub use user_hits::compare_hits;
 pub use user_mesh::{TracedMesh, TriangleHit, compare_mesh, rays_around};
-
-/// Is told how many of how many rays are done, and of what, from any thread, and
-/// says whether to go on.
-pub type Progress<'a> = &'a (dyn Fn(u64, u64, &str) -> ControlFlow<()> + Sync);

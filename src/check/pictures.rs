@@ -18,8 +18,8 @@ use rayon::prelude::*;
 use super::user_mesh::{TracedMesh, TriangleHit};
 use crate::embree::{self, DeviceOptions};
 use crate::math::Ray;
-use crate::render::{Camera, png_bytes, srgb_encode};
-use crate::scene::{Film, Placement, PrototypeIndex, Scene};
+use crate::render::{png_bytes, srgb_encode};
+use crate::scene::{AimedCamera, Film, Placement, PrototypeIndex, Scene};
 use crate::solid::Cylinder;
 use crate::solid::tessellation::{Mesh, inscribed_prism, sagitta};
 use crate::tracer::{DEFAULT_BATCH, Hit, Tracer};
@@ -90,7 +90,7 @@ pub fn pictures(
     max_memory: u64,
     options: &DeviceOptions,
 ) -> Result<Option<Pictures>, PicturesError> {
-    let camera = Camera::new(&tracer.scene().camera, &tracer.bounds(), film);
+    let camera = AimedCamera::new(&tracer.scene().camera, &tracer.bounds(), film);
     let pixels: Vec<(Ray, Vec<Hit>)> = (0..film.width * film.height)
         .into_par_iter()
         .map(|pixel| {

@@ -28,7 +28,7 @@ pub fn compare_hits(
     told: &[Option<f64>],
     tolerance: f64,
     most_listed: usize,
-    progress: Progress,
+    progress: &Progress,
 ) -> Option<Agreement> {
     assert_eq!(rays.len(), told.len(), "one answer a ray");
     let greatest = greatest_coordinate(tracer);
@@ -51,7 +51,7 @@ pub(super) fn in_blocks(
     none: Agreement,
     count: u64,
     most_listed: usize,
-    progress: Progress,
+    progress: &Progress,
     compare: impl Fn(&mut Agreement, u64) + Sync,
 ) -> Option<Agreement> {
     let done = std::sync::atomic::AtomicU64::new(0);

@@ -113,7 +113,7 @@ pub fn compare_mesh(
     (class, rays): (&'static str, &[Ray]),
     deviation: f64,
     most_listed: usize,
-    progress: Progress,
+    progress: &Progress,
 ) -> Option<Agreement> {
     let allowance = deviation + mesh.rounding();
     in_blocks(

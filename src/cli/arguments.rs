@@ -197,7 +197,7 @@ pub struct CheckArguments {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_seed, allow_negative_numbers = true)]
     pub seed: u64,
     /// What the meshes may take, such as 500MB or 4GiB
-    #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = memory::parse)]
+    #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = memory::parse_size)]
     pub max_memory: u64,
     /// Write a page with pictures, plots and the worst rays into DIR
     #[arg(long, value_name = "DIR")]

@@ -31,11 +31,8 @@ use told::Told;
 /// Wrong answers that are listed, of each kind.
 const MOST_LISTED: usize = 20;
 
-/// The pictures of the page.
-const FILM: Film = Film {
-    width: 320,
-    height: 240,
-};
+/// Pixels across the pictures of the page; they have the shape of the scene's.
+const PICTURE_WIDTH: u32 = 320;
 
 /// Sides of the prisms in the pictures: few enough to see the difference.
 const PICTURE_SEGMENTS: u32 = 16;
@@ -110,7 +107,7 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
             check::pictures(
                 &tracer,
                 PICTURE_SEGMENTS,
-                FILM,
+                picture_film(loaded.film),
                 arguments.max_memory,
                 &device_options(arguments),
             )
@@ -188,6 +185,15 @@ fn device_options(arguments: &CheckArguments) -> DeviceOptions {
     DeviceOptions {
         threads: arguments.common.threads,
         max_isa: arguments.common.max_isa,
+    }
+}
+
+/// A small picture of the same shape, but for extreme ones.
+fn picture_film(film: Film) -> Film {
+    let height = u64::from(PICTURE_WIDTH) * u64::from(film.height) / u64::from(film.width);
+    Film {
+        width: PICTURE_WIDTH,
+        height: height.clamp(1, 2 * u64::from(PICTURE_WIDTH)) as u32,
     }
 }
 

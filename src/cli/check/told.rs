@@ -79,7 +79,7 @@ impl Told {
         &self,
         tracer: &Tracer,
         arguments: &CheckArguments,
-        progress: Progress,
+        progress: &Progress,
     ) -> anyhow::Result<Found> {
         let agreement: Option<Agreement> = match self {
             Self::Hits(rays, hits, _) => {
