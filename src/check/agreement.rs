@@ -325,8 +325,7 @@ fn beside(ray: &Ray, step: DVec3) -> Ray {
 
 /// The exact `t` of the first hit with the solid of a hit, by the oracle;
 /// `None` when it misses.
-#[must_use]
-pub fn oracle_t(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<f64> {
+fn oracle_t(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<f64> {
     let mut world_from_object = ExactAffine::identity();
     let mut prototype = &scene.prototypes[PrototypeIndex::ROOT.0 as usize];
     for &placement in &hit.instance {

@@ -81,13 +81,7 @@ pub fn compare_with(
     for (number, window) in (0..).zip(&windows) {
         let frame = MeshFrame::new(window);
         let source = RaySource::new(scene, window, &frame, number, settings.seed);
-        let about = Subject {
-            number,
-            window,
-            frame: &frame,
-            source: &source,
-            directory: Directory::new(window),
-        };
+        let about = Subject::new(number, window, &frame, &source);
         outcome.windows.extend(run.window(&about, &mut rows)?);
     }
     rows.finish(settings, &mut outcome);
@@ -144,6 +138,23 @@ pub(super) struct Subject<'a> {
     pub frame: &'a MeshFrame,
     pub source: &'a RaySource<'a>,
     pub directory: Directory<'a>,
+}
+
+impl<'a> Subject<'a> {
+    pub fn new(
+        number: u64,
+        window: &'a Window,
+        frame: &'a MeshFrame,
+        source: &'a RaySource<'a>,
+    ) -> Self {
+        Self {
+            number,
+            window,
+            frame,
+            source,
+            directory: Directory::new(window),
+        }
+    }
 }
 
 /// What stays the same from window to window.

@@ -24,7 +24,7 @@
 //! - `agreement`: hits told from elsewhere, within a stated distance: those of
 //!   another program (`user_hits`), or of a mesh from a file (`mesh_file`,
 //!   `user_mesh`);
-//! - `report`, `pictures`: tables and the page; `replay_text`: rays as words.
+//! - `report`, `pictures`: tables and the page.
 
 mod agreement;
 mod compare;
@@ -41,8 +41,8 @@ mod pictures;
 mod placed;
 mod prism;
 mod rays;
-mod replay_text;
 mod report;
+mod replay;
 mod retrial;
 mod sandwich;
 mod settings;
@@ -52,17 +52,17 @@ mod truth;
 mod user_hits;
 mod user_mesh;
 
-pub use agreement::{Agreement, Disagreement, F32_TOLERANCE, oracle_t};
+pub use agreement::{Agreement, Disagreement, F32_TOLERANCE};
 pub use compare::{Progress, compare, compare_with};
 pub use finding::{Finding, Intersector, Place};
 pub use mesh_file::{MeshFile, MeshFileError, read_mesh};
 pub use outcome::{ClassRow, Convergence, Outcome, Violation, Witness};
 pub use pictures::{Pictures, PicturesError, pictures};
-pub use replay_text::{RayTextError, ray_from_text, ray_to_text};
 pub use report::{
     PageContent, TABLE_HEADINGS, TABLE_NAMES, disagreement_text, page, percent, table_rows,
     verdict, violation_text,
 };
+pub use replay::{Replay, Replayed, replay};
 pub use settings::{CheckError, Class, Settings};
 pub use user_hits::compare_hits;
 pub use user_mesh::{TracedMesh, TriangleHit, compare_mesh, rays_around};

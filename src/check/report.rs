@@ -1,7 +1,7 @@
 //! What came of a check as tables and as a page.
 
 use super::agreement::Disagreement;
-use super::{Agreement, ClassRow, Outcome, Pictures, Violation, ray_to_text};
+use super::{Agreement, ClassRow, Outcome, Pictures, Replay, Violation};
 use crate::report::{Figure, Mark, Page, Series, Symbol, figure};
 
 /// The columns of [`table_rows`].
@@ -96,7 +96,7 @@ pub fn violation_text(violation: &Violation) -> String {
         witness.name(),
         violation.what,
         t_text(violation.answer.as_ref().map(|answer| answer.t)),
-        ray_to_text(&violation.ray),
+        violation.replay(),
     )
 }
 
@@ -114,7 +114,7 @@ pub fn disagreement_text(found: &Disagreement, source: &str) -> String {
         found.index,
         t_text(found.told),
         figure(found.allowance),
-        ray_to_text(&found.ray),
+        Replay::Given(found.ray),
     )
 }
 
@@ -170,7 +170,7 @@ pub fn page(content: &PageContent) -> String {
                 agreement.witness.name().to_owned(),
                 t_text(found.told),
                 t_text(found.exact),
-                ray_to_text(&found.ray),
+                Replay::Given(found.ray).to_string(),
             ]
         }));
     }
@@ -215,7 +215,7 @@ fn violation_cells(violation: &Violation) -> Vec<String> {
         ),
         t_text(violation.answer.as_ref().map(|answer| answer.t)),
         format!("{}: {low:?} to {high:?}", violation.what),
-        ray_to_text(&violation.ray),
+        violation.replay().to_string(),
     ]
 }
 
@@ -348,7 +348,7 @@ mod tests {
             "<td>1.25</td>",
             "1/N² through the first",
             "&lt;missed&gt;: 0.5 to 0.75",
-            "3ff0000000000000:0:0:bff0000000000000",
+            "3ff0000000000000:0000000000000000:0000000000000000:bff0000000000000",
             "the whole scene",
         ] {
             assert!(text.contains(part), "no {part} in\n{text}");

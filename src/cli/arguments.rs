@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cyltrace::cases::{Family, Inputs};
-use cyltrace::check::Class;
+use cyltrace::check::{Class, Replay};
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{Film, Integrator};
 
@@ -202,9 +202,10 @@ pub struct CheckArguments {
     /// Write a page with pictures, plots and the worst rays into DIR
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
-    /// Check one ray again, as a run printed it
+    /// Check one ray again and tell everything about it: BITS as a run printed
+    /// them, or CLASS:INDEX
     #[arg(long, value_name = "BITS", conflicts_with_all = ["hits", "mesh", "report"])]
-    pub replay: Option<String>,
+    pub replay: Option<Replay>,
     #[command(flatten)]
     pub common: Common,
 }

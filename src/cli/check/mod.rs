@@ -1,7 +1,6 @@
 //! `cyltrace check`.
 
 mod hit_file;
-mod replay;
 mod told;
 
 use std::ops::ControlFlow;
@@ -11,8 +10,8 @@ use std::time::Instant;
 
 use anyhow::bail;
 use cyltrace::check::{
-    self, Agreement, Class, ClassRow, Outcome, PageContent, Settings, TABLE_HEADINGS, TABLE_NAMES,
-    percent,
+    self, Agreement, Class, ClassRow, Outcome, PageContent, Replay, Settings, TABLE_HEADINGS,
+    TABLE_NAMES, percent,
 };
 use cyltrace::embree::DeviceOptions;
 use cyltrace::render::NewFile;
@@ -71,8 +70,8 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
     let loaded = Arc::new(scene::load(common, file)?);
     let tracer = scene::build(common, &loaded)?;
     let settings = settings(arguments);
-    if let Some(word) = &arguments.replay {
-        return replay::run(&tracer, word, &settings);
+    if let Some(which) = &arguments.replay {
+        return workers.install(|| replay(&tracer, which, &settings));
     }
 
     let stop = interrupt::end_in_order();
@@ -136,6 +135,25 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
     }
     let told_hold = found.agreements.iter().all(|one| one.disagreements == 0);
     Ok(if found.outcome.holds() && told_hold {
+        GOOD
+    } else {
+        CHECK_FAILED
+    })
+}
+
+/// Prints one ray and what everyone says of it.
+fn replay(tracer: &Tracer, which: &Replay, settings: &Settings) -> anyhow::Result<u8> {
+    let replayed = check::replay(tracer.scene(), tracer, settings, which)?;
+    let mut text: String = replayed
+        .lines
+        .iter()
+        .map(|line| line.clone() + "\n")
+        .collect();
+    for violation in &replayed.violations {
+        text += &check::violation_text(violation);
+    }
+    print(&text)?;
+    Ok(if replayed.violations.is_empty() {
         GOOD
     } else {
         CHECK_FAILED
@@ -272,7 +290,7 @@ fn figures(arguments: &CheckArguments, tracer: &Tracer, found: &Found, elapsed: 
             "index": violation.index,
             "t": violation.answer.as_ref().map(|answer| answer.t),
             "what": violation.what,
-            "replay": check::ray_to_text(&violation.ray),
+            "replay": violation.replay().to_string(),
         })
     });
     let told = agreements.iter().flat_map(|one| {
@@ -284,7 +302,7 @@ fn figures(arguments: &CheckArguments, tracer: &Tracer, found: &Found, elapsed: 
                 "index": found.index,
                 "t": found.told,
                 "what": found.exact.map_or_else(|| "exactly a miss".to_owned(), |t| format!("exactly {t:?}")),
-                "replay": check::ray_to_text(&found.ray),
+                "replay": Replay::Given(found.ray).to_string(),
             })
         })
     });
