@@ -98,16 +98,7 @@ impl Meshes {
             segments,
             boxes: of_solids
                 .clone()
-<<<<<<< HEAD
-                .map(|solid| {
-                    solid
-                        .cylinder
-                        .bounds()
-                        .transformed(&solid.frame.world_from_object)
-                })
-=======
                 .map(PlacedSolid::bounds)
->>>>>>> check-C
                 .collect(),
             open_ends: of_solids.map(|solid| OpenEnds::new(solid, frame)).collect(),
             inner,
@@ -169,11 +160,7 @@ impl Meshes {
         for of_solid in crossings.chunk_by(|one, other| one.solid == other.solid) {
             let (mut outer, mut inner) = (Crossings::NONE, Crossings::NONE);
             for crossing in of_solid {
-                let prism = if crossing.is_outer {
-                    &mut outer
-                } else {
-                    &mut inner
-                };
+                let prism = if crossing.is_outer { &mut outer } else { &mut inner };
                 prism.add(crossing.t, crossing.enters);
             }
             let solid = of_solid[0].solid;

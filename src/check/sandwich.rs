@@ -173,7 +173,8 @@ pub(crate) fn solid_bounds(
         let inner = is_certain_entry.then_some(inner.enter);
         return bounds(outer.enter, high, inner, is_odd);
     }
-    let is_odd = inner.last_leave > outer.last_leave || (enters && inner.leave == f64::INFINITY);
+    let is_odd = 
+        inner.last_leave > outer.last_leave || (enters && inner.leave == f64::INFINITY);
     if inner.starts_inside() {
         let (low, high) = (inner.last_leave, exit());
         bounds(low, high, high.is_finite().then_some(low), is_odd)
@@ -236,9 +237,6 @@ mod tests {
         assert!(odd(&[(1.0, true)], &[]));
         assert!(odd(&[(1.0, true), (3.0, false)], &[(2.0, true)]));
         assert!(odd(&[(1.0, true), (3.0, false)], &[(2.0, false)]));
-        assert!(odd(
-            &[(1.0, true), (3.0, false)],
-            &[(0.5, true), (2.0, false)]
-        ));
+        assert!(odd(&[(1.0, true), (3.0, false)], &[(0.5, true), (2.0, false)]));
     }
 }

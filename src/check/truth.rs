@@ -87,22 +87,13 @@ fn displaced_bounds(solid: &PlacedSolid, ray: &Ray) -> Option<Interval> {
         crossings(&oracle::placed_first_hit(cylinder, placement, &endless))
     };
     let (outer, inner) = (first(&grown), first(&shrunk));
-<<<<<<< HEAD
-    let is_closed = cylinder.caps() == Caps::Both;
-    let Interval { low, high } = solid_bounds(&outer, &inner, ray.t_min, |_| is_closed).interval;
-=======
     let is_certain = |t: f64| {
         cylinder.caps() == Caps::Both || t.is_finite() && local.is_between_ends(t, 2.0 * leeway)
     };
     let Interval { low, high } = solid_bounds(&outer, &inner, ray.t_min, is_certain).interval;
->>>>>>> check-C
     // The parameters were rounded to nearest.
     Some(Interval {
-        low: if low.is_finite() {
-            low.next_down()
-        } else {
-            low
-        },
+        low: if low.is_finite() { low.next_down() } else { low },
         high: high.next_up(),
     })
 }
