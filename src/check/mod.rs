@@ -24,7 +24,7 @@
 //! - `agreement`: hits told from elsewhere, within a stated distance: those of
 //!   another program (`user_hits`), or of a mesh from a file (`mesh_file`,
 //!   `user_mesh`);
-//! - `report`, `pictures`: tables and the page.
+//! - `report`, `pictures`: tables and the page; `plan`: what it will take.
 
 mod agreement;
 mod compare;
@@ -39,10 +39,11 @@ mod open_ends;
 mod outcome;
 mod pictures;
 mod placed;
+mod plan;
 mod prism;
 mod rays;
-mod report;
 mod replay;
+mod report;
 mod retrial;
 mod sandwich;
 mod settings;
@@ -58,6 +59,7 @@ pub use finding::{Finding, Intersector, Place};
 pub use mesh_file::{MeshFile, MeshFileError, read_mesh};
 pub use outcome::{ClassRow, Convergence, Outcome, Violation, Witness};
 pub use pictures::{Pictures, PicturesError, pictures};
+pub use plan::{Plan, plan};
 pub use report::{
     PageContent, TABLE_HEADINGS, TABLE_NAMES, disagreement_text, page, percent, table_rows,
     verdict, violation_text,

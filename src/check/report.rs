@@ -158,7 +158,7 @@ pub fn page(content: &PageContent) -> String {
         page.heading("Convergence");
         page.figure(&convergence_figure(outcome));
         page.note(
-            "The share of rays in the silhouette band, and the 99th percentile of the distance between prism and solid along a ray, in radii. Both fall as 1/N², the dotted course of the diamonds, where nothing but the number of sides matters.",
+            "The share of rays in the silhouette band, and the 99th percentile of the distance between prism and solid along a ray, in radii. For capped solids both fall as 1/N², the course of the diamonds; open ends keep a share in the band whatever N is.",
         );
     }
     page.heading("Worst rays");

@@ -21,6 +21,7 @@ use cyltrace::tracer::Tracer;
 use serde_json::{Value, json};
 
 use super::arguments::{CheckArguments, Rays};
+use super::memory::readable;
 use super::outputs::Files;
 use super::print::print;
 use super::target::{make_directory, write_text};
@@ -74,6 +75,18 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         return workers.install(|| replay(&tracer, which, &settings));
     }
 
+    if told.is_none() && common.prints() {
+        let plan = workers.install(|| check::plan(&loaded, &settings))?;
+        print(&format!(
+            "meshes: about {} for {} solids, {}\n",
+            readable(plan.bytes),
+            plan.solids,
+            match plan.windows {
+                1 => "the whole scene".to_owned(),
+                parts => format!("{parts} parts of the scene"),
+            }
+        ))?;
+    }
     let stop = interrupt::end_in_order();
     let bar = progress::bar(common, 0, "rays");
     let report_progress = |done: u64, total: u64, _: &str| {
