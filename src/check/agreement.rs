@@ -19,6 +19,10 @@
 //!   slant makes it: `δ` sideways is `δ tan θ` along;
 //! - is **at a silhouette** if it is so for another part that some moved ray meets
 //!   first; a told miss, if some moved ray misses;
+//! - is **at a silhouette** too if some moved ray misses the solid that the ray meets
+//!   first, and the told hit is on the ray's way through that solid: a facet
+//!   that stands for the turn of the wall reaches beyond the tangent, and the way
+//!   is short there, about `√(8 r δ)`;
 //! - **disagrees** otherwise.
 //!
 //! Twenty-six rays are a sample: where solids thinner than `δ` crowd, one can lie
@@ -229,6 +233,7 @@ fn judge(
             Verdict::Agrees((told - exact.t).abs() / along)
         }
         _ if near.first.iter().any(holds) => Verdict::Silhouette,
+        Some(_) if near.some_miss_own && near.own_way(told, along) => Verdict::Silhouette,
         _ => Verdict::Disagrees,
     }
 }
@@ -241,12 +246,20 @@ struct Neighbourhood {
     /// Every hit of every ray.
     met: Vec<(Surface, f64)>,
     some_miss: bool,
+    /// The ray's own way through the solid that it meets first, and whether some
+    /// ray misses that solid.
+    own: Vec<f64>,
+    own_solid: Option<(Vec<u32>, u32)>,
+    some_miss_own: bool,
 }
 
 impl Neighbourhood {
     fn of(tracer: &Tracer, ray: &Ray, own: Option<&Surface>, allowance: f64) -> Self {
         let mut near = Self::default();
         near.look(tracer, ray);
+        near.own_solid = own.map(|(instance, primitive, ..)| (instance.clone(), *primitive));
+        let met = near.met.iter().filter(|(one, _)| near.is_own(one));
+        near.own = met.map(|(_, t)| *t).collect();
         let along = allowance / ray.direction.length();
         for [start, end] in [[-along, along], [along, -along]] {
             let moved = Ray {
@@ -276,6 +289,17 @@ impl Neighbourhood {
         near
     }
 
+    fn is_own(&self, (instance, primitive, ..): &Surface) -> bool {
+        let own = self.own_solid.as_ref();
+        own.is_some_and(|own| own.0 == *instance && own.1 == *primitive)
+    }
+
+    /// Whether `t` is on the ray's way through its own solid.
+    fn own_way(&self, t: f64, along: f64) -> bool {
+        let before = self.own.iter().any(|&met| met - along <= t);
+        before && self.own.iter().any(|&met| t <= met + along)
+    }
+
     /// Narrows the place between two parts of `step` where the surface stops to be
     /// the ray's own.
     fn find_border(
@@ -299,13 +323,16 @@ impl Neighbourhood {
     /// Notes what a ray meets; the answer is what it meets first.
     fn look(&mut self, tracer: &Tracer, ray: &Ray) -> Option<Surface> {
         let mut first = None;
+        let mut meets_own = false;
         for hit in tracer.all_hits(ray, DEFAULT_BATCH).take(MOST_HITS) {
             let surface = surface(&hit);
             if first.is_none() {
                 first = Some(surface.clone());
             }
+            meets_own |= self.is_own(&surface);
             self.met.push((surface, hit.t));
         }
+        self.some_miss_own |= self.own_solid.is_some() && !meets_own;
         match &first {
             Some(surface) if !self.first.contains(surface) => self.first.push(surface.clone()),
             Some(_) => {}
