@@ -30,6 +30,22 @@ fn help_of_every_command_mentions_every_flag() {
         ),
         ("trace", &["--rays", "--output", "-o", "--all"][..]),
         ("info", &[][..]),
+        (
+            "check",
+            &[
+                "--segments",
+                "--rays",
+                "--hits",
+                "--tolerance",
+                "--mesh",
+                "--deviation",
+                "--class",
+                "--seed",
+                "--max-memory",
+                "--report",
+                "--replay",
+            ][..],
+        ),
     ] {
         let (code, help, _) = cyltrace(&[command, "--help"]);
         assert_eq!(code, 0);
@@ -122,7 +138,7 @@ fn document_has_every_flag_column_and_json_key() {
             missing.push(word.to_owned());
         }
     };
-    for command in ["render", "trace", "info"] {
+    for command in ["render", "trace", "info", "check"] {
         let (_, help, _) = cyltrace(&[command, "--help"]);
         help.split(|c: char| c.is_whitespace() || c == ',')
             .filter(|word| word.starts_with("--") && word.len() > 2)
@@ -146,6 +162,7 @@ fn document_has_every_flag_column_and_json_key() {
             "render", scene, "-o", &picture, "--size", "8x8", "--json", "-",
         ],
         &["trace", scene, "--rays", &rays, "-o", &hits, "--json", "-"],
+        &["check", scene, "--rays", "100", "--json", "-"],
     ] {
         let (_, out, err) = cyltrace(arguments);
         let figures: serde_json::Value = serde_json::from_str(&out).expect(&err);

@@ -20,30 +20,51 @@
 //! - `truth`: the same sandwich with exact cylinders in place of prisms, on a
 //!   sample;
 //! - `retrial`: suspects judged again, exactly, on the f32 triangles;
-//! - `compare`: all of it over many rays, and the outcome.
+//! - `compare`: all of it over many rays, and the outcome;
+//! - `agreement`: hits told from elsewhere, within a stated distance: those of
+//!   another program (`user_hits`), or of a mesh from a file (`mesh_file`,
+//!   `user_mesh`);
+//! - `report`, `pictures`: tables and the page; `plan`: what it will take.
 
+mod agreement;
 mod compare;
 mod containment;
 mod finding;
 mod judge;
+mod mesh_file;
 mod mesh_frame;
 mod mesh_solid;
 mod meshes;
 mod open_ends;
 mod outcome;
+mod pictures;
 mod placed;
+mod plan;
 mod prism;
 mod rays;
 mod replay;
+mod report;
 mod retrial;
 mod sandwich;
 mod settings;
 mod surface;
 mod tally;
 mod truth;
+mod user_hits;
+mod user_mesh;
 
+pub use agreement::{Agreement, Disagreement, F32_TOLERANCE};
 pub use compare::{Progress, compare, compare_with};
 pub use finding::{Finding, Intersector, Place};
+pub use mesh_file::{MeshFile, MeshFileError, read_mesh};
 pub use outcome::{ClassRow, Convergence, Outcome, Violation, Witness};
+pub use pictures::{Pictures, PicturesError, pictures};
+pub use plan::{Plan, plan};
+pub use report::{
+    PageContent, TABLE_HEADINGS, TABLE_NAMES, disagreement_text, page, percent, table_rows,
+    verdict, violation_text,
+};
 pub use replay::{Replay, Replayed, replay};
 pub use settings::{CheckError, Class, Settings};
+pub use user_hits::compare_hits;
+pub use user_mesh::{TracedMesh, TriangleHit, compare_mesh, rays_around};

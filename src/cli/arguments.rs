@@ -5,9 +5,11 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cyltrace::cases::{Family, Inputs};
+use cyltrace::check::{Class, Replay};
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{Film, Integrator};
 
+use super::memory;
 use super::target::is_standard_stream;
 
 /// Traces analytic cylinders through Embree: exact hits, no meshes.
@@ -25,6 +27,7 @@ pub enum Command {
     Info(InfoArguments),
     Bench(BenchArguments),
     Stress(StressArguments),
+    Check(CheckArguments),
 }
 
 /// What every command takes.
@@ -155,6 +158,67 @@ pub struct StressArguments {
     pub common: Common,
 }
 
+/// Hold analytic hits against meshes that Embree traces
+///
+/// Exits with 1 when an answer is wrong, or when the meshes say nothing about
+/// more than half of a class of rays.
+#[derive(Args, Debug)]
+pub struct CheckArguments {
+    /// The scene file
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// Sides of the prisms; each number is checked with the same rays
+    #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "16,64", value_parser = clap::value_parser!(u32).range(3..=4096))]
+    pub segments: Vec<u32>,
+    /// Rays of each class, or a table of rays as `trace` reads it, for --hits
+    /// and --mesh
+    #[arg(long, value_name = "N|FILE", default_value = "100000", value_parser = parse_rays)]
+    pub rays: Rays,
+    /// Compare these hits of another program for the table of rays: CSV with
+    /// the columns hit and t, one row a ray
+    #[arg(long, value_name = "FILE", conflicts_with = "mesh")]
+    pub hits: Option<PathBuf>,
+    /// What --hits may be off, relative to the distances of a ray [default:
+    /// 16 / 2^24, which suits f32]
+    #[arg(long, value_name = "X", value_parser = parse_length, requires = "hits")]
+    pub tolerance: Option<f64>,
+    /// Compare this mesh of the scene: .obj or .ply
+    #[arg(long, value_name = "FILE")]
+    pub mesh: Option<PathBuf>,
+    /// What --mesh may be off, in scene units [default: what the file's comment
+    /// says]
+    #[arg(long, value_name = "X", value_parser = parse_length, requires = "mesh")]
+    pub deviation: Option<f64>,
+    /// Only this class of rays: camera, sphere, inside, grazing or axial; may be
+    /// repeated [default: all five]
+    #[arg(long, value_name = "NAME")]
+    pub class: Vec<Class>,
+    /// Chooses the rays
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_seed, allow_negative_numbers = true)]
+    pub seed: u64,
+    /// What the meshes may take, such as 500MB or 4GiB
+    #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = memory::parse_size)]
+    pub max_memory: u64,
+    /// Write a page with pictures, plots and the worst rays into DIR
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+    /// Check one ray again and tell everything about it: BITS as a run printed
+    /// them, or CLASS:INDEX
+    #[arg(long, value_name = "BITS", conflicts_with_all = ["hits", "mesh", "report"])]
+    pub replay: Option<Replay>,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Rays to make, or to read.
+#[derive(Clone, Debug)]
+pub enum Rays {
+    /// So many of each class.
+    Count(u64),
+    /// Those of a table.
+    Table(PathBuf),
+}
+
 /// Measure run times and errors
 #[derive(Args, Debug)]
 pub struct BenchArguments {
@@ -239,6 +303,31 @@ fn parse_spp(text: &str) -> Result<NonZeroU32, String> {
 fn parse_seed(text: &str) -> Result<u64, String> {
     let seed = text.parse();
     seed.map_err(|_| format!("it must be a whole number from 0 to {}", u64::MAX))
+}
+
+/// A whole number is a count, everything else a file.
+fn parse_rays(text: &str) -> Result<Rays, String> {
+    let is_number = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    if !is_number {
+        return Ok(Rays::Table(text.into()));
+    }
+    let count: Option<u64> = text.parse().ok();
+    count
+        .filter(|count| (1..=GREATEST_RAYS).contains(count))
+        .map(Rays::Count)
+        .ok_or_else(|| format!("it must be a whole number from 1 to {GREATEST_RAYS}, or a file"))
+}
+
+/// Most rays of a class.
+const GREATEST_RAYS: u64 = 1_000_000_000;
+
+/// A number that is not negative.
+fn parse_length(text: &str) -> Result<f64, String> {
+    let length = text.parse();
+    length
+        .ok()
+        .filter(|length: &f64| length.is_finite() && *length >= 0.0)
+        .ok_or_else(|| "it must be a finite number from 0".to_owned())
 }
 
 fn parse_size(text: &str) -> Result<Film, String> {

@@ -1,17 +1,13 @@
 //! `cyltrace bench`.
 
 use std::collections::BTreeSet;
-use std::fs;
-use std::io::Write;
-use std::path::Path;
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use cyltrace::bench::{
     Accuracy, Circumstances, Contender, JudgedCases, Rounds, Row, SUMMARY_HEADINGS, USUAL_ROUNDS,
     USUAL_TIMED, WallClock, contenders, draw, figure, page, rival_names, summary, table,
 };
 use cyltrace::cases::Family;
-use cyltrace::render::NewFile;
 use cyltrace::report::Table;
 use cyltrace::solid::formulations;
 use cyltrace::tracer::Options;
@@ -19,6 +15,7 @@ use serde_json::{Value, json};
 
 use super::arguments::{AccuracyArguments, Bench, BenchArguments};
 use super::print::print;
+use super::target::{make_directory, write_text};
 use super::{interrupt, json, progress, scene};
 
 /// Runs the benchmark that is asked for.
@@ -35,8 +32,7 @@ fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
     check_names(&arguments.formulation)?;
     interrupt::install()?;
     if let Some(directory) = &arguments.report {
-        fs::create_dir_all(directory)
-            .with_context(|| format!("cannot make the directory {}", directory.display()))?;
+        make_directory(directory)?;
     }
     let workers = scene::workers(common)?;
 
@@ -79,9 +75,9 @@ fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
     );
     interrupt::end_in_order();
     if let Some(directory) = &arguments.report {
-        write(&directory.join("accuracy.svg"), &figure(&found))?;
-        write(&directory.join("accuracy.csv"), &table(&found))?;
-        write(&directory.join("index.html"), &page(&found, &circumstances))?;
+        write_text(&directory.join("accuracy.svg"), &figure(&found))?;
+        write_text(&directory.join("accuracy.csv"), &table(&found))?;
+        write_text(&directory.join("index.html"), &page(&found, &circumstances))?;
     }
     json::write(common, &figures(&found, &circumstances))?;
     if common.prints() {
@@ -119,13 +115,6 @@ fn check_names(names: &[String]) -> anyhow::Result<()> {
         }
     }
     Ok(())
-}
-
-fn write(path: &Path, text: &str) -> anyhow::Result<()> {
-    let mut file = NewFile::create(path)?;
-    file.write_all(text.as_bytes())
-        .with_context(|| format!("cannot write {}", path.display()))?;
-    Ok(file.finish()?)
 }
 
 /// The table for people.

@@ -5,6 +5,7 @@
 
 mod arguments;
 mod bench;
+mod check;
 mod hit_table;
 mod info;
 mod interrupt;
@@ -79,6 +80,7 @@ fn run_command(arguments: &Arguments) -> anyhow::Result<u8> {
         Command::Info(arguments) => info::run(arguments).map(|()| GOOD),
         Command::Stress(arguments) => stress::run(arguments),
         Command::Bench(arguments) => bench::run(arguments).map(|()| GOOD),
+        Command::Check(arguments) => check::run(arguments),
     }
 }
 

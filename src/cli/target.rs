@@ -3,6 +3,7 @@
 use std::io::{self, BufWriter, Stdout, Write};
 use std::path::Path;
 
+use anyhow::Context;
 use cyltrace::render::{FileError, NewFile};
 
 use super::print::StandardOutputError;
@@ -67,6 +68,20 @@ impl Write for Target {
             Self::File(file) => file.flush(),
         }
     }
+}
+
+/// Writes a text file that is whole or absent.
+pub fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
+    let mut file = NewFile::create(path)?;
+    file.write_all(text.as_bytes())
+        .with_context(|| format!("cannot write {}", path.display()))?;
+    Ok(file.finish()?)
+}
+
+/// Makes the directory of a report where it is not there yet.
+pub fn make_directory(directory: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(directory)
+        .with_context(|| format!("cannot make the directory {}", directory.display()))
 }
 
 /// Whether a file's name stands for standard output, or for standard input

@@ -156,7 +156,7 @@ fn count_rays(path: &Path) -> anyhow::Result<u64> {
 
 /// Reads a table in the rayon pool that this is called in, and hands on the
 /// rays of some blocks at a time, in order.
-fn for_each_batch(
+pub fn for_each_batch(
     path: &Path,
     mut action: impl FnMut(Vec<Vec<Ray>>) -> anyhow::Result<()>,
 ) -> anyhow::Result<()> {

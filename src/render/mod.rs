@@ -23,7 +23,7 @@ pub use film::Film;
 pub use integrator::RayCounts;
 pub use lights::{Lights, SunLight};
 pub use new_file::{FileError, NewFile};
-pub use output::{Format, Output, OutputError};
+pub use output::{Format, Output, OutputError, png_bytes};
 pub use sampler::PixelSampler;
 pub use srgb::encode as srgb_encode;
 pub use workers::workers;

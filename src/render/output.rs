@@ -1,8 +1,9 @@
 //! Pictures as files: 8-bit sRGB PNG and linear f32 EXR.
 
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use image::{ImageBuffer, ImageFormat, Rgb};
+use image::{ImageBuffer, ImageError, ImageFormat, Rgb, Rgba};
 
 use super::{FileError, Film, NewFile, srgb};
 
@@ -98,6 +99,22 @@ impl Output {
         })?;
         Ok(self.file.finish()?)
     }
+}
+
+/// The bytes of a PNG file that holds codes for red, green, blue and opacity.
+///
+/// # Errors
+/// When the encoder refuses.
+///
+/// # Panics
+/// When there is not one colour a pixel.
+pub fn png_bytes(width: u32, height: u32, pixels: &[[u8; 4]]) -> Result<Vec<u8>, ImageError> {
+    let picture: ImageBuffer<Rgba<u8>, Vec<u8>> =
+        ImageBuffer::from_raw(width, height, pixels.as_flattened().to_vec())
+            .expect("there is one colour a pixel");
+    let mut bytes = Vec::new();
+    picture.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png)?;
+    Ok(bytes)
 }
 
 fn png(film: &Film) -> ImageBuffer<Rgb<u8>, Vec<u8>> {

@@ -57,7 +57,7 @@ pub struct Figure {
     pub x_title: String,
     /// The axis at the left.
     pub y_title: String,
-    /// What the second marks are, for the legend.
+    /// What the second marks are, for the legend; empty where there are none.
     pub second_title: String,
     /// What is drawn.
     pub series: Vec<Series>,
@@ -254,7 +254,8 @@ impl Figure {
         let series = self.series.iter().enumerate();
         let entries = series
             .map(|(number, series)| ("first", number, series.symbol, series.name.as_str()))
-            .chain([("second", 3, Symbol::Circle, self.second_title.as_str())]);
+            .chain([("second", 3, Symbol::Circle, self.second_title.as_str())])
+            .filter(|(.., name)| !name.is_empty());
         for (class, number, shape, name) in entries {
             let width = 34.0 + LETTER * name.chars().count() as f64;
             if x + width > PLOT.right {

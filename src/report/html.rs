@@ -5,6 +5,8 @@
 
 use std::fmt::Write as _;
 
+use super::base64::base64;
+
 /// The page's looks. Figures bring their own.
 const STYLE: &str = "\
 :root { color-scheme: light dark; --ink: #1c1e21; --paper: #ffffff; --faint: #6b7178; --rule: #d9dde2; --shade: #f3f5f7; }
@@ -14,6 +16,10 @@ h1 { font-size: 1.5rem; line-height: 1.25; }
 h2 { font-size: 1.15rem; margin-top: 2rem; }
 p.note { color: var(--faint); font-size: 0.9rem; }
 .wide { overflow-x: auto; margin: 1rem 0; }
+.pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(18rem, 1fr)); gap: 1rem; }
+.pictures figure { margin: 0; }
+.pictures img { display: block; width: 100%; image-rendering: pixelated; border: 1px solid var(--rule); }
+figcaption { color: var(--faint); font-size: 0.9rem; }
 .wide svg { display: block; width: 100%; min-width: 40rem; height: auto; }
 table { border-collapse: collapse; font-size: 0.85rem; font-variant-numeric: tabular-nums; }
 th, td { padding: 0.2rem 0.6rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--rule); }
@@ -56,6 +62,20 @@ impl Page {
     /// Adds a figure that was made as SVG.
     pub fn figure(&mut self, svg: &str) {
         let _ = writeln!(self.body, "<div class=\"wide\">\n{svg}</div>");
+    }
+
+    /// Adds pictures beside one another, each the bytes of a PNG file and what
+    /// it shows. They become part of the page.
+    pub fn pictures(&mut self, pictures: &[(&[u8], &str)]) {
+        self.body += "<div class=\"pictures\">\n";
+        for (png, caption) in pictures {
+            let (data, caption) = (base64(png), escape(caption));
+            let _ = writeln!(
+                self.body,
+                "<figure><img alt=\"{caption}\" src=\"data:image/png;base64,{data}\"><figcaption>{caption}</figcaption></figure>"
+            );
+        }
+        self.body += "</div>\n";
     }
 
     /// Adds a table; its first column names the rows.

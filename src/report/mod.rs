@@ -1,5 +1,6 @@
 //! What people look at: figures, tables and pages, as text.
 
+mod base64;
 mod csv;
 mod figure;
 mod html;

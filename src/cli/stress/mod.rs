@@ -4,19 +4,17 @@ mod map;
 mod replay;
 mod tables;
 
-use std::io::Write;
-use std::path::Path;
 use std::time::Instant;
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use cyltrace::cases::{Family, Inputs};
-use cyltrace::render::NewFile;
 use cyltrace::solid::formulations::{self, Formulation};
 use cyltrace::stress::{self, Cell, Promise, Settings};
 use serde_json::{Value, json};
 
 use super::arguments::StressArguments;
 use super::print::print;
+use super::target::{make_directory, write_text};
 use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
 
 /// Runs what the arguments ask for; the exit code says whether promises hold.
@@ -33,8 +31,7 @@ pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
     }
     json::check(common)?;
     if let Some(directory) = &arguments.report {
-        std::fs::create_dir_all(directory)
-            .with_context(|| format!("cannot create {}", directory.display()))?;
+        make_directory(directory)?;
     }
     interrupt::install()?;
     let workers = scene::workers(common)?;
@@ -81,8 +78,8 @@ pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
         "families": cells.iter().map(row).collect::<Vec<_>>(),
     });
     if let Some(directory) = &arguments.report {
-        save(&directory.join("stress.txt"), &text)?;
-        save(&directory.join("stress.json"), &format!("{figures:#}\n"))?;
+        write_text(&directory.join("stress.txt"), &text)?;
+        write_text(&directory.join("stress.json"), &format!("{figures:#}\n"))?;
     }
     json::write(common, &figures)?;
     if common.prints() {
@@ -144,11 +141,4 @@ fn row(cell: &Cell) -> Value {
         "kept": promised.iter().all(|promise| promise.is_kept(cell)),
         "worst": tables::worst_bits(cell),
     })
-}
-
-/// Writes a text file that is whole or absent.
-fn save(path: &Path, text: &str) -> anyhow::Result<()> {
-    let mut file = NewFile::create(path)?;
-    file.write_all(text.as_bytes())?;
-    Ok(file.finish()?)
 }

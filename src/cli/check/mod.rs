@@ -1,0 +1,371 @@
+//! `cyltrace check`.
+
+mod hit_file;
+mod told;
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use anyhow::bail;
+use cyltrace::check::{
+    self, Agreement, Class, ClassRow, Outcome, PageContent, Replay, Settings, TABLE_HEADINGS,
+    TABLE_NAMES, percent,
+};
+use cyltrace::embree::DeviceOptions;
+use cyltrace::render::NewFile;
+use cyltrace::report::{Table, figure};
+use cyltrace::scene::Film;
+use cyltrace::tracer::Tracer;
+use serde_json::{Value, json};
+
+use super::arguments::{CheckArguments, Rays};
+use super::memory::readable;
+use super::outputs::Files;
+use super::print::print;
+use super::target::{make_directory, write_text};
+use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
+use told::Told;
+
+/// Wrong answers that are listed, of each kind.
+const MOST_LISTED: usize = 20;
+
+/// Pixels across the pictures of the page; they have the shape of the scene's.
+const PICTURE_WIDTH: u32 = 320;
+
+/// Sides of the prisms in the pictures: few enough to see the difference.
+const PICTURE_SEGMENTS: u32 = 16;
+
+/// Everything that was found.
+struct Found {
+    outcome: Outcome,
+    agreements: Vec<Agreement>,
+}
+
+/// Runs the check; the exit code says whether it holds.
+pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
+    let common = &arguments.common;
+    let page_path = arguments.report.as_ref().map(|dir| dir.join("index.html"));
+    let files = files(arguments, page_path.as_ref());
+    files.check()?;
+    if let (Some(_), Rays::Count(_)) = (&arguments.hits, &arguments.rays) {
+        bail!("--hits needs the rays that they are of: --rays FILE");
+    }
+    if let (Rays::Table(path), None, None) = (&arguments.rays, &arguments.hits, &arguments.mesh) {
+        bail!(
+            "--rays {}: a table of rays needs --hits or --mesh to be compared with",
+            path.display()
+        );
+    }
+    json::check(common)?;
+    if let (Some(directory), Some(page)) = (&arguments.report, &page_path) {
+        make_directory(directory)?;
+        NewFile::check(page)?;
+    }
+    interrupt::install()?;
+    let workers = scene::workers(common)?;
+    let file = scene::read(&arguments.scene)?;
+    files.check_with(&file)?;
+    let told = workers.install(|| Told::read(arguments))?;
+    let loaded = Arc::new(scene::load(common, file)?);
+    let tracer = scene::build(common, &loaded)?;
+    let settings = settings(arguments);
+    if let Some(which) = &arguments.replay {
+        return workers.install(|| replay(&tracer, which, &settings));
+    }
+
+    if told.is_none() && common.prints() {
+        let plan = workers.install(|| check::plan(&loaded, &settings))?;
+        print(&format!(
+            "meshes: about {} for {} solids, {}\n",
+            readable(plan.bytes),
+            plan.solids,
+            match plan.windows {
+                1 => "the whole scene".to_owned(),
+                parts => format!("{parts} parts of the scene"),
+            }
+        ))?;
+    }
+    let stop = interrupt::end_in_order();
+    let bar = progress::bar(common, 0, "rays");
+    let report_progress = |done: u64, total: u64, _: &str| {
+        bar.set_length(total);
+        bar.set_position(done);
+        if stop.load(std::sync::atomic::Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let start = Instant::now();
+    let found = workers.install(|| match &told {
+        Some(told) => told.compare(&tracer, arguments, &report_progress),
+        None => {
+            let outcome = check::compare_with(&loaded, &tracer, &settings, &report_progress);
+            interrupt::check()?;
+            Ok(Found {
+                outcome: outcome?,
+                agreements: Vec::new(),
+            })
+        }
+    });
+    bar.finish_and_clear();
+    let found = found?;
+    let elapsed = start.elapsed().as_secs_f64();
+
+    if let Some(page) = &page_path {
+        let pictures = workers.install(|| {
+            check::pictures(
+                &tracer,
+                PICTURE_SEGMENTS,
+                picture_film(loaded.film),
+                arguments.max_memory,
+                &device_options(arguments),
+            )
+        })?;
+        interrupt::check()?;
+        let text = check::page(&PageContent {
+            scene: &arguments.scene.display().to_string(),
+            sentence: &sentence(arguments, &tracer),
+            outcome: &found.outcome,
+            agreements: &found.agreements,
+            pictures: pictures.as_ref(),
+        });
+        write_text(page, &text)?;
+    }
+    json::write(common, &figures(arguments, &tracer, &found, elapsed))?;
+    if common.prints() {
+        let mut text = summary(arguments, &found, told.as_ref());
+        text += &format!(
+            "time: {elapsed:.2} s on {} threads\n",
+            workers.current_num_threads()
+        );
+        if let Some(page) = &page_path {
+            text += &format!("report: {}\n", page.display());
+        }
+        print(&text)?;
+    }
+    let told_hold = found.agreements.iter().all(|one| one.disagreements == 0);
+    Ok(if found.outcome.holds() && told_hold {
+        GOOD
+    } else {
+        CHECK_FAILED
+    })
+}
+
+/// Prints one ray and what everyone says of it.
+fn replay(tracer: &Tracer, which: &Replay, settings: &Settings) -> anyhow::Result<u8> {
+    let replayed = check::replay(tracer.scene(), tracer, settings, which)?;
+    let mut text: String = replayed
+        .lines
+        .iter()
+        .map(|line| line.clone() + "\n")
+        .collect();
+    for violation in &replayed.violations {
+        text += &check::violation_text(violation);
+    }
+    print(&text)?;
+    Ok(if replayed.violations.is_empty() {
+        GOOD
+    } else {
+        CHECK_FAILED
+    })
+}
+
+/// What is read and written.
+fn files<'a>(arguments: &'a CheckArguments, page: Option<&'a PathBuf>) -> Files<'a> {
+    let mut files = Files::new(&arguments.scene, arguments.common.json.as_deref());
+    if let Rays::Table(path) = &arguments.rays {
+        files = files.input("the table of rays", path);
+    }
+    if let Some(path) = &arguments.hits {
+        files = files.input("the table of hits", path);
+    }
+    if let Some(path) = &arguments.mesh {
+        files = files.input("the mesh", path);
+    }
+    if let Some(path) = page {
+        files = files.output("the page of --report", path);
+    }
+    files
+}
+
+fn settings(arguments: &CheckArguments) -> Settings {
+    let mut segments = arguments.segments.clone();
+    segments.sort_unstable();
+    segments.dedup();
+    let mut settings = Settings {
+        segments,
+        classes: match arguments.class.as_slice() {
+            [] => Class::ALL.to_vec(),
+            some => some.to_vec(),
+        },
+        seed: arguments.seed,
+        max_memory: arguments.max_memory,
+        most_listed: MOST_LISTED,
+        ..Settings::default()
+    };
+    if let Rays::Count(count) = arguments.rays {
+        settings.rays = count;
+    }
+    settings
+}
+
+fn device_options(arguments: &CheckArguments) -> DeviceOptions {
+    DeviceOptions {
+        threads: arguments.common.threads,
+        max_isa: arguments.common.max_isa,
+    }
+}
+
+/// A small picture of the same shape, but for extreme ones.
+fn picture_film(film: Film) -> Film {
+    let height = u64::from(PICTURE_WIDTH) * u64::from(film.height) / u64::from(film.width);
+    Film {
+        width: PICTURE_WIDTH,
+        height: height.clamp(1, 2 * u64::from(PICTURE_WIDTH)) as u32,
+    }
+}
+
+/// What the page is about, without anything that differs from run to run.
+fn sentence(arguments: &CheckArguments, tracer: &Tracer) -> String {
+    let rays = match &arguments.rays {
+        Rays::Count(count) => format!("{count} rays of each class, seed {}", arguments.seed),
+        Rays::Table(path) => format!("the rays of {}", path.display()),
+    };
+    let statistics = tracer.statistics();
+    format!(
+        "{rays}; {} cylinders; Embree {} with {}.",
+        statistics.cylinders_instanced, statistics.embree_version, statistics.isa
+    )
+}
+
+/// The lines for people.
+fn summary(arguments: &CheckArguments, found: &Found, told: Option<&Told>) -> String {
+    let Found {
+        outcome,
+        agreements,
+    } = found;
+    let mut text = format!(
+        "{}: {}\n",
+        arguments.scene.display(),
+        check::verdict(outcome, agreements)
+    );
+    for window in &outcome.windows {
+        text += &format!("{window}\n");
+    }
+    let mut table = Table::new(&TABLE_HEADINGS, TABLE_NAMES);
+    for row in check::table_rows(outcome, agreements) {
+        table.push(row);
+    }
+    text += &table.to_string();
+    for row in &outcome.convergence {
+        text += &format!(
+            "{} sides: {} % of rays in the silhouette band, 99 % of hits within {} r of the prism\n",
+            row.segments,
+            figure(row.band_percent),
+            figure(row.p99_dt_r)
+        );
+    }
+    for violation in &outcome.violations {
+        text += &check::violation_text(violation);
+    }
+    for disagreement in agreements.iter().flat_map(|one| &one.listed) {
+        let source = told.map_or_else(String::new, |told| told.source(disagreement.index));
+        text += &check::disagreement_text(disagreement, &source);
+    }
+    text
+}
+
+/// All figures.
+fn figures(arguments: &CheckArguments, tracer: &Tracer, found: &Found, elapsed: f64) -> Value {
+    let Found {
+        outcome,
+        agreements,
+    } = found;
+    let disagreements: u64 = agreements.iter().map(|one| one.disagreements).sum();
+    let told_rays: u64 = agreements.iter().map(|one| one.rays).sum();
+    let classes = outcome.rows.iter().map(class_figures);
+    let classes = classes.chain(agreements.iter().map(agreement_figures));
+    let convergence = outcome.convergence.iter().map(|row| {
+        json!({
+            "segments": row.segments,
+            "band_percent": row.band_percent,
+            "p99_dt_r": row.p99_dt_r,
+        })
+    });
+    let listed = outcome.violations.iter().map(|violation| {
+        json!({
+            "class": violation.class.name(),
+            "witness": violation.witness.name(),
+            "segments": violation.segments,
+            "index": violation.index,
+            "t": violation.answer.as_ref().map(|answer| answer.t),
+            "what": violation.what,
+            "replay": violation.replay().to_string(),
+        })
+    });
+    let told = agreements.iter().flat_map(|one| {
+        one.listed.iter().map(move |found| {
+            json!({
+                "class": one.class,
+                "witness": one.witness.name(),
+                "segments": null,
+                "index": found.index,
+                "t": found.told,
+                "what": found.exact.map_or_else(|| "exactly a miss".to_owned(), |t| format!("exactly {t:?}")),
+                "replay": Replay::Given(found.ray).to_string(),
+            })
+        })
+    });
+    json!({
+        "scene": arguments.scene,
+        "violations": outcome.violation_count() + disagreements,
+        "rays": outcome.rays() + told_rays,
+        "classes": classes.collect::<Vec<_>>(),
+        "convergence": convergence.collect::<Vec<_>>(),
+        "listed": listed.chain(told).collect::<Vec<_>>(),
+        "windows": outcome.windows,
+        "seed": arguments.seed,
+        "cylinders": json::cylinders(tracer.statistics()),
+        "embree": tracer.statistics().embree_version,
+        "isa": tracer.statistics().isa,
+        "check_s": elapsed,
+    })
+}
+
+fn class_figures(row: &ClassRow) -> Value {
+    json!({
+        "name": row.class.name(),
+        "witness": row.witness.name(),
+        "segments": row.segments,
+        "rays": row.rays,
+        "violations": row.violations,
+        "band_percent": percent(row.band, row.rays),
+        "max_dt_over_chord": row.max_dt_over_chord,
+        "hits": row.hits,
+        "witnessed_percent": percent(row.witnessed, row.rays),
+        "unwitnessed_percent": percent(row.unwitnessed, row.rays),
+        "triangle_errors": row.triangle_errors,
+        "wrong_normals": row.wrong_normals,
+    })
+}
+
+/// The row of hits from elsewhere: its band is that of silhouettes.
+fn agreement_figures(row: &Agreement) -> Value {
+    json!({
+        "name": row.class,
+        "witness": row.witness.name(),
+        "segments": null,
+        "rays": row.rays,
+        "violations": row.disagreements,
+        "band_percent": percent(row.silhouette, row.rays),
+        "max_dt_over_chord": null,
+        "hits": row.hits,
+        "witnessed_percent": percent(row.rays - row.silhouette, row.rays),
+        "unwitnessed_percent": 0.0,
+        "triangle_errors": 0,
+        "wrong_normals": 0,
+    })
+}

@@ -1,0 +1,123 @@
+//! Hits from elsewhere: of another program, or of a mesh.
+
+use anyhow::{anyhow, bail};
+use cyltrace::check::{
+    Agreement, F32_TOLERANCE, MeshFile, Outcome, Progress, TracedMesh, compare_hits, compare_mesh,
+    rays_around, read_mesh,
+};
+use cyltrace::math::Ray;
+use cyltrace::tracer::Tracer;
+
+use super::hit_file::{ToldHit, read_hits};
+use super::{Found, MOST_LISTED, device_options};
+use crate::cli::arguments::{CheckArguments, Rays};
+use crate::cli::interrupt::Interrupted;
+use crate::cli::memory::readable;
+use crate::cli::trace::for_each_batch;
+
+/// Bytes that a triangle takes with its vertices and Embree's tree, on the safe
+/// side.
+const TRIANGLE_BYTES: u64 = 200;
+
+/// What is compared.
+pub enum Told {
+    /// The rays, and a hit for each.
+    Hits(Vec<Ray>, Vec<ToldHit>, String),
+    /// The rays where they are given, the mesh, and what it may be off.
+    Mesh(Option<Vec<Ray>>, MeshFile, f64),
+}
+
+impl Told {
+    /// Reads what the arguments name; `None` when they name nothing.
+    pub fn read(arguments: &CheckArguments) -> anyhow::Result<Option<Self>> {
+        if let Some(path) = &arguments.mesh {
+            let file = read_mesh(path).map_err(|error| anyhow!("{error}"))?;
+            let Some(deviation) = arguments.deviation.or(file.deviation) else {
+                bail!(
+                    "{}: no comment says its deviation, as those of `cyltrace tessellate` do: give --deviation X",
+                    path.display()
+                );
+            };
+            let needed = file.mesh.triangles.len() as u64 * TRIANGLE_BYTES;
+            if needed > arguments.max_memory {
+                bail!(
+                    "{}: the mesh takes about {}, which is more than the {} of --max-memory",
+                    path.display(),
+                    readable(needed),
+                    readable(arguments.max_memory)
+                );
+            }
+            return Ok(Some(Self::Mesh(given_rays(arguments)?, file, deviation)));
+        }
+        let Some(path) = &arguments.hits else {
+            return Ok(None);
+        };
+        let rays = given_rays(arguments)?.unwrap_or_default();
+        let hits = read_hits(path)?;
+        if hits.len() != rays.len() {
+            bail!(
+                "{}: there are {} rows for {} rays; it must have one row a ray, in order",
+                path.display(),
+                hits.len(),
+                rays.len()
+            );
+        }
+        let name = path.display().to_string();
+        Ok(Some(Self::Hits(rays, hits, name)))
+    }
+
+    /// Where the answer for a ray stands, as an addition to its number.
+    pub fn source(&self, index: u64) -> String {
+        match self {
+            Self::Hits(_, hits, name) => format!(" ({name}:{})", hits[index as usize].line),
+            Self::Mesh(..) => String::new(),
+        }
+    }
+
+    /// Compares.
+    pub fn compare(
+        &self,
+        tracer: &Tracer,
+        arguments: &CheckArguments,
+        progress: &Progress,
+    ) -> anyhow::Result<Found> {
+        let agreement: Option<Agreement> = match self {
+            Self::Hits(rays, hits, _) => {
+                let told: Vec<Option<f64>> = hits.iter().map(|hit| hit.t).collect();
+                let tolerance = arguments.tolerance.unwrap_or(F32_TOLERANCE);
+                compare_hits(tracer, rays, &told, tolerance, MOST_LISTED, progress)
+            }
+            Self::Mesh(rays, file, deviation) => {
+                let mesh = TracedMesh::new(&file.mesh, &device_options(arguments))?;
+                let made;
+                let (class, rays) = match (rays, &arguments.rays) {
+                    (Some(rays), _) => ("given", rays),
+                    (None, Rays::Count(count)) => {
+                        made = rays_around(tracer, arguments.seed, *count);
+                        ("around", &made)
+                    }
+                    (None, Rays::Table(_)) => unreachable!("a table of rays has been read"),
+                };
+                let rays = (class, rays.as_slice());
+                compare_mesh(tracer, &mesh, rays, *deviation, MOST_LISTED, progress)
+            }
+        };
+        Ok(Found {
+            outcome: Outcome::default(),
+            agreements: vec![agreement.ok_or(Interrupted::NothingWritten)?],
+        })
+    }
+}
+
+/// The rays of the table; `None` when a number of rays is asked for.
+fn given_rays(arguments: &CheckArguments) -> anyhow::Result<Option<Vec<Ray>>> {
+    let Rays::Table(path) = &arguments.rays else {
+        return Ok(None);
+    };
+    let mut rays = Vec::new();
+    for_each_batch(path, |blocks| {
+        rays.extend(blocks.into_iter().flatten());
+        Ok(())
+    })?;
+    Ok(Some(rays))
+}
