@@ -6,6 +6,7 @@ pub mod cases;
 pub mod check;
 pub mod embree;
 pub mod math;
+pub mod mesh_file;
 pub mod oracle;
 pub mod render;
 pub mod report;
