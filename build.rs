@@ -21,13 +21,15 @@ const FUNCTIONS: &str = "cyltrace_.*|rtc(New|Release)(Device|Scene|Geometry)\
     |rtc(Attach|Commit)Geometry|rtcCommitScene|rtcGetSceneBounds|rtcSetSceneFlags\
     |rtcGetDevice(Property|Error)|rtcSetDevice(Error|MemoryMonitor)Function\
     |rtcSetGeometry(Mask|UserData|UserPrimitiveCount)|rtcSetNewGeometryBuffer\
-    |rtcSetGeometry(Bounds|Intersect|Occluded)Function";
+    |rtcSetGeometry(Bounds|Intersect|Occluded|IntersectFilter)Function";
 
 /// The constants of C enumerations that Rust names.
-const CONSTANTS: [&str; 21] = [
+const CONSTANTS: [&str; 23] = [
     "RTC_BUFFER_TYPE_FLAGS",
     "RTC_BUFFER_TYPE_INDEX",
     "RTC_BUFFER_TYPE_VERTEX",
+    "RTC_DEVICE_PROPERTY_BACKFACE_CULLING_ENABLED",
+    "RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED",
     "RTC_DEVICE_PROPERTY_VERSION_MAJOR",
     "RTC_DEVICE_PROPERTY_VERSION_MINOR",
     "RTC_DEVICE_PROPERTY_VERSION_PATCH",
@@ -101,7 +103,7 @@ fn bind(embree: &Embree) {
         .clang_arg(format!("-I{}", embree.include.display()))
         .clang_arg(format!("-DCYLTRACE_EMBREE_MAJOR={}", embree.major))
         .allowlist_function(FUNCTIONS)
-        .allowlist_type("cyltrace_context|RTCRayHit|RTCBounds|RTC(Bounds|Intersect|Occluded)Function(N?)Arguments")
+        .allowlist_type("cyltrace_context|RTCRayHit|RTCBounds|RTC(Bounds|Intersect|Occluded|Filter)Function(N?)Arguments")
         .allowlist_var("RTC_VERSION_(MAJOR|MINOR|PATCH)")
         .default_enum_style(bindgen::EnumVariation::NewType {
             is_bitfield: false,

@@ -130,11 +130,7 @@ impl Device {
     /// The version of the library that was loaded.
     #[must_use]
     pub fn version(&self) -> Version {
-        let number = |property| {
-            // SAFETY: invariant 1.
-            let value = unsafe { sys::rtcGetDeviceProperty(self.handle(), property) };
-            u32::try_from(value).unwrap_or(0)
-        };
+        let number = |property| u32::try_from(self.property(property)).unwrap_or(0);
         Version {
             major: number(sys::RTC_DEVICE_PROPERTY_VERSION_MAJOR),
             minor: number(sys::RTC_DEVICE_PROPERTY_VERSION_MINOR),
@@ -153,6 +149,11 @@ impl Device {
     #[must_use]
     pub fn peak_memory_bytes(&self) -> usize {
         as_bytes(&self.shared.memory.peak)
+    }
+
+    pub(super) fn property(&self, property: sys::RTCDeviceProperty) -> isize {
+        // SAFETY: invariant 1.
+        unsafe { sys::rtcGetDeviceProperty(self.handle(), property) }
     }
 
     pub(super) fn handle(&self) -> sys::RTCDevice {

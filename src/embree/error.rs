@@ -48,6 +48,12 @@ pub enum Error {
         /// What the probe saw.
         found: &'static str,
     },
+    /// The installed Embree was built without something that is needed.
+    #[error("the installed Embree was built without {missing}")]
+    Unsupported {
+        /// What is missing.
+        missing: &'static str,
+    },
     /// A primitive of a user geometry has bounds that Embree would leave out.
     #[error(
         "primitive {primitive} of geometry {} has bounds that are empty, not finite or beyond {GREATEST_COORDINATE:e}",

@@ -1,5 +1,6 @@
 //! Embree behind a safe surface: devices, scenes, user geometry, triangle
-//! meshes and cone curves, and single-ray queries.
+//! meshes and cone curves, single-ray queries, and all hits of a ray with
+//! triangles.
 //!
 //! This layer knows neither cylinders nor scene files. A geometry written in
 //! Rust implements [`UserGeometry`]; its answers travel in a *query*, a value
@@ -26,8 +27,10 @@
 //! 4. **A query pointer is a `&mut Q` of the query that runs.** It is made from
 //!    one by [`Scene`], goes through Embree untouched in the context of that
 //!    query, and callbacks of the query run on the calling thread, one at a
-//!    time. A geometry's `Query` is its scene's `Q`. A nested query borrows
-//!    from the reference its callback was given and ends before it.
+//!    time. A geometry's `Query` is its scene's `Q`; the filter function that
+//!    collects hits is set in scenes whose `Q` is a `Vec<MeshHit>`, by code
+//!    that exists for those only. A nested query borrows from the reference
+//!    its callback was given and ends before it.
 //! 5. **Builders write, scenes read.** Until [`SceneBuilder::commit`] one owner
 //!    holds the Embree scene and no query can run; afterwards nothing is
 //!    written, and Embree's queries may run on any number of threads.
@@ -45,7 +48,7 @@
 //! | instances, instance arrays | placements are user geometry here: f64 transforms, any depth |
 //! | packets of 4, 8, 16 rays | user geometry through them comes when it is measured to pay |
 //! | ray streams | gone in Embree 4 |
-//! | filter functions, ray masks | the callback itself accepts or refuses; all masks are ones |
+//! | filter functions but the one that collects, ray masks | a user geometry itself accepts or refuses; all masks are ones |
 //! | motion blur, subdivision, grids, points, other curves | nothing here moves or is made of them |
 //! | point queries, collision | other questions than rays ask |
 //! | updates of a committed scene | a committed scene is read-only, which is what makes it shareable |
@@ -56,6 +59,7 @@
 )]
 
 mod abort;
+mod collect;
 mod device;
 mod error;
 mod float_mode;
@@ -67,6 +71,7 @@ mod scene;
 mod sys;
 mod user;
 
+pub use collect::MeshHit;
 pub use device::{Device, DeviceOptions, Version};
 pub use error::Error;
 pub use float_mode::with_flushed_denormals;

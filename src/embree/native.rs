@@ -17,6 +17,16 @@ impl<Q: 'static> SceneBuilder<Q> {
         vertices: &[[f32; 3]],
         triangles: &[[u32; 3]],
     ) -> Result<GeometryId, Error> {
+        let mesh = self.new_triangles(vertices, triangles)?;
+        self.attach(&mesh)
+    }
+
+    /// A triangle mesh that is not attached yet.
+    pub(super) fn new_triangles(
+        &self,
+        vertices: &[[f32; 3]],
+        triangles: &[[u32; 3]],
+    ) -> Result<GeometryHandle, Error> {
         check_vertices(vertices, |_| true)?;
         for (primitive, corners) in triangles.iter().enumerate() {
             for &vertex in corners {
@@ -36,7 +46,7 @@ impl<Q: 'static> SceneBuilder<Q> {
             sys::RTC_FORMAT_UINT3,
             triangles,
         )?;
-        self.attach(&mesh)
+        Ok(mesh)
     }
 
     /// Adds straight cone segments of Embree's own (`CONE_LINEAR_CURVE`), the

@@ -40,5 +40,7 @@ const _: () = {
     assert!(hit + offset_of!(RTCHit, primID) == 4 * word::HIT_PRIMITIVE);
     assert!(hit + offset_of!(RTCHit, geomID) == 4 * word::HIT_GEOMETRY);
     assert!(offset_of!(RTCRayHit, ray) == 0);
+    // The structure of one hit is what filter functions get for one lane.
+    assert!(hit == 4 * word::HIT_NORMAL_X && offset_of!(RTCHit, Ng_x) == 0);
     assert!(offset_of!(cyltrace_context, embree) == 0);
 };

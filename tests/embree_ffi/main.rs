@@ -3,6 +3,7 @@
 //! proves none of it.
 
 mod balls;
+mod collect;
 mod lifetime;
 mod locate;
 mod native;
