@@ -2,6 +2,7 @@
 //! and the proof beside them.
 
 pub mod bench;
+pub mod capi;
 pub mod cases;
 pub mod check;
 pub mod embree;

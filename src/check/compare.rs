@@ -95,7 +95,10 @@ pub fn compare_with(
 }
 
 /// The windows in which a scene is checked.
-pub(super) fn chosen_windows(scene: &Scene, settings: &Settings) -> Result<Vec<Window>, CheckError> {
+pub(super) fn chosen_windows(
+    scene: &Scene,
+    settings: &Settings,
+) -> Result<Vec<Window>, CheckError> {
     for &segments in &settings.segments {
         if !(3..=4096).contains(&segments) {
             return Err(CheckError::Segments { segments });
@@ -105,7 +108,11 @@ pub(super) fn chosen_windows(scene: &Scene, settings: &Settings) -> Result<Vec<W
         return Err(CheckError::Empty);
     }
     let segments = settings.segments.iter().copied().max().unwrap_or(3);
-    let windows = windows(scene, most_solids(segments, settings.max_memory), settings.seed);
+    let windows = windows(
+        scene,
+        most_solids(segments, settings.max_memory),
+        settings.seed,
+    );
     if windows.is_empty() {
         return Err(CheckError::Memory {
             needed: bytes_needed(8, segments),
@@ -223,7 +230,10 @@ impl<I: Intersector> Run<'_, I> {
             .collect();
         let mut sum = Tally::default();
         for tally in blocks {
-            sum.add(tally.ok_or(CheckError::Interrupted)?, self.settings.most_listed);
+            sum.add(
+                tally.ok_or(CheckError::Interrupted)?,
+                self.settings.most_listed,
+            );
         }
         Ok(sum)
     }
@@ -274,7 +284,15 @@ impl<I: Intersector> Run<'_, I> {
                 });
             } else if let (Some(finding), Verdict::Right { .. }) = (&answer, &verdict) {
                 let is_sphere = class == Class::Sphere;
-                measure(about, meshes, &ray, finding, &scratch.seen, is_sphere, &mut tally);
+                measure(
+                    about,
+                    meshes,
+                    &ray,
+                    finding,
+                    &scratch.seen,
+                    is_sphere,
+                    &mut tally,
+                );
             }
         }
         tally
@@ -362,7 +380,10 @@ pub(super) fn verdict(
     scratch: &mut Scratch,
 ) -> Verdict {
     let unbounded = meshes.unbounded().iter();
-    if unbounded.copied().any(|solid| may_meet(&meshes.boxes[solid as usize], ray)) {
+    if unbounded
+        .copied()
+        .any(|solid| may_meet(&meshes.boxes[solid as usize], ray))
+    {
         return Verdict::Unwitnessed;
     }
     meshes.look(ray32, scratch);
@@ -375,11 +396,11 @@ pub(super) fn verdict(
         }
     }
     let bounds = first(&scratch.seen);
-    let is_band = bounds.low <= ray.t_max && bounds.low < f64::INFINITY
+    let is_band = bounds.low <= ray.t_max
+        && bounds.low < f64::INFINITY
         && (bounds.high > ray.t_max || bounds.high == f64::INFINITY);
-    let lacks_inner = |seen: &Seen| {
-        seen.bounds.interval.low <= ray.t_max && !meshes.has_inner(seen.solid)
-    };
+    let lacks_inner =
+        |seen: &Seen| seen.bounds.interval.low <= ray.t_max && !meshes.has_inner(seen.solid);
     Verdict::Right {
         is_band,
         is_for_want: is_band && scratch.seen.iter().any(lacks_inner),

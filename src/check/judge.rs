@@ -125,14 +125,17 @@ pub(crate) fn solid_of<'s>(
         let solid = directory.find(place)?;
         return seen.iter().find(|one| one.solid == solid);
     }
-    candidates(finding.t, seen)
-        .min_by(|one, other| one.bounds.interval.low.total_cmp(&other.bounds.interval.low))
+    candidates(finding.t, seen).min_by(|one, other| {
+        one.bounds
+            .interval
+            .low
+            .total_cmp(&other.bounds.interval.low)
+    })
 }
 
 fn candidates(t: f64, seen: &[Seen]) -> impl Iterator<Item = &Seen> {
-    seen.iter().filter(move |one| {
-        one.bounds.interval.allows(Some(t), f64::INFINITY)
-    })
+    seen.iter()
+        .filter(move |one| one.bounds.interval.allows(Some(t), f64::INFINITY))
 }
 
 /// What is wrong with an answer, if anything is.

@@ -101,7 +101,12 @@ impl<'a> Meshes<'a> {
             segments,
             boxes: of_solids
                 .clone()
-                .map(|solid| solid.cylinder.bounds().transformed(&solid.frame.world_from_object))
+                .map(|solid| {
+                    solid
+                        .cylinder
+                        .bounds()
+                        .transformed(&solid.frame.world_from_object)
+                })
                 .collect(),
             open_ends: of_solids.map(|solid| OpenEnds::new(solid, frame)).collect(),
             inner,
@@ -163,7 +168,11 @@ impl<'a> Meshes<'a> {
         for of_solid in crossings.chunk_by(|one, other| one.solid == other.solid) {
             let (mut outer, mut inner) = (Crossings::NONE, Crossings::NONE);
             for crossing in of_solid {
-                let prism = if crossing.is_outer { &mut outer } else { &mut inner };
+                let prism = if crossing.is_outer {
+                    &mut outer
+                } else {
+                    &mut inner
+                };
                 prism.add(crossing.t, crossing.enters);
             }
             let solid = of_solid[0].solid;

@@ -72,9 +72,12 @@ fn plane(solid: &PlacedSolid, frame: &MeshFrame, end: DVec3, side: f64) -> Plane
     let (adjugate, determinant) = placement.adjugate();
     let normal = adjugate.times_from_left(&axis);
     let from_translation = &ExactVector::new(frame.centre()) - placement.translation();
-    let constant =
-        normal.dot(&from_translation) - &determinant * axis.dot(&ExactVector::new(end));
-    let side = exact(if determinant < exact(0.0) { -side } else { side });
+    let constant = normal.dot(&from_translation) - &determinant * axis.dot(&ExactVector::new(end));
+    let side = exact(if determinant < exact(0.0) {
+        -side
+    } else {
+        side
+    });
     // Everything times the scale, so that the points of the mesh stay as they are.
     let constant = constant * &side * exact(frame.scale());
     let normal = normal.times(&side);

@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 
 use crate::embree::Ray32;
 use crate::math::{Bounds, Random, Ray};
-use crate::scene::{Scene, AimedCamera};
+use crate::scene::{AimedCamera, Scene};
 
 use super::Class;
 use super::mesh_frame::MeshFrame;
@@ -258,7 +258,11 @@ impl<'a> Target<'a> {
 
     /// A point next to a rim, and any heading.
     fn at_rim(&self, random: &mut Random) -> (DVec3, DVec3) {
-        let end = if random.below(2) == 0 { 0.0 } else { self.length };
+        let end = if random.below(2) == 0 {
+            0.0
+        } else {
+            self.length
+        };
         let rim = self.object_point(end, self.outward(random) * self.radius);
         let near = random.direction() * (self.radius * random.log_uniform(1e-6, 0.1));
         (

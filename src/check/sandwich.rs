@@ -170,8 +170,7 @@ pub(crate) fn solid_bounds(
             || inner.last_leave > outer.last_leave;
         return bounds(outer.enter, high, enters.then_some(inner.enter), is_odd);
     }
-    let is_odd = 
-        inner.last_leave > outer.last_leave || (enters && inner.leave == f64::INFINITY);
+    let is_odd = inner.last_leave > outer.last_leave || (enters && inner.leave == f64::INFINITY);
     if inner.starts_inside() {
         let low = inner.last_leave;
         bounds(low, exit(), Some(low), is_odd)
@@ -234,6 +233,9 @@ mod tests {
         assert!(odd(&[(1.0, true)], &[]));
         assert!(odd(&[(1.0, true), (3.0, false)], &[(2.0, true)]));
         assert!(odd(&[(1.0, true), (3.0, false)], &[(2.0, false)]));
-        assert!(odd(&[(1.0, true), (3.0, false)], &[(0.5, true), (2.0, false)]));
+        assert!(odd(
+            &[(1.0, true), (3.0, false)],
+            &[(0.5, true), (2.0, false)]
+        ));
     }
 }

@@ -67,8 +67,7 @@ impl<'a> LocalRay<'a> {
         let from_placement = ray.origin - back.translation();
         let origin = back.vector(from_placement) - p0;
         let direction = back.vector(ray.direction);
-        let relative =
-            (errors.inverse_error + UNIT_ROUNDOFF * errors.condition) / errors.shrink;
+        let relative = (errors.inverse_error + UNIT_ROUNDOFF * errors.condition) / errors.shrink;
         let rounding = [
             relative * from_placement.length()
                 + 2.0 * UNIT_ROUNDOFF * (p0.length() + origin.length()),
@@ -113,7 +112,9 @@ impl<'a> LocalRay<'a> {
         normal: Option<DVec3>,
     ) -> Option<WrongSurface> {
         let parts = [Part::Side, Part::Cap0, Part::Cap1];
-        let named = parts.into_iter().filter(|&one| part.is_none_or(|part| part == one));
+        let named = parts
+            .into_iter()
+            .filter(|&one| part.is_none_or(|part| part == one));
         let mut least_angle = f64::INFINITY;
         let mut is_possible = false;
         for part in named.filter(|&part| self.may_be_hit(part, low, high)) {
@@ -142,8 +143,7 @@ impl<'a> LocalRay<'a> {
             Part::Cap0 => cylinder.caps().at_p0() && low_height.min(high_height) <= rounding,
             Part::Cap1 => {
                 let rounding = rounding + 4.0 * UNIT_ROUNDOFF * self.length;
-                cylinder.caps().at_p1()
-                    && low_height.max(high_height) >= self.length - rounding
+                cylinder.caps().at_p1() && low_height.max(high_height) >= self.length - rounding
             }
         }
     }

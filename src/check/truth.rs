@@ -85,11 +85,14 @@ fn displaced_bounds(solid: &PlacedSolid, ray: &Ray) -> Option<Interval> {
     };
     let (outer, inner) = (first(&grown), first(&shrunk));
     let is_closed = cylinder.caps() == Caps::Both;
-    let Interval { low, high } =
-        solid_bounds(&outer, &inner, ray.t_min, |_| is_closed).interval;
+    let Interval { low, high } = solid_bounds(&outer, &inner, ray.t_min, |_| is_closed).interval;
     // The parameters were rounded to nearest.
     Some(Interval {
-        low: if low.is_finite() { low.next_down() } else { low },
+        low: if low.is_finite() {
+            low.next_down()
+        } else {
+            low
+        },
         high: high.next_up(),
     })
 }

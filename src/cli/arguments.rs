@@ -147,7 +147,7 @@ pub struct TessellateArguments {
     #[arg(long)]
     pub circumscribed: bool,
     /// Refuse to write more than SIZE bytes, such as 500MB or 4GiB
-    #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = memory::parse_size)]
+    #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = memory::parse)]
     pub max_memory: u64,
     #[command(flatten)]
     pub common: Common,

@@ -32,7 +32,7 @@ pub fn readable(bytes: u64) -> String {
 
 /// A number of bytes as people write it: `500MB`, `4GiB`, `1.5 TB`, `1000`.
 /// The error is a message.
-pub fn parse_size(text: &str) -> Result<u64, String> {
+pub fn parse(text: &str) -> Result<u64, String> {
     const UNITS: [(&str, u64); 10] = [
         ("", 1),
         ("b", 1),
@@ -97,7 +97,7 @@ mod tests {
             ("1.5mb", 1_500_000),
             ("0.5 TiB", 1 << 39),
         ] {
-            assert_eq!(parse_size(text), Ok(bytes), "{text}");
+            assert_eq!(parse(text), Ok(bytes), "{text}");
         }
         for text in [
             "",
@@ -112,7 +112,7 @@ mod tests {
             "1e400",
             "inf",
         ] {
-            assert!(parse_size(text).is_err(), "{text}");
+            assert!(parse(text).is_err(), "{text}");
         }
     }
 }

@@ -29,7 +29,7 @@ mod toml_message;
 mod transform;
 mod values;
 
-
+pub use aimed_camera::AimedCamera;
 pub use census::Census;
 pub use description::{
     Camera, CylinderRecord, Film, Frame, Integrator, Material, MaterialIndex, Placement,
@@ -38,4 +38,3 @@ pub use description::{
 pub use error::{SceneError, Statement};
 pub use limits::{GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_PIXELS, GREATEST_STRETCH};
 pub use load::{SceneFile, load};
-pub use aimed_camera::AimedCamera;
