@@ -81,13 +81,7 @@ pub fn compare_with(
     for (number, window) in (0..).zip(&windows) {
         let frame = MeshFrame::new(window);
         let source = RaySource::new(scene, window, &frame, number, settings.seed);
-        let about = Subject {
-            number,
-            window,
-            frame: &frame,
-            source: &source,
-            directory: Directory::new(window),
-        };
+        let about = Subject::new(number, window, &frame, &source);
         outcome.windows.extend(run.window(&about, &mut rows)?);
     }
     rows.finish(settings, &mut outcome);
@@ -144,6 +138,23 @@ pub(super) struct Subject<'a> {
     pub frame: &'a MeshFrame,
     pub source: &'a RaySource<'a>,
     pub directory: Directory<'a>,
+}
+
+impl<'a> Subject<'a> {
+    pub fn new(
+        number: u64,
+        window: &'a Window,
+        frame: &'a MeshFrame,
+        source: &'a RaySource<'a>,
+    ) -> Self {
+        Self {
+            number,
+            window,
+            frame,
+            source,
+            directory: Directory::new(window),
+        }
+    }
 }
 
 /// What stays the same from window to window.
@@ -309,7 +320,7 @@ impl<I: Intersector> Run<'_, I> {
             tally.unwitnessed += 1;
             return tally;
         };
-        let is_band = bounds.low <= ray.t_max && bounds.high == f64::INFINITY;
+        let is_band = bounds.is_open(ray.t_max);
         tally.band += u64::from(is_band);
         tally.witnessed += u64::from(!is_band);
         if !truth::allows(&bounds, &ray, answer.as_ref()) {
@@ -396,9 +407,7 @@ pub(super) fn verdict(
         }
     }
     let bounds = first(&scratch.seen);
-    let is_band = bounds.low <= ray.t_max
-        && bounds.low < f64::INFINITY
-        && (bounds.high > ray.t_max || bounds.high == f64::INFINITY);
+    let is_band = bounds.is_open(ray.t_max);
     let lacks_inner =
         |seen: &Seen| seen.bounds.interval.low <= ray.t_max && !meshes.has_inner(seen.solid);
     Verdict::Right {

@@ -13,7 +13,7 @@ use crate::math::{Bounds, Ray};
 
 use super::mesh_frame::MeshFrame;
 use super::open_ends::OpenEnds;
-use super::placed::Window;
+use super::placed::{PlacedSolid, Window};
 use super::prism::{Prisms, Side, prisms};
 use super::sandwich::{Crossings, SolidBounds, solid_bounds};
 
@@ -21,9 +21,7 @@ use super::sandwich::{Crossings, SolidBounds, solid_bounds};
 const NONE: u32 = u32::MAX;
 
 /// Both prisms of every solid of a window.
-pub(crate) struct Meshes<'a> {
-    /// The solids.
-    pub window: &'a Window,
+pub(crate) struct Meshes {
     /// The sides of each prism.
     pub segments: u32,
     /// A box around each solid, in the world.
@@ -67,14 +65,14 @@ pub(crate) struct Scratch {
     pub seen: Vec<Seen>,
 }
 
-impl<'a> Meshes<'a> {
+impl Meshes {
     /// Builds the meshes and Embree's hierarchy over them.
     ///
     /// # Errors
     /// When Embree refuses.
     pub fn new(
         device: &Device,
-        window: &'a Window,
+        window: &Window,
         frame: &MeshFrame,
         segments: u32,
     ) -> Result<Self, embree::Error> {
@@ -97,17 +95,8 @@ impl<'a> Meshes<'a> {
         let (inner, outer) = (mesh(Side::Inscribed)?, mesh(Side::Circumscribed)?);
         let of_solids = window.solids.par_iter();
         Ok(Self {
-            window,
             segments,
-            boxes: of_solids
-                .clone()
-                .map(|solid| {
-                    solid
-                        .cylinder
-                        .bounds()
-                        .transformed(&solid.frame.world_from_object)
-                })
-                .collect(),
+            boxes: of_solids.clone().map(PlacedSolid::bounds).collect(),
             open_ends: of_solids.map(|solid| OpenEnds::new(solid, frame)).collect(),
             inner,
             outer,

@@ -109,6 +109,11 @@ impl Interval {
         }
     }
 
+    /// Whether a hit and a miss are both allowed for a ray that ends at `t_max`.
+    pub fn is_open(&self, t_max: f64) -> bool {
+        self.low <= t_max && self.low < f64::INFINITY && self.allows(None, t_max)
+    }
+
     /// Whether an answer for a ray that ends at `t_max` is allowed.
     pub fn allows(&self, t: Option<f64>, t_max: f64) -> bool {
         match t {
@@ -124,7 +129,8 @@ pub(crate) struct SolidBounds {
     /// Of the first hit of this solid.
     pub interval: Interval,
     /// The crossing of the inner prism that stands for the first hit, if the
-    /// ray starts outside of the outer prism or inside of the inner one.
+    /// ray starts outside of the outer prism or inside of the inner one and
+    /// that crossing is certain.
     pub inner: Option<f64>,
     /// No hit of this solid is after this.
     pub last: f64,
@@ -159,7 +165,8 @@ pub(crate) fn solid_bounds(
         }
     };
     if !outer.starts_inside() {
-        let high = match (enters, enters && is_certain(outer.enter)) {
+        let is_certain_entry = enters && is_certain(outer.enter);
+        let high = match (enters, is_certain_entry) {
             (_, true) => inner.enter,
             (true, false) => exit(),
             (false, false) => f64::INFINITY,
@@ -168,12 +175,13 @@ pub(crate) fn solid_bounds(
             || inner.starts_inside()
             || (enters && (inner.enter < outer.enter || inner.leave == f64::INFINITY))
             || inner.last_leave > outer.last_leave;
-        return bounds(outer.enter, high, enters.then_some(inner.enter), is_odd);
+        let inner = is_certain_entry.then_some(inner.enter);
+        return bounds(outer.enter, high, inner, is_odd);
     }
     let is_odd = inner.last_leave > outer.last_leave || (enters && inner.leave == f64::INFINITY);
     if inner.starts_inside() {
-        let low = inner.last_leave;
-        bounds(low, exit(), Some(low), is_odd)
+        let (low, high) = (inner.last_leave, exit());
+        bounds(low, high, high.is_finite().then_some(low), is_odd)
     } else if enters {
         bounds(t_min, exit(), None, is_odd)
     } else {

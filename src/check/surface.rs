@@ -102,6 +102,14 @@ impl<'a> LocalRay<'a> {
         (height, point - self.axis * height)
     }
 
+    /// Whether the point at a parameter is farther than `margin` from the planes
+    /// of the discs that the solid does not have, on its side of them.
+    pub fn is_between_ends(&self, t: f64, margin: f64) -> bool {
+        let (height, _) = self.at(t);
+        let caps = self.solid.cylinder.caps();
+        (caps.at_p0() || height > margin) && (caps.at_p1() || height < self.length - margin)
+    }
+
     /// What is wrong with the part and the normal that an answer names, for a
     /// first hit between `low` and `high`. Without a part, any part may be hit.
     pub fn wrong_surface(

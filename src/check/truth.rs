@@ -9,7 +9,9 @@
 //! `δ`. So they stand for the outer and the inner prism, with exact first hits
 //! in place of triangles, and the same bounds follow (`sandwich`).
 //!
-//! Of a tube only the lower bound is used.
+//! A crossing of a tube is certain if its height is more than `2 δ` from the
+//! missing discs. Of a ray that comes in through one, only the lower bound is
+//! used: there is but the first hit of each cylinder to go by.
 
 use crate::math::Ray;
 use crate::oracle::{self, CylinderTruth};
@@ -72,7 +74,8 @@ fn candidates<'a>(window: &'a Window, ray: &'a Ray) -> impl Iterator<Item = &'a 
 
 fn displaced_bounds(solid: &PlacedSolid, ray: &Ray) -> Option<Interval> {
     let cylinder = &solid.cylinder;
-    let leeway = LEEWAY * LocalRay::new(solid, ray).rounding_at_solid();
+    let local = LocalRay::new(solid, ray);
+    let leeway = LEEWAY * local.rounding_at_solid();
     let grown = displaced(cylinder, leeway)?;
     let shrunk = displaced(cylinder, -leeway)?;
     let endless = Ray {
@@ -84,8 +87,10 @@ fn displaced_bounds(solid: &PlacedSolid, ray: &Ray) -> Option<Interval> {
         crossings(&oracle::placed_first_hit(cylinder, placement, &endless))
     };
     let (outer, inner) = (first(&grown), first(&shrunk));
-    let is_closed = cylinder.caps() == Caps::Both;
-    let Interval { low, high } = solid_bounds(&outer, &inner, ray.t_min, |_| is_closed).interval;
+    let is_certain = |t: f64| {
+        cylinder.caps() == Caps::Both || (t.is_finite() && local.is_between_ends(t, 2.0 * leeway))
+    };
+    let Interval { low, high } = solid_bounds(&outer, &inner, ray.t_min, is_certain).interval;
     // The parameters were rounded to nearest.
     Some(Interval {
         low: if low.is_finite() {
