@@ -2,10 +2,12 @@
 //! and the proof beside them.
 
 pub mod bench;
+pub mod capi;
 pub mod cases;
 pub mod check;
 pub mod embree;
 pub mod math;
+pub mod mesh_file;
 pub mod oracle;
 pub mod render;
 pub mod report;

@@ -44,6 +44,17 @@ fn help_of_every_command_mentions_every_flag() {
                 "--max-memory",
                 "--report",
                 "--replay",
+            ],
+        ),
+        (
+            "tessellate",
+            &[
+                "--output",
+                "-o",
+                "--segments",
+                "--inscribed",
+                "--circumscribed",
+                "--max-memory",
             ][..],
         ),
     ] {
@@ -138,7 +149,7 @@ fn document_has_every_flag_column_and_json_key() {
             missing.push(word.to_owned());
         }
     };
-    for command in ["render", "trace", "info", "check"] {
+    for command in ["render", "trace", "info", "check", "tessellate"] {
         let (_, help, _) = cyltrace(&[command, "--help"]);
         help.split(|c: char| c.is_whitespace() || c == ',')
             .filter(|word| word.starts_with("--") && word.len() > 2)
@@ -155,6 +166,7 @@ fn document_has_every_flag_column_and_json_key() {
     };
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/minimal.toml");
     let (rays, hits, picture) = (at("rays.csv"), at("hits.csv"), at("a.png"));
+    let mesh = at("a.ply");
     std::fs::write(&rays, "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n").expect("written");
     for arguments in [
         &["info", scene, "--json", "-"][..],
@@ -163,6 +175,7 @@ fn document_has_every_flag_column_and_json_key() {
         ],
         &["trace", scene, "--rays", &rays, "-o", &hits, "--json", "-"],
         &["check", scene, "--rays", "100", "--json", "-"],
+        &["tessellate", scene, "-o", &mesh, "--json", "-"],
     ] {
         let (_, out, err) = cyltrace(arguments);
         let figures: serde_json::Value = serde_json::from_str(&out).expect(&err);

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use cyltrace::render::{Film, RenderError, Settings, render, workers};
+use cyltrace::render::{Film, RenderError, Settings, render};
 use cyltrace::scene::{
     self, Camera, CylinderRecord, Frame, Integrator, Material, MaterialIndex, Projection,
     Prototype, Scene, Sky, Sun,
 };
 use cyltrace::solid::{Caps, Cylinder};
-use cyltrace::tracer::{Options, Tracer};
+use cyltrace::tracer::{Options, Tracer, workers};
 use glam::DVec3;
 
 const SIZE: u32 = 24;

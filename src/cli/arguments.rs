@@ -8,6 +8,7 @@ use cyltrace::cases::{Family, Inputs};
 use cyltrace::check::{Class, Replay};
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{Film, Integrator};
+use cyltrace::solid::tessellation::{GREATEST_SEGMENTS, LEAST_SEGMENTS};
 
 use super::memory;
 use super::target::is_standard_stream;
@@ -25,6 +26,7 @@ pub enum Command {
     Render(RenderArguments),
     Trace(TraceArguments),
     Info(InfoArguments),
+    Tessellate(TessellateArguments),
     Bench(BenchArguments),
     Stress(StressArguments),
     Check(CheckArguments),
@@ -117,6 +119,38 @@ pub struct InfoArguments {
     /// The scene file
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Write a scene as a mesh of prisms, with the proven deviation
+#[derive(Args, Debug)]
+pub struct TessellateArguments {
+    /// The scene file
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// The mesh: a name ending in .obj (text, with a group for each placed
+    /// prototype) or .ply (binary, f64)
+    #[arg(long, short, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Sides of a prism
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 64,
+        value_parser = parse_segments,
+        allow_negative_numbers = true
+    )]
+    pub segments: u32,
+    /// Prisms with their corners on the rims [default]
+    #[arg(long, conflicts_with = "circumscribed")]
+    pub inscribed: bool,
+    /// Prisms whose sides touch the walls from without
+    #[arg(long)]
+    pub circumscribed: bool,
+    /// Refuse to write more than SIZE bytes, such as 500MB or 4GiB
+    #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = memory::parse_size)]
+    pub max_memory: u64,
     #[command(flatten)]
     pub common: Common,
 }
@@ -340,6 +374,15 @@ fn parse_size(text: &str) -> Result<Film, String> {
         })
     });
     size.ok_or_else(|| "it must be two whole numbers above 0, such as 1280x720".to_owned())
+}
+
+fn parse_segments(text: &str) -> Result<u32, String> {
+    let segments = text.parse().ok();
+    segments
+        .filter(|segments| (LEAST_SEGMENTS..=GREATEST_SEGMENTS).contains(segments))
+        .ok_or_else(|| {
+            format!("it must be a whole number from {LEAST_SEGMENTS} to {GREATEST_SEGMENTS}")
+        })
 }
 
 fn parse_inputs(text: &str) -> Result<Inputs, String> {

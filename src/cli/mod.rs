@@ -19,6 +19,7 @@ mod render;
 mod scene;
 mod stress;
 mod target;
+mod tessellate;
 mod text;
 mod trace;
 
@@ -78,6 +79,7 @@ fn run_command(arguments: &Arguments) -> anyhow::Result<u8> {
         Command::Render(arguments) => render::run(arguments).map(|()| GOOD),
         Command::Trace(arguments) => trace::run(arguments).map(|()| GOOD),
         Command::Info(arguments) => info::run(arguments).map(|()| GOOD),
+        Command::Tessellate(arguments) => tessellate::run(arguments).map(|()| GOOD),
         Command::Stress(arguments) => stress::run(arguments),
         Command::Bench(arguments) => bench::run(arguments).map(|()| GOOD),
         Command::Check(arguments) => check::run(arguments),

@@ -40,7 +40,7 @@ pub fn build(common: &Common, scene: &Arc<Scene>) -> anyhow::Result<Tracer> {
 /// The threads that trace.
 pub fn workers(common: &Common) -> anyhow::Result<ThreadPool> {
     // The error's source has the same text as the error.
-    cyltrace::render::workers(common.threads).map_err(|error| match common.threads {
+    cyltrace::tracer::workers(common.threads).map_err(|error| match common.threads {
         Some(threads) => anyhow!("cannot start {threads} threads: {error}; try fewer"),
         None => anyhow!("cannot start threads: {error}"),
     })

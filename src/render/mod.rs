@@ -12,7 +12,6 @@ mod output;
 mod sampler;
 mod srgb;
 mod tiles;
-mod workers;
 
 use std::sync::atomic::AtomicBool;
 
@@ -26,7 +25,6 @@ pub use new_file::{FileError, NewFile};
 pub use output::{Format, Output, OutputError, png_bytes};
 pub use sampler::PixelSampler;
 pub use srgb::encode as srgb_encode;
-pub use workers::workers;
 
 use crate::scene::{self, AimedCamera, Integrator, Scene};
 use crate::tracer::Tracer;
@@ -108,7 +106,7 @@ pub enum RenderError {
 }
 
 /// Renders the scene of `tracer` on the threads of `workers` (see
-/// [`workers()`]).
+/// [`crate::tracer::workers`]).
 ///
 /// `progress` is told the number of pixels done since the last call, from any
 /// of the threads. The rendering ends within a pixel of every thread when

@@ -16,6 +16,7 @@ mod hit;
 mod prototype;
 mod query;
 mod resolve;
+mod workers;
 
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -24,6 +25,7 @@ pub use all_hits::{AllHits, DEFAULT_BATCH};
 pub use build::TracerError;
 pub use estimate::MemoryEstimate;
 pub use hit::Hit;
+pub use workers::workers;
 
 use crate::embree::{Device, DeviceOptions, MaxIsa};
 use crate::math::{Bounds, Ray, power_of_two, power_of_two_below};

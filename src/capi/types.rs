@@ -1,0 +1,251 @@
+//! The structures of `include/cyltrace.h`, field by field.
+
+use std::ffi::c_char;
+use std::ptr;
+
+use glam::DVec3;
+
+use crate::check::{Finding, Place};
+use crate::math::Ray;
+use crate::scene::GREATEST_DEPTH;
+use crate::solid::{Crossing, Part};
+use crate::tracer::Hit;
+
+/// Most placements inside each other.
+pub const CYLTRACE_GREATEST_DEPTH: usize = 64;
+
+const _: () = assert!(CYLTRACE_GREATEST_DEPTH == GREATEST_DEPTH);
+
+/// [`CyltraceHit::tells`]: `normal` is told.
+pub const CYLTRACE_TELLS_NORMAL: u32 = 1;
+/// [`CyltraceHit::tells`]: `primitive`, `part` and `instance` are told.
+pub const CYLTRACE_TELLS_PLACE: u32 = 2;
+
+/// [`CyltraceHit::part`]: the curved wall.
+pub const CYLTRACE_SIDE: u32 = 0;
+/// [`CyltraceHit::part`]: the disc at `p0`.
+pub const CYLTRACE_CAP0: u32 = 1;
+/// [`CyltraceHit::part`]: the disc at `p1`.
+pub const CYLTRACE_CAP1: u32 = 2;
+
+/// [`CyltraceHit::crossing`]: the ray goes into the solid.
+pub const CYLTRACE_ENTER: u32 = 0;
+/// [`CyltraceHit::crossing`]: the ray goes out of it.
+pub const CYLTRACE_LEAVE: u32 = 1;
+
+/// `struct cyltrace_ray`: see [`Ray`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CyltraceRay {
+    /// The point at `t = 0`.
+    pub origin: [f64; 3],
+    /// Any direction of any length.
+    pub direction: [f64; 3],
+    /// Least `t` that counts.
+    pub t_min: f64,
+    /// Greatest `t` that counts.
+    pub t_max: f64,
+}
+
+impl From<&Ray> for CyltraceRay {
+    fn from(ray: &Ray) -> Self {
+        Self {
+            origin: ray.origin.to_array(),
+            direction: ray.direction.to_array(),
+            t_min: ray.t_min,
+            t_max: ray.t_max,
+        }
+    }
+}
+
+impl From<&CyltraceRay> for Ray {
+    fn from(ray: &CyltraceRay) -> Self {
+        Self {
+            origin: ray.origin.into(),
+            direction: ray.direction.into(),
+            t_min: ray.t_min,
+            t_max: ray.t_max,
+        }
+    }
+}
+
+/// `struct cyltrace_hit`: see [`Hit`]; all zeros is a miss.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CyltraceHit {
+    /// The ray's parameter.
+    pub t: f64,
+    /// The hit point.
+    pub point: [f64; 3],
+    /// The outward unit normal.
+    pub normal: [f64; 3],
+    /// Bounds the distance of `point` from the true surface.
+    pub error: f64,
+    /// Angle around the axis over 2π.
+    pub u: f64,
+    /// Position along the axis.
+    pub v: f64,
+    /// 1 for a hit, 0 for a miss; then nothing else counts.
+    pub is_hit: u32,
+    /// Which fields beyond `t` are told, where a caller answers.
+    pub tells: u32,
+    /// The prototype that holds the solid; 0 is the scene itself.
+    pub prototype: u32,
+    /// The solid's number in its prototype.
+    pub primitive: u32,
+    /// The part of the surface.
+    pub part: u32,
+    /// Into the solid or out of it.
+    pub crossing: u32,
+    /// The material's number.
+    pub material: u32,
+    /// How many of `instance` count.
+    pub instance_count: u32,
+    /// The placements from the scene inward.
+    pub instance: [u32; CYLTRACE_GREATEST_DEPTH],
+}
+
+impl CyltraceHit {
+    /// No hit.
+    pub const MISS: Self = Self {
+        t: 0.0,
+        point: [0.0; 3],
+        normal: [0.0; 3],
+        error: 0.0,
+        u: 0.0,
+        v: 0.0,
+        is_hit: 0,
+        tells: 0,
+        prototype: 0,
+        primitive: 0,
+        part: 0,
+        crossing: 0,
+        material: 0,
+        instance_count: 0,
+        instance: [0; CYLTRACE_GREATEST_DEPTH],
+    };
+
+    /// What a caller's intersector tells; `None` for a miss. The error is a
+    /// message: a place is told that cannot be.
+    pub(super) fn finding(&self) -> Result<Option<Finding>, String> {
+        if self.is_hit == 0 {
+            return Ok(None);
+        }
+        let tells = |what| self.tells & what != 0;
+        let place = tells(CYLTRACE_TELLS_PLACE).then(|| self.place());
+        Ok(Some(Finding {
+            t: self.t,
+            normal: tells(CYLTRACE_TELLS_NORMAL).then(|| DVec3::from(self.normal)),
+            place: place.transpose()?,
+        }))
+    }
+
+    fn place(&self) -> Result<Place, String> {
+        let part = match self.part {
+            CYLTRACE_SIDE => Part::Side,
+            CYLTRACE_CAP0 => Part::Cap0,
+            CYLTRACE_CAP1 => Part::Cap1,
+            part => return Err(format!("a hit's part is {part}: there is no such part")),
+        };
+        let count = self.instance_count;
+        let instance = self.instance.get(..count as usize).ok_or_else(|| {
+            format!("a hit's instance_count is {count}: it is at most {CYLTRACE_GREATEST_DEPTH}")
+        })?;
+        Ok(Place {
+            instance: instance.to_vec(),
+            primitive: self.primitive,
+            part,
+        })
+    }
+}
+
+impl From<&Hit> for CyltraceHit {
+    fn from(hit: &Hit) -> Self {
+        let mut instance = [0; CYLTRACE_GREATEST_DEPTH];
+        instance[..hit.instance.len()].copy_from_slice(&hit.instance);
+        Self {
+            t: hit.t,
+            point: hit.point.to_array(),
+            normal: hit.normal.to_array(),
+            error: hit.error,
+            u: hit.u,
+            v: hit.v,
+            is_hit: 1,
+            tells: CYLTRACE_TELLS_NORMAL | CYLTRACE_TELLS_PLACE,
+            prototype: hit.prototype.0,
+            primitive: hit.primitive,
+            part: match hit.part {
+                Part::Side => CYLTRACE_SIDE,
+                Part::Cap0 => CYLTRACE_CAP0,
+                Part::Cap1 => CYLTRACE_CAP1,
+            },
+            crossing: match hit.crossing {
+                Crossing::Enter => CYLTRACE_ENTER,
+                Crossing::Leave => CYLTRACE_LEAVE,
+            },
+            material: hit.material.0.into(),
+            instance_count: hit.instance.len() as u32,
+            instance,
+        }
+    }
+}
+
+/// [`CyltraceCheckSettings::classes`]: rays of the scene's camera.
+pub const CYLTRACE_CAMERA: u32 = 1;
+/// [`CyltraceCheckSettings::classes`]: from around the scene into it.
+pub const CYLTRACE_SPHERE: u32 = 2;
+/// [`CyltraceCheckSettings::classes`]: from inside solids.
+pub const CYLTRACE_INSIDE: u32 = 4;
+/// [`CyltraceCheckSettings::classes`]: aimed at silhouettes and rims.
+pub const CYLTRACE_GRAZING: u32 = 8;
+/// [`CyltraceCheckSettings::classes`]: parallel to axes.
+pub const CYLTRACE_AXIAL: u32 = 16;
+
+/// `struct cyltrace_check_settings`: zero or null in a field is its default.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct CyltraceCheckSettings {
+    /// Rays of each class.
+    pub rays: u64,
+    /// Chooses the rays.
+    pub seed: u64,
+    /// Bytes that meshes may take.
+    pub max_memory: u64,
+    /// Violations that are listed.
+    pub most_listed: u64,
+    /// Sides of the prisms.
+    pub segments: *const u32,
+    /// How many numbers of sides there are.
+    pub segment_count: usize,
+    /// Bits of the classes to check.
+    pub classes: u32,
+    /// Threads that call the intersector.
+    pub threads: u32,
+}
+
+/// `struct cyltrace_check_outcome`.
+#[repr(C)]
+#[derive(Debug)]
+pub struct CyltraceCheckOutcome {
+    /// Rays, counted once for each row of the table.
+    pub rays: u64,
+    /// Wrong answers.
+    pub violations: u64,
+    /// Rows of which more than half of the rays had no witness.
+    pub unwitnessed_rows: u64,
+    /// The outcome for people.
+    pub text: *mut c_char,
+    /// The outcome for programs.
+    pub json: *mut c_char,
+}
+
+impl CyltraceCheckOutcome {
+    /// Of a check that could not run.
+    pub const NOTHING: Self = Self {
+        rays: 0,
+        violations: 0,
+        unwitnessed_rows: 0,
+        text: ptr::null_mut(),
+        json: ptr::null_mut(),
+    };
+}

@@ -1,0 +1,90 @@
+//! Stanford PLY, `binary_little_endian 1.0`: three f64 a vertex, and triangles
+//! as lists of a `uchar` count and `uint` vertices.
+//!
+//! All vertices stand before all triangles, so the scene is walked twice.
+
+use std::io::Write;
+
+use super::walk::instances;
+use super::{MeshFileError, Plan, Progress};
+use crate::scene::Scene;
+use crate::solid::tessellation::{prism_size, prism_triangles};
+
+/// Three f64.
+const VERTEX_BYTES: u128 = 24;
+
+/// A `uchar` and three `uint`.
+const TRIANGLE_BYTES: u128 = 13;
+
+pub(super) fn write(
+    scene: &Scene,
+    plan: &Plan,
+    name: &str,
+    writer: &mut dyn Write,
+    progress: &mut Progress,
+) -> Result<(), MeshFileError> {
+    let vertices = plan.vertices();
+    if vertices > u128::from(u32::MAX) {
+        return Err(MeshFileError::Vertices { vertices });
+    }
+    writer.write_all(header(plan, name).as_bytes())?;
+    let mut bytes = Vec::new();
+    instances(scene, &mut |instance| {
+        for record in &instance.prototype.cylinders {
+            let vertices = instance.vertices(record, plan.segments(), plan.fit());
+            bytes.clear();
+            for vertex in &vertices {
+                bytes.extend(vertex.to_array().into_iter().flat_map(f64::to_le_bytes));
+            }
+            writer.write_all(&bytes)?;
+            proceed(progress, vertices.len())?;
+        }
+        Ok(())
+    })?;
+    let mut first = 0_u32;
+    instances(scene, &mut |instance| {
+        for record in &instance.prototype.cylinders {
+            let caps = record.cylinder().caps();
+            let triangles = prism_triangles(caps, plan.segments());
+            bytes.clear();
+            for &triangle in &triangles {
+                let corners = instance.outward(triangle).map(|corner| first + corner);
+                bytes.push(3);
+                bytes.extend(corners.into_iter().flat_map(u32::to_le_bytes));
+            }
+            writer.write_all(&bytes)?;
+            // The greatest first is the number of all vertices, which fits.
+            first += prism_size(caps, plan.segments()).0 as u32;
+            proceed(progress, triangles.len())?;
+        }
+        Ok(())
+    })
+}
+
+/// The size of the file.
+pub(super) fn bytes(plan: &Plan, name: &str) -> u128 {
+    let vertices = plan.vertices().saturating_mul(VERTEX_BYTES);
+    let triangles = plan.triangles().saturating_mul(TRIANGLE_BYTES);
+    vertices
+        .saturating_add(triangles)
+        .saturating_add(header(plan, name).len() as u128)
+}
+
+fn proceed(progress: &mut Progress, items: usize) -> Result<(), MeshFileError> {
+    match progress(items as u64).is_break() {
+        true => Err(MeshFileError::Cancelled),
+        false => Ok(()),
+    }
+}
+
+fn header(plan: &Plan, name: &str) -> String {
+    let lines = plan.comment(name);
+    format!(
+        "ply\nformat binary_little_endian 1.0\n{}element vertex {}\nproperty double x\n\
+         property double y\nproperty double z\nelement face {}\n\
+         property list uchar uint vertex_indices\nend_header\n",
+        lines.map(|line| format!("comment {line}\n")).concat(),
+        plan.vertices(),
+        plan.triangles()
+    )
+}

@@ -1,0 +1,296 @@
+//! Calls as C makes them: answers are the tracer's, and what is wrong is
+//! refused with a message.
+
+use std::collections::HashSet;
+use std::ffi::{CStr, CString, c_char, c_void};
+use std::ptr::{null, null_mut};
+use std::sync::Mutex;
+use std::thread::{self, ThreadId};
+
+use cyltrace::capi::*;
+use cyltrace::math::{Random, Ray};
+use cyltrace::scene;
+use cyltrace::solid::{Crossing, Part};
+use cyltrace::tracer::{Options, Tracer};
+
+/// A loaded scene that is freed in the end.
+struct Loaded(*mut CyltraceScene);
+
+impl Loaded {
+    fn new(name: &str) -> Self {
+        let path = CString::new(format!("{}/{name}", super::ROOT)).expect("no NUL");
+        // SAFETY: a text with its NUL.
+        let scene = unsafe { cyltrace_scene_load(path.as_ptr()) };
+        assert!(!scene.is_null(), "{}", last_error());
+        Self(scene)
+    }
+}
+
+impl Drop for Loaded {
+    fn drop(&mut self) {
+        // SAFETY: it was loaded and is freed here alone.
+        unsafe { cyltrace_scene_free(self.0) };
+    }
+}
+
+fn last_error() -> String {
+    text(cyltrace_last_error())
+}
+
+fn text(pointer: *const c_char) -> String {
+    assert!(!pointer.is_null());
+    // SAFETY: the library's texts end with a NUL.
+    let text = unsafe { CStr::from_ptr(pointer) };
+    text.to_str().expect("UTF-8").to_owned()
+}
+
+#[test]
+fn rays_get_the_tracer_s_answers() {
+    let loaded = Loaded::new("scenes/minimal.toml");
+    let path = std::path::Path::new(super::ROOT).join("scenes/minimal.toml");
+    let scene = std::sync::Arc::new(scene::load(&path).expect("loads"));
+    let tracer = Tracer::new(scene, &Options::default()).expect("builds");
+    let centre = tracer.bounds().centre();
+    let mut rays: Vec<Ray> = (0..500)
+        .map(|number| {
+            let mut random = Random::new(1, number);
+            let from = centre + random.direction() * 9.0;
+            Ray::new(from, centre + random.direction() * 2.0 - from)
+        })
+        .collect();
+    rays[7].direction.x = f64::NAN;
+    let given: Vec<CyltraceRay> = rays.iter().map(CyltraceRay::from).collect();
+    let mut hits = vec![CyltraceHit::MISS; rays.len()];
+    let mut occluded = vec![7_u8; rays.len()];
+    let count = rays.len();
+    // SAFETY: the arrays have `count` elements.
+    let codes = unsafe {
+        [
+            cyltrace_closest(loaded.0, given.as_ptr(), count, hits.as_mut_ptr()),
+            cyltrace_occluded(loaded.0, given.as_ptr(), count, occluded.as_mut_ptr()),
+            cyltrace_closest(loaded.0, null(), 0, null_mut()),
+        ]
+    };
+    assert_eq!(codes, [CYLTRACE_OK; 3]);
+    let mut seen = 0;
+    for ((ray, hit), occluded) in rays.iter().zip(&hits).zip(occluded) {
+        let expected = tracer.closest(ray);
+        assert_eq!(
+            (hit.is_hit == 1, occluded),
+            (expected.is_some(), u8::from(expected.is_some()))
+        );
+        let Some(expected) = expected else {
+            assert_eq!(*hit, CyltraceHit::MISS);
+            continue;
+        };
+        seen += 1;
+        let parts = [Part::Side, Part::Cap0, Part::Cap1];
+        let crossings = [Crossing::Enter, Crossing::Leave];
+        assert_eq!(hit.t.to_bits(), expected.t.to_bits());
+        assert_eq!(hit.point, expected.point.to_array());
+        assert_eq!(hit.normal, expected.normal.to_array());
+        assert_eq!(
+            (hit.u, hit.v, hit.error),
+            (expected.u, expected.v, expected.error)
+        );
+        assert_eq!(
+            (hit.primitive, hit.prototype),
+            (expected.primitive, expected.prototype.0)
+        );
+        assert_eq!(parts[hit.part as usize], expected.part);
+        assert_eq!(crossings[hit.crossing as usize], expected.crossing);
+        assert_eq!(
+            hit.instance[..hit.instance_count as usize],
+            expected.instance
+        );
+    }
+    assert!((50..490).contains(&seen), "{seen}");
+}
+
+/// What the intersector of these tests does and has seen.
+struct User {
+    scene: *const CyltraceScene,
+    part: Option<u32>,
+    threads: Mutex<HashSet<ThreadId>>,
+}
+
+/// The library's own answers, of a part that may be wrong.
+unsafe extern "C" fn answer(
+    user: *mut c_void,
+    rays: *const CyltraceRay,
+    count: usize,
+    hits: *mut CyltraceHit,
+) {
+    // SAFETY: `check` passes a user that lives through the check, and the library
+    // `count` rays and hits.
+    unsafe {
+        let user = &*user.cast::<User>();
+        user.threads.lock().unwrap().insert(thread::current().id());
+        assert_eq!(cyltrace_closest(user.scene, rays, count, hits), CYLTRACE_OK);
+        if let Some(part) = user.part {
+            (*hits).part = part;
+        }
+    }
+}
+
+fn check(
+    scene: &Loaded,
+    settings: &CyltraceCheckSettings,
+    part: Option<u32>,
+) -> (i32, CyltraceCheckOutcome, usize) {
+    let user = User {
+        scene: scene.0,
+        part,
+        threads: Mutex::default(),
+    };
+    let mut outcome = CyltraceCheckOutcome::NOTHING;
+    // SAFETY: all of them are locals; `user` is shared by its mutex.
+    let code = unsafe {
+        let user = (&raw const user).cast_mut().cast();
+        cyltrace_check(scene.0, settings, Some(answer), user, &raw mut outcome)
+    };
+    (code, outcome, user.threads.lock().unwrap().len())
+}
+
+const SETTINGS: CyltraceCheckSettings = CyltraceCheckSettings {
+    rays: 2_000,
+    seed: 0,
+    max_memory: 0,
+    most_listed: 3,
+    segments: null(),
+    segment_count: 0,
+    classes: CYLTRACE_SPHERE | CYLTRACE_INSIDE,
+    threads: 1,
+};
+
+#[test]
+fn tracer_checked_through_c_holds_and_wrong_parts_do_not() {
+    let loaded = Loaded::new("scenes/minimal.toml");
+    let segments = [24];
+    let settings = CyltraceCheckSettings {
+        segments: segments.as_ptr(),
+        segment_count: 1,
+        ..SETTINGS
+    };
+    let (code, mut outcome, threads) = check(&loaded, &settings, None);
+    assert_eq!((code, threads), (CYLTRACE_OK, 1), "{}", text(outcome.text));
+    assert_eq!((outcome.violations, outcome.unwitnessed_rows), (0, 0));
+    assert!(outcome.rays >= 4_000);
+    let json: serde_json::Value = serde_json::from_str(&text(outcome.json)).expect("JSON");
+    assert_eq!(json["holds"], true);
+    assert_eq!(json["rays"], outcome.rays);
+    let classes = json["classes"].as_array().expect("a list");
+    let has = |class: &str| {
+        classes
+            .iter()
+            .any(|row| row["name"] == class && row["segments"] == 24)
+    };
+    assert!(has("sphere") && has("inside") && !has("axial"), "{json}");
+    // Freed twice: the second time there is nothing left.
+    for _ in 0..2 {
+        // SAFETY: of the check, and a local.
+        unsafe { cyltrace_check_outcome_free(&raw mut outcome) };
+        assert!(outcome.text.is_null() && outcome.json.is_null());
+    }
+
+    // Every hit told to be of the disc at p0.
+    let (code, mut outcome, _) = check(&loaded, &SETTINGS, Some(CYLTRACE_CAP0));
+    assert_eq!(code, CYLTRACE_VIOLATIONS);
+    assert!(outcome.violations > 100, "{}", text(outcome.text));
+    let json: serde_json::Value = serde_json::from_str(&text(outcome.json)).expect("JSON");
+    assert_eq!(json["holds"], false);
+    assert!(!json["listed"].as_array().expect("a list").is_empty());
+    // SAFETY: of the check, and a local.
+    unsafe { cyltrace_check_outcome_free(&raw mut outcome) };
+}
+
+#[test]
+fn what_cannot_be_checked_is_refused_with_its_reason() {
+    let loaded = Loaded::new("scenes/minimal.toml");
+    let two = [2];
+    for (settings, part, reason) in [
+        (SETTINGS, Some(9), "a hit's part is 9"),
+        (
+            CyltraceCheckSettings {
+                classes: 64,
+                ..SETTINGS
+            },
+            None,
+            "classes is 64",
+        ),
+        (
+            CyltraceCheckSettings {
+                segments: two.as_ptr(),
+                segment_count: 1,
+                ..SETTINGS
+            },
+            None,
+            "2 segments",
+        ),
+        (
+            CyltraceCheckSettings {
+                max_memory: 1,
+                ..SETTINGS
+            },
+            None,
+            "bytes",
+        ),
+    ] {
+        let (code, outcome, _) = check(&loaded, &settings, part);
+        assert_eq!(code, CYLTRACE_ERROR, "{reason}");
+        assert!(last_error().contains(reason), "{reason}: {}", last_error());
+        assert!(outcome.text.is_null() && outcome.json.is_null());
+    }
+}
+
+#[test]
+fn null_pointers_and_missing_files_are_refused() {
+    let loaded = Loaded::new("scenes/minimal.toml");
+    let ray = CyltraceRay::from(&Ray::new(glam::DVec3::ZERO, glam::DVec3::X));
+    let mut outcome = CyltraceCheckOutcome::NOTHING;
+    // SAFETY: null, or locals.
+    unsafe {
+        assert!(cyltrace_scene_load(null()).is_null());
+        assert_eq!(last_error(), "cyltrace_scene_load: path is null");
+        assert!(cyltrace_scene_load(c"nowhere/a.toml".as_ptr()).is_null());
+        assert!(last_error().contains("nowhere/a.toml"), "{}", last_error());
+        let hits = null_mut();
+        for (code, reason) in [
+            (cyltrace_closest(null(), &raw const ray, 1, hits), "scene"),
+            (
+                cyltrace_closest(loaded.0, &raw const ray, 1, hits),
+                "an array",
+            ),
+            (cyltrace_closest(loaded.0, null(), 1, hits), "an array"),
+            (
+                cyltrace_occluded(loaded.0, &raw const ray, 1, null_mut()),
+                "an array",
+            ),
+        ] {
+            assert_eq!(code, CYLTRACE_ERROR, "{reason}");
+        }
+        assert!(last_error().starts_with("cyltrace_occluded: an array is null"));
+        let user = null_mut();
+        for (scene, closest, outcome, reason) in [
+            (
+                null(),
+                Some(answer as CyltraceClosestFunction),
+                &raw mut outcome,
+                "scene",
+            ),
+            (loaded.0.cast_const(), None, &raw mut outcome, "closest"),
+            (
+                loaded.0.cast_const(),
+                Some(answer as _),
+                null_mut(),
+                "outcome",
+            ),
+        ] {
+            let code = cyltrace_check(scene, null(), closest, user, outcome);
+            assert_eq!(code, CYLTRACE_ERROR);
+            assert_eq!(last_error(), format!("cyltrace_check: {reason} is null"));
+        }
+        cyltrace_scene_free(null_mut());
+        cyltrace_check_outcome_free(null_mut());
+    }
+}
