@@ -15,7 +15,7 @@
 //!   exact proof that they contain or are contained;
 //! - `rays`: classes of rays that reach what is hard;
 //! - `sandwich`: the bounds of the first hit from what a ray meets of both;
-//! - `surface`, `judge`: an answer held against the bounds, its part and normal
+//! - `surface`, `judge`, `verdict`: an answer held against the bounds, its part and normal
 //!   against what the bounds leave;
 //! - `truth`: the same sandwich with exact cylinders in place of prisms, on a
 //!   sample;
@@ -52,6 +52,7 @@ mod tally;
 mod truth;
 mod user_hits;
 mod user_mesh;
+mod verdict;
 
 pub use agreement::{Agreement, Disagreement, F32_TOLERANCE};
 pub use compare::{Progress, compare, compare_with};

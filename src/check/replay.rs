@@ -9,7 +9,7 @@ use crate::embree::{Device, DeviceOptions, Ray32};
 use crate::math::Ray;
 use crate::scene::Scene;
 
-use super::compare::{Subject, Verdict, chosen_windows, verdict};
+use super::compare::chosen_windows;
 use super::finding::{Finding, Intersector};
 use super::judge::first;
 use super::mesh_frame::MeshFrame;
@@ -18,6 +18,7 @@ use super::outcome::{Violation, Witness};
 use super::rays::RaySource;
 use super::settings::{CheckError, Class, Settings};
 use super::truth;
+use super::verdict::{Subject, Verdict, verdict};
 
 /// A ray to look at again.
 ///
