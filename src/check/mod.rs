@@ -17,6 +17,7 @@
 //! - `retrial`: suspects judged again, exactly, on the f32 triangles;
 //! - `compare`: all of it over many rays, and the outcome.
 
+mod curves;
 mod finding;
 mod outcome;
 mod settings;
