@@ -11,8 +11,9 @@
 //! right; with it, a direction that is not of unit length, hence every ray in an
 //! instance that scales, meets another shape. Its terms are of the eighth degree
 //! in lengths, and cancel in f32. The `u` of a second hit is chosen by what the
-//! first one was. A round curve takes a ray along its axis for a miss of the
-//! cone and forgets about the spheres.
+//! first one was. A ray whose discriminant rounds to a negative number is a miss
+//! before the discs are looked at, as rays along the axis may be. A round curve
+//! takes a ray along its axis for a miss of the cone and forgets about the spheres.
 
 use std::sync::Arc;
 
@@ -201,6 +202,32 @@ fn cone_curve_in_scaling_instance_meets_another_shape() {
             count.wrong() > count.hits / 5,
             &device,
             &format!("an instance scaled by {scale} is wrong for {count:?}"),
+        );
+    }
+}
+
+#[test]
+fn cone_curve_rays_along_its_axis_miss_the_cap() {
+    let device = device();
+    // Lengths in radii; the least share lost.
+    for (length, least_lost) in [(4.0, 0.02), (20.0, 0.02)] {
+        let mut count = Count::default();
+        for index in 0..4_000 {
+            let mut random = Random::new(SEED, index);
+            let line = cylinder(&mut random, 0.5, 0.5 * length);
+            let axis = line.p1() - line.p0();
+            let across = axis.cross(random.direction()).normalize();
+            let origin = line.p0() - axis + across * random.uniform(0.0, 0.4);
+            let ray = ray(origin.as_vec3(), axis.normalize().as_vec3());
+            let found = cone(&device, &line).closest_native(&ray, &mut ());
+            count.add(&line, &ray, found);
+        }
+        println!("along the axis of {length} r: {count:?}");
+        assert!(count.hits > 3_900, "{count:?}");
+        assert_still(
+            f64::from(count.lost) > least_lost * f64::from(count.hits),
+            &device,
+            &format!("rays along the axis of {length} r are wrong for {count:?}"),
         );
     }
 }

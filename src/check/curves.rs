@@ -39,11 +39,17 @@
 //! normal: `|Δt| |n·d| <= 2ε`. A hit and a miss never agree; near silhouettes
 //! the oracle clears them.
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
 use crate::embree::{Device, Error, GREATEST_COORDINATE, NativeHit, Ray32, Scene, SceneBuilder};
-use crate::math::power_of_two;
+use crate::math::{frobenius_norm, power_of_two};
 use crate::solid::{Caps, Cylinder};
+
+use super::mesh_frame::MeshFrame;
+use super::mesh_solid::{MeshMap, MeshSolid};
+use super::meshes::point;
+use super::placed::{PlacedSolid, Window};
 
 /// Half an ulp of 1 in f32.
 const U: f64 = power_of_two(-24);
@@ -60,26 +66,19 @@ pub(crate) struct Segment {
 }
 
 impl Segment {
-    /// The image of a solid; `None` if that is no circular cylinder, or none
-    /// that f32 holds.
-    pub fn new(cylinder: &Cylinder, mesh_from_object: &DAffine3) -> Option<Self> {
-        let axis = (cylinder.p1() - cylinder.p0()).normalize();
-        let matrix = mesh_from_object.matrix3;
-        let squared = matrix.transpose() * matrix;
+    /// The image of a solid under `M`, with `base` that of `p0`; `None` if that
+    /// is no circular cylinder, or none that f32 holds.
+    pub fn new(cylinder: &Cylinder, matrix: &DMat3, base: DVec3) -> Option<Self> {
+        let whole_axis = cylinder.p1() - cylinder.p0();
+        let axis = whole_axis.normalize();
+        let squared = matrix.transpose() * *matrix;
         let along = axis.dot(squared * axis);
         let trace = squared.x_axis.x + squared.y_axis.y + squared.z_axis.z;
         let across = (trace - along) / 2.0;
         let outer = DMat3::from_cols(axis * axis.x, axis * axis.y, axis * axis.z);
         let circular = DMat3::IDENTITY * across + outer * (along - across);
-        let rest = squared - circular;
-        let defect = libm::sqrt(
-            [rest.x_axis, rest.y_axis, rest.z_axis]
-                .map(DVec3::length_squared)
-                .iter()
-                .sum(),
-        );
-        let ends = [cylinder.p0(), cylinder.p1()]
-            .map(|end| mesh_from_object.transform_point3(end).as_vec3().to_array());
+        let defect = frobenius_norm(&(squared - circular));
+        let ends = [base, base + *matrix * whole_axis].map(|end| end.as_vec3().to_array());
         let radius = (cylinder.radius() * libm::sqrt(across)) as f32;
         let is_held = ends
             .as_flattened()
@@ -94,9 +93,15 @@ impl Segment {
         })
     }
 
+    fn of_placed(solid: &PlacedSolid, frame: &MeshFrame) -> Option<Self> {
+        let map = MeshMap::new(frame, &solid.frame);
+        let base = MeshSolid::new(frame, &map, solid).base;
+        Self::new(&solid.cylinder, &map.matrix, base)
+    }
+
     /// `ε` for a ray from `origin` with a hit after `way`.
     fn tolerance(&self, origin: f64, way: f64) -> f64 {
-        let [p0, p1] = self.ends.map(wide);
+        let [p0, p1] = self.ends.map(point);
         let radius = f64::from(self.radius);
         let length = (p1 - p0).length() + radius;
         let farther = p0.length().max(p1.length());
@@ -107,10 +112,6 @@ impl Segment {
 /// Embree's flags: an end without a disc is one that a neighbour continues.
 fn neighbours(caps: Caps) -> u8 {
     u8::from(!caps.at_p0()) | u8::from(!caps.at_p1()) << 1
-}
-
-fn wide(vector: [f32; 3]) -> DVec3 {
-    DVec3::from_array(vector.map(f64::from))
 }
 
 /// A hit that an intersector tells of.
@@ -129,12 +130,8 @@ pub(crate) enum Verdict {
     Agrees,
     /// The answer may be of a solid that has no curve.
     Unwitnessed,
-    /// They do not: the oracle is to be asked. `seen` is the curves' hit, in
-    /// lengths of the ray's direction.
-    Suspect {
-        /// The curves' hit.
-        seen: Option<f64>,
-    },
+    /// They do not: the oracle is to be asked.
+    Suspect,
 }
 
 /// The solids of a window as cone curves in one Embree scene.
@@ -146,6 +143,18 @@ pub(crate) struct ConeCurves {
 }
 
 impl ConeCurves {
+    /// Builds the curves of a window.
+    ///
+    /// # Errors
+    /// When Embree refuses.
+    pub fn of_window(device: &Device, window: &Window, frame: &MeshFrame) -> Result<Self, Error> {
+        let solids = window.solids.par_iter();
+        let segments: Vec<Option<Segment>> = solids
+            .map(|solid| Segment::of_placed(solid, frame))
+            .collect();
+        Self::new(device, &segments)
+    }
+
     /// Builds the curves of a window's solids, `None` for those without.
     ///
     /// # Errors
@@ -181,7 +190,7 @@ impl ConeCurves {
         {
             return Verdict::Unwitnessed;
         }
-        let speed = wide(ray.direction).length();
+        let speed = point(ray.direction).length();
         let hit = self
             .scene
             .closest_native(&with_unit_direction(ray, speed), &mut ());
@@ -200,7 +209,7 @@ impl ConeCurves {
             {
                 Verdict::Unwitnessed
             }
-            _ => Verdict::Suspect { seen },
+            _ => Verdict::Suspect,
         }
     }
 
@@ -208,10 +217,10 @@ impl ConeCurves {
     fn is_one_hit(&self, ray: &Ray32, way: f64, hit: &NativeHit) -> bool {
         let seen = f64::from(hit.t);
         let segment = &self.segments[hit.primitive as usize];
-        let tolerance = segment.tolerance(wide(ray.origin).length(), way.max(seen));
-        let slope = wide(hit.normal)
+        let tolerance = segment.tolerance(point(ray.origin).length(), way.max(seen));
+        let slope = point(hit.normal)
             .normalize_or_zero()
-            .dot(wide(ray.direction).normalize())
+            .dot(point(ray.direction).normalize())
             .abs();
         (way - seen).abs() * slope <= 2.0 * tolerance
     }
@@ -221,177 +230,11 @@ impl ConeCurves {
 fn with_unit_direction(ray: &Ray32, speed: f64) -> Ray32 {
     Ray32 {
         origin: ray.origin,
-        direction: (wide(ray.direction) / speed).as_vec3().to_array(),
+        direction: (point(ray.direction) / speed).as_vec3().to_array(),
         t_near: (f64::from(ray.t_near) * speed).min(f64::from(f32::MAX)) as f32,
         t_far: (f64::from(ray.t_far) * speed) as f32,
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::embree::DeviceOptions;
-    use crate::math::{Random, Ray};
-    use crate::oracle::{ExactAffine, placed_first_hit};
-
-    const SEED: u64 = 92;
-
-    fn random_cylinder(random: &mut Random, longest: f64) -> Cylinder {
-        let middle = random.direction() * random.uniform(0.0, 1.0);
-        let half = random.direction() * random.log_uniform(0.05, longest / 2.0);
-        let caps = [Caps::None, Caps::P0, Caps::P1, Caps::Both][random.below(4) as usize];
-        let radius = random.log_uniform(0.02, 0.2);
-        Cylinder::new(middle - half, middle + half, radius, caps).unwrap()
-    }
-
-    /// A rotation, a mirror or not, and a uniform scale; then a shift.
-    fn similarity(random: &mut Random) -> DAffine3 {
-        let axis = random.direction();
-        let aside = axis.cross(random.direction()).normalize();
-        let turn = DMat3::from_cols(axis, aside, axis.cross(aside));
-        let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
-        DAffine3 {
-            matrix3: turn * (sign * random.uniform(0.5, 1.5)),
-            translation: random.direction() * 0.5,
-        }
-    }
-
-    /// The first hit of the placed solids, by the oracle.
-    fn truth(solids: &[Cylinder], maps: &[ExactAffine], ray: &Ray) -> Option<Told> {
-        let hits = solids
-            .iter()
-            .zip(maps)
-            .zip(0..)
-            .filter_map(|((solid, map), number)| {
-                let hit = placed_first_hit(solid, map, ray).hit?;
-                Some(Told {
-                    t: hit.t_f64(),
-                    solid: Some(number),
-                })
-            });
-        hits.min_by(|one, other| one.t.total_cmp(&other.t))
-    }
-
-    fn ray(random: &mut Random) -> (Ray32, Ray) {
-        let origin = (random.direction() * 3.0).as_vec3();
-        let target = (random.direction() * random.uniform(0.0, 1.0)).as_vec3();
-        let direction = (target - origin) * random.log_uniform(0.1, 10.0) as f32;
-        let ray32 = Ray32 {
-            origin: origin.to_array(),
-            direction: direction.to_array(),
-            t_near: 0.0,
-            t_far: f32::INFINITY,
-        };
-        (ray32, Ray::new(origin.as_dvec3(), direction.as_dvec3()))
-    }
-
-    #[test]
-    fn segment_takes_circular_images_only() {
-        for case in 0..500 {
-            let mut random = Random::new(SEED, case);
-            let cylinder = random_cylinder(&mut random, 2.0);
-            let similar = similarity(&mut random);
-            let segment = Segment::new(&cylinder, &similar).unwrap();
-            let [p0, p1] = segment.ends.map(wide);
-            let ratio = f64::from(segment.radius) / (p1 - p0).length();
-            let axis = cylinder.p1() - cylinder.p0();
-            let expected = cylinder.radius() / axis.length();
-            assert!((ratio / expected - 1.0).abs() < 1e-4, "case {case}");
-
-            let axis = axis.normalize();
-            let outer = DMat3::from_cols(axis * axis.x, axis * axis.y, axis * axis.z);
-            let after = |first: DMat3| DAffine3 {
-                matrix3: similar.matrix3 * first,
-                ..similar
-            };
-            // Along the axis it stays a cylinder of the same radius.
-            let stretched = Segment::new(&cylinder, &after(DMat3::IDENTITY + outer)).unwrap();
-            let change = f64::from(stretched.radius) / f64::from(segment.radius);
-            assert!((change - 1.0).abs() < 1e-6, "case {case}: {change}");
-            let aside = axis.any_orthonormal_vector();
-            let across = DMat3::from_cols(aside * aside.x, aside * aside.y, aside * aside.z);
-            let shear = DMat3::from_cols(aside * axis.x, aside * axis.y, aside * axis.z);
-            for small in [across * 1e-6, shear * 1e-6] {
-                let map = after(DMat3::IDENTITY + small);
-                assert_eq!(Segment::new(&cylinder, &map), None, "case {case}");
-            }
-        }
-    }
-
-    /// Solids of all caps, seen with true answers and with wrong ones.
-    #[test]
-    fn true_answers_agree_and_wrong_ones_are_suspects() {
-        const SCENES: u64 = 40;
-        const RAYS: u64 = 100;
-        let device = Device::new(&DeviceOptions::default()).unwrap();
-        let (mut hits, mut suspects, mut missed) = (0, 0, 0);
-        for scene in 0..SCENES {
-            let mut random = Random::new(SEED, 1_000 + scene);
-            let solids: Vec<Cylinder> =
-                (0..20).map(|_| random_cylinder(&mut random, 2.0)).collect();
-            let maps: Vec<DAffine3> = (0..20).map(|_| similarity(&mut random)).collect();
-            let exact: Vec<ExactAffine> = maps.iter().map(ExactAffine::new).collect();
-            let segments: Vec<Option<Segment>> = solids
-                .iter()
-                .zip(&maps)
-                .map(|(solid, map)| Segment::new(solid, map))
-                .collect();
-            let curves = ConeCurves::new(&device, &segments).unwrap();
-            assert_eq!(curves.witnessed_solids(), 20);
-            for _ in 0..RAYS {
-                let (ray32, ray) = ray(&mut random);
-                let told = truth(&solids, &exact, &ray);
-                suspects += u64::from(curves.compare(&ray32, told) != Verdict::Agrees);
-                let Some(told) = told else { continue };
-                hits += 1;
-                let behind = Told {
-                    t: told.t + 0.01 / ray.direction.length(),
-                    ..told
-                };
-                missed += u64::from(curves.compare(&ray32, Some(behind)) == Verdict::Agrees);
-                assert!(matches!(
-                    curves.compare(&ray32, None),
-                    Verdict::Suspect { .. } | Verdict::Agrees
-                ));
-            }
-        }
-        println!("{hits} hits, {suspects} suspects; {missed} hits 0.01 behind agree");
-        assert!(
-            hits > 2_000 && suspects <= SCENES * RAYS / 500,
-            "{suspects}"
-        );
-        assert!(missed <= hits / 50, "{missed}");
-    }
-
-    #[test]
-    fn solid_without_curve_is_not_witnessed() {
-        let device = Device::new(&DeviceOptions::default()).unwrap();
-        let map = DAffine3::IDENTITY;
-        let curved = Cylinder::new(DVec3::ZERO, DVec3::Z, 0.5, Caps::Both).unwrap();
-        let curves = ConeCurves::new(&device, &[None, Segment::new(&curved, &map)]).unwrap();
-        let ray = Ray32 {
-            origin: [-3.0, 0.0, 0.5],
-            direction: [0.5, 0.0, 0.0],
-            t_near: 0.0,
-            t_far: f32::INFINITY,
-        };
-        let told = |t, solid| Some(Told { t, solid });
-        let seen = Some(5.0);
-        assert_eq!(curves.compare(&ray, told(5.0, Some(1))), Verdict::Agrees);
-        assert_eq!(curves.compare(&ray, told(5.0, None)), Verdict::Agrees);
-        assert_eq!(
-            curves.compare(&ray, told(4.0, Some(0))),
-            Verdict::Unwitnessed
-        );
-        assert_eq!(curves.compare(&ray, told(4.0, None)), Verdict::Unwitnessed);
-        assert_eq!(
-            curves.compare(&ray, told(4.0, Some(1))),
-            Verdict::Suspect { seen }
-        );
-        assert_eq!(
-            curves.compare(&ray, told(6.0, None)),
-            Verdict::Suspect { seen }
-        );
-        assert_eq!(curves.compare(&ray, None), Verdict::Suspect { seen });
-    }
-}
+mod tests;

@@ -10,18 +10,44 @@
 //! - `placed`: every solid of a window of the scene, with its placements composed
 //!   exactly; the tracer's own placement code has no part in it;
 //! - `mesh_frame`: the f32 space of the meshes, in which rays are exact;
+//! - `mesh_solid`: a placed solid there, in f64 with bounds of its errors;
 //! - `prism`, `containment`: prisms grown or shrunk by what f32 rounds, and the
 //!   exact proof that they contain or are contained;
 //! - `rays`: classes of rays that reach what is hard;
 //! - `sandwich`: the bounds of the first hit from what a ray meets of both;
+//! - `surface`, `judge`: an answer held against the bounds, its part and normal
+//!   against what the bounds leave;
+//! - `truth`: the same sandwich with exact cylinders in place of prisms, on a
+//!   sample;
 //! - `retrial`: suspects judged again, exactly, on the f32 triangles;
+//! - `curves`, `agreement`: how often Embree's own cone curves, another solver,
+//!   agree; the oracle judges where they do not;
 //! - `compare`: all of it over many rays, and the outcome.
 
+mod agreement;
+mod compare;
+mod containment;
 mod curves;
 mod finding;
+mod judge;
+mod mesh_frame;
+mod mesh_solid;
+mod meshes;
+mod open_ends;
 mod outcome;
+mod placed;
+mod prism;
+mod rays;
+mod replay;
+mod retrial;
+mod sandwich;
 mod settings;
+mod surface;
+mod tally;
+mod truth;
 
+pub use compare::{Progress, compare, compare_with};
 pub use finding::{Finding, Intersector, Place};
 pub use outcome::{ClassRow, Convergence, Outcome, Violation, Witness};
+pub use replay::{Replay, Replayed, replay};
 pub use settings::{CheckError, Class, Settings};

@@ -104,6 +104,9 @@ pub enum CheckError {
         /// [`Settings::max_memory`].
         allowed: u64,
     },
+    /// Progress was told to stop.
+    #[error("interrupted")]
+    Interrupted,
     /// Nothing to check.
     #[error("the scene holds no solid")]
     Empty,

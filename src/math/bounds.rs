@@ -26,6 +26,12 @@ impl Bounds {
         !self.lower.cmple(self.upper).all()
     }
 
+    /// Whether the boxes have a point in common.
+    #[must_use]
+    pub fn meets(&self, other: &Self) -> bool {
+        self.lower.cmple(other.upper).all() && other.lower.cmple(self.upper).all()
+    }
+
     /// The least box that holds both.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {

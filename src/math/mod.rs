@@ -14,7 +14,7 @@ mod rounding;
 
 pub use bounds::Bounds;
 pub use double_double::DoubleDouble;
-pub use placement::{ChildFromParent, PlacementErrors};
+pub use placement::{ChildFromParent, PlacementErrors, frobenius_norm};
 pub use random::Random;
 pub use ray::{Ray, RayOf};
 pub use real::{Real, RealVector, Wide, wide_cross, wide_square};

@@ -102,8 +102,10 @@ fn spectral_norm_bound(matrix: &DMat3) -> f64 {
     rows.max_element().sqrt() * (1.0 + 8.0 * UNIT_ROUNDOFF)
 }
 
-/// The root of the sum of the squares of the entries.
-fn frobenius_norm(matrix: &DMat3) -> f64 {
+/// The root of the sum of the squares of the entries, at least the factor by
+/// which the matrix lengthens any vector.
+#[must_use]
+pub fn frobenius_norm(matrix: &DMat3) -> f64 {
     (matrix.x_axis.length_squared()
         + matrix.y_axis.length_squared()
         + matrix.z_axis.length_squared())

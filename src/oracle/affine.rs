@@ -1,6 +1,6 @@
 //! Affine maps in exact numbers.
 
-use glam::DAffine3;
+use glam::{DAffine3, DMat3};
 
 use super::number::{Exact, ExactVector};
 
@@ -77,6 +77,22 @@ impl ExactAffine {
         &self.matrix.times(point) + &self.translation
     }
 
+    /// The map with every entry rounded to the nearest f64.
+    #[must_use]
+    pub fn rounded(&self) -> DAffine3 {
+        let [x, y, z] = self.matrix.columns().map(|column| column.rounded());
+        DAffine3 {
+            matrix3: DMat3::from_cols(x, y, z),
+            translation: self.translation.rounded(),
+        }
+    }
+
+    /// The matrix.
+    #[must_use]
+    pub fn matrix(&self) -> &ExactMatrix {
+        &self.matrix
+    }
+
     /// The translation.
     #[must_use]
     pub fn translation(&self) -> &ExactVector {
@@ -96,7 +112,7 @@ impl ExactAffine {
 
 #[cfg(test)]
 mod tests {
-    use glam::{DMat3, DVec3};
+    use glam::DVec3;
 
     use super::*;
     use crate::oracle::to_f64;

@@ -156,6 +156,12 @@ impl ExactVector {
         Self(vector.to_array().map(exact))
     }
 
+    /// The vector with every component rounded to the nearest f64.
+    #[must_use]
+    pub fn rounded(&self) -> glam::DVec3 {
+        glam::DVec3::from_array(self.0.each_ref().map(to_f64))
+    }
+
     /// The scalar product.
     #[must_use]
     pub fn dot(&self, other: &Self) -> Exact {

@@ -19,9 +19,9 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Camera, Lights, PixelSampler};
+use super::{Lights, PixelSampler};
 use crate::math::Ray;
-use crate::scene::{Integrator, Material};
+use crate::scene::{AimedCamera, Integrator, Material};
 use crate::tracer::{Hit, Tracer};
 
 /// How many rays were traced, by purpose.
@@ -59,7 +59,7 @@ impl std::ops::Add for RayCounts {
 pub(super) struct View<'a> {
     pub(super) tracer: &'a Tracer,
     pub(super) materials: &'a [Material],
-    pub(super) camera: Camera,
+    pub(super) camera: AimedCamera,
     pub(super) lights: Lights,
     pub(super) integrator: Integrator,
 }

@@ -4,7 +4,6 @@
 //! same scene, settings and seed give the same bytes for any number of
 //! threads.
 
-mod camera;
 mod film;
 mod integrator;
 mod lights;
@@ -20,7 +19,6 @@ use std::sync::atomic::AtomicBool;
 use rayon::ThreadPool;
 
 pub use crate::scene::GREATEST_PIXELS;
-pub use camera::Camera;
 pub use film::Film;
 pub use integrator::RayCounts;
 pub use lights::{Lights, SunLight};
@@ -30,7 +28,7 @@ pub use sampler::PixelSampler;
 pub use srgb::encode as srgb_encode;
 pub use workers::workers;
 
-use crate::scene::{self, Integrator, Scene};
+use crate::scene::{self, AimedCamera, Integrator, Scene};
 use crate::tracer::Tracer;
 use integrator::View;
 
@@ -131,7 +129,7 @@ pub fn render(
     let view = View {
         tracer,
         materials: &scene.materials,
-        camera: Camera::new(&scene.camera, &tracer.bounds(), settings.film),
+        camera: AimedCamera::new(&scene.camera, &tracer.bounds(), settings.film),
         lights: Lights::of(scene),
         integrator: settings.integrator,
     };

@@ -4,9 +4,10 @@
 //! `document` holds the keys as they stand there, with their places; the
 //! entries are lowered one kind a file (`solids`, `swc`, `placing`, `scatter`,
 //! `camera`, `settings`), streaming the rows of `table`s; `graph` checks
-//! how prototypes place each other. The result is a [`Scene`] that needs no
+//! how prototypes place each other. `aimed_camera` aims the camera. The result is a [`Scene`] that needs no
 //! further checks and knows nothing of files.
 
+mod aimed_camera;
 mod camera;
 mod census;
 mod defaults;
@@ -28,6 +29,7 @@ mod toml_message;
 mod transform;
 mod values;
 
+
 pub use census::Census;
 pub use description::{
     Camera, CylinderRecord, Film, Frame, Integrator, Material, MaterialIndex, Placement,
@@ -36,3 +38,4 @@ pub use description::{
 pub use error::{SceneError, Statement};
 pub use limits::{GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_PIXELS, GREATEST_STRETCH};
 pub use load::{SceneFile, load};
+pub use aimed_camera::AimedCamera;

@@ -1,4 +1,4 @@
-//! The camera: from positions on the film to rays.
+//! The camera as it is aimed: from positions on the film to rays.
 //!
 //! Film positions are in pixels, `x` to the right and `y` downward, with
 //! `(0, 0)` at the picture's upper left corner. Rays start at the eye
@@ -8,7 +8,8 @@
 use glam::{DVec2, DVec3};
 
 use crate::math::{Bounds, Ray};
-use crate::scene::{self, Film, Frame, Projection};
+
+use super::description::{Camera, Film, Frame, Projection};
 
 /// The part of the picture that an automatic frame leaves free on each side:
 /// enough to see that nothing is cut, too little to waste the picture.
@@ -28,7 +29,7 @@ const CLEARANCE: f64 = 0.25;
 
 /// A camera that is aimed.
 #[derive(Clone, Debug)]
-pub struct Camera {
+pub struct AimedCamera {
     eye: DVec3,
     right: DVec3,
     up: DVec3,
@@ -40,11 +41,11 @@ pub struct Camera {
     film: DVec2,
 }
 
-impl Camera {
+impl AimedCamera {
     /// The camera that `description` asks for, where `bounds` hold the scene
     /// (used by automatic frames) and the picture has the size `film`.
     #[must_use]
-    pub fn new(description: &scene::Camera, bounds: &Bounds, film: Film) -> Self {
+    pub fn new(description: &Camera, bounds: &Bounds, film: Film) -> Self {
         let size = DVec2::new(f64::from(film.width), f64::from(film.height));
         let shape = DVec2::new(size.x / size.y, 1.0);
         let (towards_eye, up, target) = match description.frame {
@@ -230,14 +231,14 @@ mod tests {
         Film { width, height }
     }
 
-    fn auto(projection: Projection) -> scene::Camera {
-        scene::Camera {
+    fn auto(projection: Projection) -> Camera {
+        Camera {
             projection,
             frame: Frame::Auto,
         }
     }
 
-    fn corners_on_film(camera: &Camera, bounds: &Bounds) -> Vec<DVec2> {
+    fn corners_on_film(camera: &AimedCamera, bounds: &Bounds) -> Vec<DVec2> {
         (0..8)
             .map(|corner| {
                 let pick = |axis: usize| {
@@ -272,7 +273,7 @@ mod tests {
             } else {
                 Projection::Orthographic { height: None }
             };
-            let camera = Camera::new(&auto(projection), &bounds, size);
+            let camera = AimedCamera::new(&auto(projection), &bounds, size);
             let mut touched = 0.0_f64;
             let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
             for on_film in corners_on_film(&camera, &bounds) {
@@ -316,7 +317,7 @@ mod tests {
             Projection::Orthographic { height: None },
             Projection::Orthographic { height: Some(9.0) },
         ] {
-            let camera = Camera::new(&auto(projection), &bounds, film(640, 360));
+            let camera = AimedCamera::new(&auto(projection), &bounds, film(640, 360));
             for case in 0..200 {
                 let point = bounds.lower
                     + bounds.extent() * DVec3::new(random.unit(), random.unit(), random.unit());
@@ -334,7 +335,7 @@ mod tests {
 
     #[test]
     fn look_at_orthographic_height_spans_the_picture() {
-        let description = scene::Camera {
+        let description = Camera {
             projection: Projection::Orthographic { height: Some(4.0) },
             frame: Frame::LookAt {
                 position: DVec3::new(0.0, -10.0, 0.0),
@@ -342,7 +343,7 @@ mod tests {
                 up: DVec3::Z,
             },
         };
-        let camera = Camera::new(&description, &Bounds::EMPTY, film(200, 100));
+        let camera = AimedCamera::new(&description, &Bounds::EMPTY, film(200, 100));
         assert_eq!(camera.ray(DVec2::ZERO).origin, DVec3::new(-4.0, -10.0, 2.0));
         assert_eq!(
             camera.ray(DVec2::new(200.0, 100.0)).origin,
@@ -353,7 +354,7 @@ mod tests {
 
     #[test]
     fn look_at_perspective_upper_pixel_looks_up() {
-        let description = scene::Camera {
+        let description = Camera {
             projection: Projection::Perspective { fov_degrees: 90.0 },
             frame: Frame::LookAt {
                 position: DVec3::ZERO,
@@ -361,7 +362,7 @@ mod tests {
                 up: DVec3::Z,
             },
         };
-        let camera = Camera::new(&description, &Bounds::EMPTY, film(100, 100));
+        let camera = AimedCamera::new(&description, &Bounds::EMPTY, film(100, 100));
         let direction = camera.ray(DVec2::new(50.0, 0.0)).direction;
         assert!((direction - DVec3::new(1.0, 0.0, 1.0)).length() < 1e-15);
         let left = camera.ray(DVec2::new(0.0, 50.0)).direction;

@@ -1,0 +1,228 @@
+//! The proof that a prism, as its f32 vertices have it, is inside its solid or
+//! holds it.
+//!
+//! *Inside.* The solid is convex. If all vertices are in it, so are all
+//! triangles, and whatever a ray meets of them is a point of the solid.
+//!
+//! *Around.* The triangles form a closed surface `S`: every edge belongs to two
+//! of them, run through in opposite directions. Let every triangle's plane have
+//! the solid on its inner side, where its normal does not point. From a point
+//! `x` of the solid's interior, every triangle that is not degenerate is seen
+//! from inside, at a positive solid angle; the angles add up to 4π times the
+//! number of times that `S` winds around `x`, a whole number. One positive angle
+//! makes it at least 1, and then every ray from `x` meets `S`, each time from
+//! inside to outside. So a line that enters the solid at `t1` and leaves it at
+//! `t2` meets `S` from outside at least once, always at `t <= t1`, and from inside
+//! at least once, always at `t >= t2`. (A degenerate triangle has no solid angle
+//! and is not in the way of lines nearby; points of the solid's surface are
+//! limits of interior ones.) That is all that is asked of the outer prism;
+//! neither its convexity nor that of the inner one is needed, which rounding
+//! would break.
+//!
+//! In exact numbers, with `a = p1 - p0`, `v` a vertex in the world, `L` and `T` the
+//! composed placement, `A` and `D` the adjugate and determinant of `L`:
+//!
+//! ```text
+//! x = A (v - T) - D p0                           D times the x of the vertex
+//! inside:  x·a from 0 to D a·a,   |x × a|² <= r² D² a·a
+//!
+//! n = (v1 - v0) × (v2 - v0),  m = Lᵀ n           the plane, seen from the solid
+//! g = n·(v0 - L p0 - T) - max(0, m·a)            its distance from the axis' ends
+//! around:  g >= 0,   g² a·a >= r² |m × a|²       the support of a disc: r |m × a| / |a|
+//! ```
+//!
+//! In f64 the same is tried first, in the mesh's units, with bounds of the
+//! errors (u = 2^-53; b, M, G, defect: see `mesh_solid`; | | of a matrix is its
+//! Frobenius norm). For `q = fl(v - b)`, off by `u |q| + u |b|`, and `y = fl(G q)`,
+//! whose product adds `3 u |G| |q|`:
+//!
+//! ```text
+//! |y - x| <= |G| (4 u |q| + u |b| + 2 defect (|q| + |b| u))       if defect <= 1/4
+//! ```
+//!
+//! since `x = G (I + E)⁻¹ q` with `|E| <= defect`. `x·a` and `x × a` then err by `|a|`
+//! times that and by `8 u |y| |a|` for `fl(a)` and the products. The normal of a
+//! triangle with the sides `d1` and `d2` from `v0` errs by `8 u |d1| |d2| = e`, `m`
+//! by `|M| (e + 5 u |n|) = f`, `m·a` and `m × a` by `|a| f + 8 u |m| |a|`, and
+//! `n·q` by `e |q| + |n| (5 u |q| + u |b|)`. All bounds are taken with twice the
+//! number of u, for what rounds in the bounds themselves; a NaN fails.
+
+use glam::DVec3;
+
+use crate::math::UNIT_ROUNDOFF;
+use crate::oracle::{Exact, ExactMatrix, ExactVector, exact};
+
+use super::mesh_frame::MeshFrame;
+use super::mesh_solid::MeshSolid;
+use super::placed::PlacedSolid;
+
+/// u, doubled for the roundings of the bounds.
+const UNIT: f64 = 2.0 * UNIT_ROUNDOFF;
+
+fn wide(vertex: [f32; 3]) -> DVec3 {
+    DVec3::from_array(vertex.map(f64::from))
+}
+
+/// Whether all vertices of the mesh are in the closed capped solid.
+pub(super) fn holds_all(solid: &MeshSolid, frame: &MeshFrame, vertices: &[[f32; 3]]) -> bool {
+    let mut exactly = None;
+    vertices.iter().all(|&vertex| {
+        is_surely_inside(solid, wide(vertex))
+            || exactly
+                .get_or_insert_with(|| ExactSolid::new(solid.placed))
+                .is_inside(&frame.exact_world_from_mesh(wide(vertex)))
+    })
+}
+
+/// Whether the closed surface of these triangles encloses the capped solid.
+pub(super) fn is_enclosed(
+    solid: &MeshSolid,
+    frame: &MeshFrame,
+    mut triangles: impl Iterator<Item = [[f32; 3]; 3]>,
+) -> bool {
+    let mut exactly = None;
+    let mut is_closed = false;
+    let all_outside = triangles.all(|corners| {
+        if is_surely_outside(solid, corners.map(wide)) {
+            is_closed = true;
+            return true;
+        }
+        let plane = Plane::new(frame, corners);
+        is_closed |= !plane.is_degenerate();
+        exactly
+            .get_or_insert_with(|| ExactSolid::new(solid.placed))
+            .is_behind(&plane)
+    });
+    all_outside && is_closed
+}
+
+/// In f64: true only if the point of the mesh is in the solid.
+fn is_surely_inside(solid: &MeshSolid, vertex: DVec3) -> bool {
+    let map = solid.map;
+    if !(map.defect <= 0.25) {
+        return false;
+    }
+    let (a, length) = (solid.axis, solid.length);
+    let q = vertex - solid.base;
+    let y = map.inverse * q;
+    let (reach, base) = (q.length(), solid.base.length());
+    let error =
+        map.squeeze * (4.0 * UNIT * reach + UNIT * base + 2.5 * map.defect * (reach + UNIT * base));
+    let error = length * (error + 8.0 * UNIT * y.length());
+
+    let (height, top) = (y.dot(a), a.length_squared());
+    let from_axis = y.cross(a).length();
+    error <= height
+        && height + error <= top * (1.0 - 8.0 * UNIT)
+        && from_axis * (1.0 + 8.0 * UNIT) + error <= solid.radius * length * (1.0 - 8.0 * UNIT)
+}
+
+/// In f64: true only if the solid is behind the triangle's plane, and the
+/// triangle is not degenerate.
+fn is_surely_outside(solid: &MeshSolid, [v0, v1, v2]: [DVec3; 3]) -> bool {
+    let (a, length, map) = (solid.axis, solid.length, solid.map);
+    let (d1, d2) = (v1 - v0, v2 - v0);
+    let n = d1.cross(d2);
+    let size = n.length();
+    let n_error = 8.0 * UNIT * d1.length() * d2.length();
+    let m = map.matrix.transpose() * n;
+    let m_error = map.stretch * (n_error + 5.0 * UNIT * size);
+    let m_error = length * (m_error + 8.0 * UNIT * m.length());
+
+    let q = v0 - solid.base;
+    let (reach, base) = (q.length(), solid.base.length());
+    let height = n.dot(q);
+    let height_error = n_error * reach + size * UNIT * (5.0 * reach + base);
+    let ends = m.dot(a).max(0.0);
+    let error = height_error + m_error + UNIT * (height.abs() + ends);
+    let disc = solid.radius * (m.cross(a).length() + m_error) / length;
+    height - ends - error > disc * (1.0 + 16.0 * UNIT)
+}
+
+/// The plane of a triangle, in the world.
+struct Plane {
+    point: ExactVector,
+    /// Outward, of any length.
+    normal: ExactVector,
+}
+
+impl Plane {
+    fn new(frame: &MeshFrame, corners: [[f32; 3]; 3]) -> Self {
+        let [v0, v1, v2] = corners.map(|corner| frame.exact_world_from_mesh(wide(corner)));
+        Self {
+            normal: (&v1 - &v0).cross(&(&v2 - &v0)),
+            point: v0,
+        }
+    }
+
+    fn is_degenerate(&self) -> bool {
+        self.normal.0.iter().all(|x| *x == exact(0.0))
+    }
+}
+
+/// A placed solid in exact numbers.
+struct ExactSolid {
+    matrix: ExactMatrix,
+    adjugate: ExactMatrix,
+    determinant: Exact,
+    /// `T`.
+    translation: ExactVector,
+    /// `p0`, in the solid's own space.
+    start: ExactVector,
+    /// `a`.
+    axis: ExactVector,
+    /// `a·a`.
+    axis_squared: Exact,
+    /// `r²`.
+    radius_squared: Exact,
+}
+
+impl ExactSolid {
+    fn new(placed: &PlacedSolid) -> Self {
+        let (map, cylinder) = (&placed.frame.exact, &placed.cylinder);
+        let start = ExactVector::new(cylinder.p0());
+        let axis = &ExactVector::new(cylinder.p1()) - &start;
+        let (adjugate, determinant) = map.adjugate();
+        let radius = exact(cylinder.radius());
+        Self {
+            matrix: map.matrix().clone(),
+            adjugate,
+            determinant,
+            translation: map.translation().clone(),
+            start,
+            axis_squared: axis.dot(&axis),
+            axis,
+            radius_squared: &radius * &radius,
+        }
+    }
+
+    fn is_inside(&self, vertex: &ExactVector) -> bool {
+        let scaled = self.adjugate.times(&(vertex - &self.translation));
+        let x = &scaled - &self.start.times(&self.determinant);
+        let (height, top) = (x.dot(&self.axis), &self.determinant * &self.axis_squared);
+        let zero = exact(0.0);
+        let between = if self.determinant < zero {
+            top <= height && height <= zero
+        } else {
+            zero <= height && height <= top
+        };
+        let across = x.cross(&self.axis);
+        between && across.dot(&across) <= &self.radius_squared * &self.determinant * &top
+    }
+
+    fn is_behind(&self, plane: &Plane) -> bool {
+        let m = self.matrix.times_from_left(&plane.normal);
+        let start = &self.matrix.times(&self.start) + &self.translation;
+        let along = m.dot(&self.axis);
+        let mut gap = plane.normal.dot(&(&plane.point - &start));
+        if along > exact(0.0) {
+            gap -= along;
+        }
+        let across = m.cross(&self.axis);
+        gap >= exact(0.0)
+            && &gap * &gap * &self.axis_squared >= &self.radius_squared * across.dot(&across)
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests;

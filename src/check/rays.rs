@@ -1,0 +1,315 @@
+//! The rays of each class.
+//!
+//! A ray is fixed by seed, window, class and number: it is drawn from the stream
+//! of random numbers that these name, wished for in the world, and put to where
+//! it is exact in both spaces (`mesh_frame`). In a window that is not the whole
+//! scene, a ray is clipped to the window's box, inward by more than the clipping
+//! rounds, so that whatever it meets is in the window; rays that miss the box
+//! are drawn again.
+
+use glam::{DVec2, DVec3};
+
+use crate::embree::Ray32;
+use crate::math::{Bounds, Random, Ray};
+use crate::scene::{Scene, AimedCamera};
+
+use super::Class;
+use super::mesh_frame::MeshFrame;
+use super::placed::{PlacedSolid, Window};
+
+/// Draws of a ray before the window's box is aimed at itself.
+const MOST_DRAWS: u32 = 32;
+
+/// A part of the range that is given away at each end of a clipped ray: the
+/// parameters are computed with a few roundings of f64 and rounded to f32.
+const INWARD: f64 = 4.0 * f32::EPSILON as f64;
+
+/// Where the rays of a window come from.
+pub(crate) struct RaySource<'a> {
+    window: &'a Window,
+    frame: &'a MeshFrame,
+    number: u64,
+    seed: u64,
+    view: AimedCamera,
+    film: DVec2,
+    centre: DVec3,
+    /// Half the diagonal of the extent.
+    reach: f64,
+}
+
+/// A solid in the world, as rays are aimed at it.
+struct Target<'a> {
+    solid: &'a PlacedSolid,
+    axis: DVec3,
+    across: [DVec3; 2],
+    length: f64,
+    radius: f64,
+}
+
+impl<'a> RaySource<'a> {
+    /// The source for window `number` of a scene.
+    pub fn new(
+        scene: &Scene,
+        window: &'a Window,
+        frame: &'a MeshFrame,
+        number: u64,
+        seed: u64,
+    ) -> Self {
+        let extent = window.extent();
+        Self {
+            window,
+            frame,
+            number,
+            seed,
+            view: AimedCamera::new(&scene.camera, &scene.census().bounds, scene.film),
+            film: DVec2::new(f64::from(scene.film.width), f64::from(scene.film.height)),
+            centre: extent.centre(),
+            reach: 0.5 * extent.extent().length(),
+        }
+    }
+
+    /// The ray `index` of a class: as Embree gets it, and the same in the world.
+    pub fn ray(&self, class: Class, index: u64) -> (Ray32, Ray) {
+        let class_number = Class::ALL.iter().position(|&one| one == class).unwrap_or(0);
+        let family = Random::new(self.seed, 8 * self.number + class_number as u64).bits();
+        let mut random = Random::new(family, index);
+        for _ in 0..MOST_DRAWS {
+            let (origin, direction) = self.wish(class, &mut random);
+            if let Some(rays) = self.exact_ray(origin, direction) {
+                return rays;
+            }
+        }
+        let origin = self.centre + random.direction() * (1.5 * self.reach);
+        let rays = self.exact_ray(origin, self.centre - origin);
+        rays.expect("a ray to the middle of the window meets it")
+    }
+
+    /// The exact ray near a wished-for one, clipped to the window.
+    pub fn exact_ray(&self, origin: DVec3, direction: DVec3) -> Option<(Ray32, Ray)> {
+        let is_good = |v: DVec3| v.is_finite() && v.length_squared() > 0.0;
+        if !origin.is_finite() || !is_good(direction) {
+            return None;
+        }
+        let origin = self.nearer(origin, direction);
+        let (mut ray32, mut ray) = self.frame.ray(origin, direction, 0.0, f64::INFINITY);
+        if ray.direction == DVec3::ZERO {
+            return None;
+        }
+        if let Some(bounds) = &self.window.bounds {
+            let (near, far) = clipped(bounds, &ray)?;
+            ray32.t_near = near;
+            ray32.t_far = far;
+            ray.t_min = f64::from(near);
+            ray.t_max = f64::from(far);
+        }
+        Some((ray32, ray))
+    }
+
+    /// An origin far outside moves along the ray to two diagonals before the
+    /// middle: there f32 is finer, and nothing has been passed.
+    fn nearer(&self, origin: DVec3, direction: DVec3) -> DVec3 {
+        let unit = (direction / direction.abs().max_element()).normalize();
+        let before_middle = (self.centre - origin).dot(unit);
+        if before_middle > 5.0 * self.reach {
+            origin + unit * (before_middle - 4.0 * self.reach)
+        } else {
+            origin
+        }
+    }
+
+    fn wish(&self, class: Class, random: &mut Random) -> (DVec3, DVec3) {
+        match class {
+            Class::Camera => self.from_camera(random),
+            Class::Sphere => self.from_sphere(random),
+            Class::Inside => self.target(random).from_inside(random),
+            Class::Grazing => self.grazing(random),
+            Class::Axial => self.target(random).along_axis(random),
+        }
+    }
+
+    fn target(&self, random: &mut Random) -> Target<'a> {
+        let number = random.below(self.window.solids.len() as u64);
+        Target::new(&self.window.solids[number as usize])
+    }
+
+    /// Through any point of the picture; for a part of the scene, through a
+    /// point of a solid of it, seen from where the camera is.
+    fn from_camera(&self, random: &mut Random) -> (DVec3, DVec3) {
+        let mut position = DVec2::new(random.unit(), random.unit()) * self.film;
+        if self.window.bounds.is_some() {
+            let point = self.target(random).any_point(random);
+            position = self.view.project(point).unwrap_or(position);
+        }
+        let ray = self.view.ray(position);
+        (ray.origin, ray.direction)
+    }
+
+    fn from_sphere(&self, random: &mut Random) -> (DVec3, DVec3) {
+        let origin = self.centre + random.direction() * (1.5 * self.reach);
+        let point = self.target(random).any_point(random);
+        (origin, point - origin)
+    }
+
+    /// Past a wall or a rim, from up to the whole extent away or from close by.
+    fn grazing(&self, random: &mut Random) -> (DVec3, DVec3) {
+        let target = self.target(random);
+        let (point, heading) = if random.below(3) == 0 {
+            target.at_rim(random)
+        } else {
+            target.at_silhouette(random)
+        };
+        let unit = heading / heading.length();
+        let size = target.size();
+        let distance = if random.below(2) == 0 {
+            size * random.uniform(1.0, 8.0)
+        } else {
+            random.log_uniform(size, (2.0 * self.reach).max(size * 1.5))
+        };
+        (point - unit * distance, unit)
+    }
+}
+
+impl<'a> Target<'a> {
+    fn new(solid: &'a PlacedSolid) -> Self {
+        let along = solid.cylinder.p1() - solid.cylinder.p0();
+        let length = along.length();
+        let axis = along / length;
+        let (one, other) = axis.any_orthonormal_pair();
+        Self {
+            solid,
+            axis,
+            across: [one, other],
+            length,
+            radius: solid.cylinder.radius(),
+        }
+    }
+
+    /// The point of the solid's space at a height and a vector from the axis.
+    fn object_point(&self, height: f64, off: DVec3) -> DVec3 {
+        self.solid.cylinder.p0() + self.axis * height + off
+    }
+
+    fn world_point(&self, object: DVec3) -> DVec3 {
+        self.solid.frame.world_from_object.transform_point3(object)
+    }
+
+    fn world_vector(&self, object: DVec3) -> DVec3 {
+        self.solid.frame.world_from_object.transform_vector3(object)
+    }
+
+    /// A unit vector across the axis, in the solid's space.
+    fn outward(&self, random: &mut Random) -> DVec3 {
+        let (sin, cos) = libm::sincos(random.unit() * std::f64::consts::TAU);
+        self.across[0] * cos + self.across[1] * sin
+    }
+
+    /// About the size in the world.
+    fn size(&self) -> f64 {
+        self.world_vector(self.axis * self.length).length()
+            + self.world_vector(self.across[0] * self.radius).length()
+    }
+
+    /// A random point of the solid, in the world.
+    fn any_point(&self, random: &mut Random) -> DVec3 {
+        let off = self.outward(random) * (self.radius * random.unit().sqrt());
+        self.world_point(self.object_point(self.length * random.unit(), off))
+    }
+
+    /// From a point inside, a third of the time from next to the wall or a
+    /// disc, in any direction, along the wall now and then.
+    fn from_inside(&self, random: &mut Random) -> (DVec3, DVec3) {
+        let outward = self.outward(random);
+        let mut share = random.unit().sqrt();
+        let mut height = self.length * random.unit();
+        if random.below(3) == 0 {
+            // From deep within the chord error of any prism to about that of 8 sides.
+            let gap = sign(random) * random.log_uniform(1e-6, 0.1);
+            if random.below(2) == 0 {
+                share = 1.0 - gap;
+            } else {
+                height = gap * self.radius.min(self.length);
+                if random.below(2) == 0 {
+                    height = self.length - height;
+                }
+            }
+        }
+        let origin = self.object_point(height, outward * (self.radius * share));
+        let heading = if random.below(4) == 0 {
+            let along = outward.cross(self.axis) * sign(random);
+            along + self.axis * random.uniform(-2.0, 2.0)
+        } else {
+            random.direction()
+        };
+        (self.world_point(origin), self.world_vector(heading))
+    }
+
+    /// A point beside the wall, and a heading that is tangential there.
+    fn at_silhouette(&self, random: &mut Random) -> (DVec3, DVec3) {
+        let outward = self.outward(random);
+        let off = 1.0 + sign(random) * random.log_uniform(1e-6, 0.1);
+        let tangent = outward.cross(self.axis) * sign(random);
+        let heading = tangent + self.axis * random.uniform(-2.0, 2.0);
+        let point = self.object_point(
+            self.length * random.uniform(-0.02, 1.02),
+            outward * (self.radius * off),
+        );
+        (self.world_point(point), self.world_vector(heading))
+    }
+
+    /// A point next to a rim, and any heading.
+    fn at_rim(&self, random: &mut Random) -> (DVec3, DVec3) {
+        let end = if random.below(2) == 0 { 0.0 } else { self.length };
+        let rim = self.object_point(end, self.outward(random) * self.radius);
+        let near = random.direction() * (self.radius * random.log_uniform(1e-6, 0.1));
+        (
+            self.world_point(rim + near),
+            self.world_vector(random.direction()),
+        )
+    }
+
+    /// Parallel to the axis, or nearly, through or past the discs.
+    fn along_axis(&self, random: &mut Random) -> (DVec3, DVec3) {
+        let off = self.outward(random) * (1.2 * self.radius * random.unit().sqrt());
+        let direction = self.axis * sign(random);
+        let away = (self.length + self.radius) * random.uniform(0.6, 2.0);
+        let middle = self.object_point(0.5 * self.length, off);
+        let tilt = if random.below(2) == 0 {
+            DVec3::ZERO
+        } else {
+            self.outward(random) * random.log_uniform(1e-9, 1e-2)
+        };
+        (
+            self.world_point(middle - direction * away),
+            self.world_vector(direction + tilt),
+        )
+    }
+}
+
+/// 1 or -1.
+fn sign(random: &mut Random) -> f64 {
+    if random.below(2) == 0 { 1.0 } else { -1.0 }
+}
+
+/// The part of a ray within a box, smaller by what rounds; `None` where little
+/// or nothing is left.
+fn clipped(bounds: &Bounds, ray: &Ray) -> Option<(f32, f32)> {
+    let (mut near, mut far) = (ray.t_min, ray.t_max);
+    for axis in 0..3 {
+        let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
+        let (lower, upper) = (bounds.lower[axis], bounds.upper[axis]);
+        if direction == 0.0 {
+            if origin < lower || origin > upper {
+                return None;
+            }
+            continue;
+        }
+        let one = (lower - origin) / direction;
+        let other = (upper - origin) / direction;
+        near = near.max(one.min(other));
+        far = far.min(one.max(other));
+    }
+    let inward = INWARD * (near.abs() + far.abs());
+    let near = if near > 0.0 { near + inward } else { 0.0 };
+    let far = far - inward;
+    (near < far).then_some((near as f32, far as f32))
+}

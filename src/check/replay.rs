@@ -1,0 +1,237 @@
+//! One ray again, with everything told.
+
+use std::fmt;
+use std::str::FromStr;
+
+use glam::DVec3;
+
+use crate::embree::{Device, DeviceOptions, Ray32};
+use crate::math::Ray;
+use crate::scene::Scene;
+
+use super::compare::{Subject, Verdict, chosen_windows, verdict};
+use super::finding::{Finding, Intersector};
+use super::judge::first;
+use super::mesh_frame::MeshFrame;
+use super::meshes::{Meshes, Scratch};
+use super::outcome::{Violation, Witness};
+use super::rays::RaySource;
+use super::settings::{CheckError, Class, Settings};
+use super::truth;
+
+/// A ray to look at again.
+///
+/// As text, `class:index`, or eight numbers of f64 by their bits in
+/// hexadecimal digits, with colons between: origin, direction, `t_min`, `t_max`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Replay {
+    /// A ray of a check with the same scene and settings.
+    Drawn {
+        /// Its class.
+        class: Class,
+        /// Its number in the class.
+        index: u64,
+    },
+    /// Any ray. Where the meshes cannot have it exactly, the nearest one that
+    /// they can have is taken.
+    Given(Ray),
+}
+
+/// What is known of one ray.
+#[derive(Clone, Debug, Default)]
+pub struct Replayed {
+    /// The ray, its answer, the bounds of each solid, the truth: in words.
+    pub lines: Vec<String>,
+    /// What is wrong, by segments.
+    pub violations: Vec<Violation>,
+}
+
+impl fmt::Display for Replay {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Drawn { class, index } => write!(f, "{class}:{index}"),
+            Self::Given(ray) => {
+                let (o, d) = (ray.origin, ray.direction);
+                let numbers = [o.x, o.y, o.z, d.x, d.y, d.z, ray.t_min, ray.t_max];
+                let bits = numbers.map(|x| format!("{:016x}", x.to_bits()));
+                f.write_str(&bits.join(":"))
+            }
+        }
+    }
+}
+
+impl FromStr for Replay {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts: Vec<&str> = text.split(':').collect();
+        if let [class, index] = parts[..] {
+            let index = index
+                .parse()
+                .map_err(|_| format!("`{index}` is no number of a ray"))?;
+            let class = class.parse()?;
+            return Ok(Self::Drawn { class, index });
+        }
+        let bits: Vec<f64> = parts
+            .iter()
+            .map(|bits| u64::from_str_radix(bits, 16).map(f64::from_bits))
+            .collect::<Result<_, _>>()
+            .map_err(|error| format!("`{text}` is no ray: {error}"))?;
+        let [ox, oy, oz, dx, dy, dz, t_min, t_max] = bits[..] else {
+            let found = bits.len();
+            return Err(format!(
+                "a ray is class:index or 8 numbers with colons between, not {found}"
+            ));
+        };
+        let ray = Ray {
+            origin: DVec3::new(ox, oy, oz),
+            direction: DVec3::new(dx, dy, dz),
+            t_min,
+            t_max,
+        };
+        if !ray.is_valid() {
+            return Err(format!("{ray:?} is not a ray that can hit anything"));
+        }
+        Ok(Self::Given(ray))
+    }
+}
+
+impl Violation {
+    /// The very ray, for [`replay`].
+    #[must_use]
+    pub fn replay(&self) -> Replay {
+        Replay::Given(self.ray)
+    }
+}
+
+/// Traces one ray and tells everything about it; `settings` are those of the
+/// check that it comes from.
+///
+/// # Errors
+/// As [`compare`](super::compare).
+pub fn replay(
+    scene: &Scene,
+    intersector: &impl Intersector,
+    settings: &Settings,
+    which: &Replay,
+) -> Result<Replayed, CheckError> {
+    let windows = chosen_windows(scene, settings)?;
+    let device = Device::new(&DeviceOptions::default())?;
+    let mut replayed = Replayed::default();
+    let count = windows.len() as u64;
+    for (number, window) in (0..).zip(&windows) {
+        let frame = MeshFrame::new(window);
+        let source = RaySource::new(scene, window, &frame, number, settings.seed);
+        let rays = match which {
+            Replay::Drawn { class, index } => {
+                (index % count == number).then(|| source.ray(*class, *index))
+            }
+            Replay::Given(ray) => source
+                .exact_ray(ray.origin, ray.direction)
+                .and_then(|rays| within(rays, ray)),
+        };
+        let Some((ray32, ray)) = rays else {
+            continue;
+        };
+        let subject = Subject::new(number, window, &frame, &source);
+        let answer = intersector.closest(&ray);
+        replayed.describe(which, &subject, &ray, answer.as_ref());
+        for &segments in &settings.segments {
+            let meshes = Meshes::new(&device, window, &frame, segments)?;
+            replayed.judge(which, &subject, &meshes, (&ray32, &ray), answer.as_ref());
+        }
+    }
+    Ok(replayed)
+}
+
+/// The ray of the meshes with no more of its range than what was given.
+fn within((mut ray32, mut ray): (Ray32, Ray), given: &Ray) -> Option<(Ray32, Ray)> {
+    ray32.t_near = ray32.t_near.max(given.t_min as f32);
+    ray32.t_far = ray32.t_far.min(given.t_max as f32);
+    ray.t_min = f64::from(ray32.t_near);
+    ray.t_max = f64::from(ray32.t_far);
+    ray.is_valid().then_some((ray32, ray))
+}
+
+impl Replayed {
+    fn describe(
+        &mut self,
+        which: &Replay,
+        about: &Subject,
+        ray: &Ray,
+        answer: Option<&Finding>,
+    ) {
+        let lines = &mut self.lines;
+        lines.push(format!("ray {}", Replay::Given(*ray)));
+        lines.push(format!("    {ray:?}"));
+        if let Replay::Given(given) = which
+            && given != ray
+        {
+            let moved = given.origin.distance(ray.origin);
+            lines.push(format!(
+                "    the nearest that the meshes can have; its origin moved by {moved:e}"
+            ));
+        }
+        lines.push(match answer {
+            None => String::from("answer: a miss"),
+            Some(finding) => format!("answer: {finding:?}"),
+        });
+        lines.push(truth::in_words(about.window, ray));
+        if let Some(bounds) = truth::bounds(about.window, ray) {
+            lines.push(format!(
+                "    with the solids displaced by what f64 rounds: {:?} to {:?}",
+                bounds.low, bounds.high
+            ));
+        }
+    }
+
+    fn judge(
+        &mut self,
+        which: &Replay,
+        about: &Subject,
+        meshes: &Meshes,
+        (ray32, ray): (&Ray32, &Ray),
+        answer: Option<&Finding>,
+    ) {
+        let mut scratch = Scratch::default();
+        let verdict = verdict(about, meshes, ray32, ray, answer, &mut scratch);
+        let bounds = first(&scratch.seen);
+        self.lines.push(format!(
+            "{} sides: first hit between {:?} and {:?}",
+            meshes.segments, bounds.low, bounds.high
+        ));
+        for seen in &scratch.seen {
+            let solid = &about.window.solids[seen.solid as usize];
+            let interval = seen.bounds.interval;
+            self.lines.push(format!(
+                "    cylinder {} of {:?}: {:?} to {:?}",
+                solid.primitive, solid.frame.instance, interval.low, interval.high
+            ));
+        }
+        let words = match &verdict {
+            Verdict::Unwitnessed => String::from("not witnessed"),
+            Verdict::Right { is_cleared, .. } if *is_cleared => {
+                String::from("right, by exact arithmetic: an error of the f32 traversal")
+            }
+            Verdict::Right { .. } => String::from("right"),
+            Verdict::Wrong(wrong) => format!("WRONG: {wrong}"),
+        };
+        self.lines.push(format!("    {words}"));
+        if let Verdict::Wrong(wrong) = verdict {
+            let (class, index) = match which {
+                Replay::Drawn { class, index } => (*class, *index),
+                Replay::Given(_) => (Class::Camera, 0),
+            };
+            self.violations.push(Violation {
+                class,
+                witness: Witness::Prisms,
+                segments: Some(meshes.segments),
+                index,
+                ray: *ray,
+                answer: answer.cloned(),
+                allowed: wrong.allowed(),
+                what: wrong.to_string(),
+            });
+        }
+    }
+}
