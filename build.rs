@@ -20,11 +20,11 @@ use locate::{Embree, VARIABLES, locate};
 const FUNCTIONS: &str = "cyltrace_.*|rtc(New|Release)(Device|Scene|Geometry)\
     |rtc(Attach|Commit)Geometry|rtcCommitScene|rtcGetSceneBounds|rtcSetSceneFlags\
     |rtcGetDevice(Property|Error)|rtcSetDevice(Error|MemoryMonitor)Function\
-    |rtcSetGeometry(Mask|UserData|UserPrimitiveCount)|rtcSetNewGeometryBuffer\
+    |rtcSetGeometry(InstancedScene|Transform|Mask|UserData|UserPrimitiveCount)|rtcSetNewGeometryBuffer\
     |rtcSetGeometry(Bounds|Intersect|Occluded|IntersectFilter)Function";
 
 /// The constants of C enumerations that Rust names.
-const CONSTANTS: [&str; 23] = [
+const CONSTANTS: [&str; 26] = [
     "RTC_BUFFER_TYPE_FLAGS",
     "RTC_BUFFER_TYPE_INDEX",
     "RTC_BUFFER_TYPE_VERTEX",
@@ -40,11 +40,14 @@ const CONSTANTS: [&str; 23] = [
     "RTC_ERROR_OUT_OF_MEMORY",
     "RTC_ERROR_UNSUPPORTED_CPU",
     "RTC_FORMAT_FLOAT3",
+    "RTC_FORMAT_FLOAT3X4_ROW_MAJOR",
     "RTC_FORMAT_FLOAT4",
     "RTC_FORMAT_UCHAR",
     "RTC_FORMAT_UINT",
     "RTC_FORMAT_UINT3",
     "RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE",
+    "RTC_GEOMETRY_TYPE_INSTANCE",
+    "RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE",
     "RTC_GEOMETRY_TYPE_TRIANGLE",
     "RTC_GEOMETRY_TYPE_USER",
     "RTC_SCENE_FLAG_ROBUST",

@@ -14,6 +14,8 @@ use crate::embree::{Device, DeviceOptions};
 use crate::math::Ray;
 use crate::scene::Scene;
 
+use super::curve_blocks::curve_block;
+use super::curves::ConeCurves;
 use super::finding::{Finding, Intersector};
 use super::judge::solid_of;
 use super::mesh_frame::MeshFrame;
@@ -65,7 +67,8 @@ pub fn compare_with(
 ) -> Result<Outcome, CheckError> {
     let windows = chosen_windows(scene, settings)?;
     let device = Device::new(&DeviceOptions::default())?;
-    let checked = settings.segments.len() as u64 * settings.classes.len() as u64;
+    // The curves are one more mesh.
+    let checked = (settings.segments.len() as u64 + 1) * settings.classes.len() as u64;
     let run = Run {
         intersector,
         settings,
@@ -158,6 +161,20 @@ impl<I: Intersector> Run<'_, I> {
                 })?;
                 row.add(tally, self.settings.most_listed);
             }
+        }
+        self.tell(0, "building cone curves")?;
+        let curves = ConeCurves::of_window(&self.device, about.window, about.frame)?;
+        words.push(format!(
+            "{} of them as cone curves",
+            curves.witnessed_solids()
+        ));
+        for (&class, row) in self.settings.classes.iter().zip(&mut rows.curves) {
+            let what = format!("{class}, cone curves");
+            let tally = self.trace(about, &what, BLOCK, |range, _| {
+                let indices = range.map(|number| self.index(about, number));
+                curve_block(about, &curves, self.intersector, class, indices)
+            })?;
+            row.add(tally, self.settings.most_listed);
         }
         for (&class, row) in self.settings.classes.iter().zip(&mut rows.truths) {
             let what = format!("{class}, oracle");
@@ -346,6 +363,8 @@ struct Rows {
     /// By segments, then class.
     prisms: Vec<Vec<Tally>>,
     /// By class.
+    curves: Vec<Tally>,
+    /// By class.
     truths: Vec<Tally>,
 }
 
@@ -354,6 +373,7 @@ impl Rows {
         let classes = vec![Tally::default(); settings.classes.len()];
         Self {
             prisms: vec![classes.clone(); settings.segments.len()],
+            curves: classes.clone(),
             truths: classes,
         }
     }
@@ -369,9 +389,12 @@ impl Rows {
                 outcome.violations.append(&mut tally.listed);
             }
         }
-        for (&class, mut tally) in settings.classes.iter().zip(self.truths) {
-            outcome.rows.push(tally.row(class, Witness::Oracle, None));
-            outcome.violations.append(&mut tally.listed);
+        let curves = (Witness::ConeCurve, self.curves);
+        for (witness, row) in [curves, (Witness::Oracle, self.truths)] {
+            for (&class, mut tally) in settings.classes.iter().zip(row) {
+                outcome.rows.push(tally.row(class, witness, None));
+                outcome.violations.append(&mut tally.listed);
+            }
         }
     }
 }

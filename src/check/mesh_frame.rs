@@ -73,11 +73,6 @@ impl MeshFrame {
         (point - self.centre) * self.scale
     }
 
-    /// The world's point for a point of the mesh, rounded.
-    pub fn world_from_mesh_point(&self, point: [f32; 3]) -> DVec3 {
-        self.centre + DVec3::from_array(point.map(f64::from)) / self.scale
-    }
-
     /// The world's point for a point of the mesh.
     pub fn exact_world_from_mesh(&self, point: DVec3) -> ExactVector {
         let from_centre = ExactVector::new(point).times(&exact(1.0 / self.scale));

@@ -20,6 +20,8 @@
 //! - `truth`: the same sandwich with exact cylinders in place of prisms, on a
 //!   sample;
 //! - `retrial`: suspects judged again, exactly, on the f32 triangles;
+//! - `curves`, `curve_blocks`: how often Embree's own cone curves, another solver,
+//!   agree; the oracle judges where they do not;
 //! - `compare`: all of it over many rays, and the outcome;
 //! - `agreement`: hits told from elsewhere, within a stated distance: those of
 //!   another program (`user_hits`), or of a mesh from a file (`mesh_file`,
@@ -29,6 +31,8 @@
 mod agreement;
 mod compare;
 mod containment;
+mod curve_blocks;
+mod curves;
 mod finding;
 mod judge;
 mod mesh_file;
@@ -61,11 +65,11 @@ pub use mesh_file::{MeshFile, MeshFileError, read_mesh};
 pub use outcome::{ClassRow, Convergence, Outcome, Violation, Witness};
 pub use pictures::{Pictures, PicturesError, pictures};
 pub use plan::{Plan, plan};
+pub use replay::{Replay, Replayed, replay};
 pub use report::{
     PageContent, TABLE_HEADINGS, TABLE_NAMES, disagreement_text, page, percent, table_rows,
     verdict, violation_text,
 };
-pub use replay::{Replay, Replayed, replay};
 pub use settings::{CheckError, Class, Settings};
 pub use user_hits::compare_hits;
 pub use user_mesh::{TracedMesh, TriangleHit, compare_mesh, rays_around};

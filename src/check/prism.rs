@@ -87,11 +87,9 @@ pub(crate) struct Prisms {
     pub triangles: Vec<[u32; 3]>,
     /// The number in the window of the solid of each prism, rising.
     pub solid_of: Vec<u32>,
-    /// Triangles of each prism: four times its sides.
+    /// Triangles of each prism, four times its sides: two of every side, then
+    /// the disc at `p0` and that at `p1`.
     pub triangles_per_prism: usize,
-    /// The first triangles of each prism are its sides, two each; the disc at
-    /// `p0` follows, then that at `p1`.
-    pub side_triangles: usize,
     /// Solids without an inscribed prism: f32 leaves nothing of it.
     pub empty: Vec<u32>,
     /// Solids without a circumscribed prism: f32 does not resolve them.
@@ -105,7 +103,6 @@ impl Prisms {
             triangles: Vec::new(),
             solid_of: Vec::new(),
             triangles_per_prism: 4 * segments as usize,
-            side_triangles: 2 * segments as usize,
             empty: Vec::new(),
             unbounded: Vec::new(),
         }

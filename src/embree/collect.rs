@@ -1,9 +1,9 @@
-//! Every triangle that a ray meets, from one traversal.
+//! Every hit of a ray with triangles or curves, from one traversal.
 //!
 //! Embree looks for the closest hit: each candidate would shorten the ray and
 //! hide what lies behind it. A filter function is asked about every candidate
 //! before that, and here it writes the candidate down and refuses it, so the
-//! ray keeps its length and the traversal reaches all triangles.
+//! ray keeps its length and the traversal reaches everything.
 //!
 //! Embree may ask about a triangle more than once (a hierarchy with spatial
 //! splits holds it in several leaves) and in an order that depends on the
@@ -13,8 +13,9 @@
 use super::abort::AbortOnPanic;
 use super::device::Device;
 use super::error::Error;
-use super::ray::Ray32;
-use super::scene::{GeometryId, Scene, SceneBuilder};
+use super::native::Curve;
+use super::ray::{NativeHit, Ray32};
+use super::scene::{GeometryHandle, GeometryId, Scene, SceneBuilder};
 use super::sys::{self, word};
 
 /// A triangle that a ray meets, in f32 as Embree computes it.
@@ -31,6 +32,28 @@ pub struct MeshHit {
     pub normal: [f32; 3],
 }
 
+/// What is written down of a candidate.
+trait Collected {
+    fn new(hit: NativeHit) -> Self;
+}
+
+impl Collected for MeshHit {
+    fn new(hit: NativeHit) -> Self {
+        Self {
+            geometry: hit.geometry,
+            primitive: hit.primitive,
+            t: hit.t,
+            normal: hit.normal,
+        }
+    }
+}
+
+impl Collected for NativeHit {
+    fn new(hit: NativeHit) -> Self {
+        hit
+    }
+}
+
 impl SceneBuilder<Vec<MeshHit>> {
     /// Adds a triangle mesh as [`attach_triangles`](Self::attach_triangles)
     /// does; [`Scene::every_hit`] finds its triangles, and a query for the
@@ -45,14 +68,42 @@ impl SceneBuilder<Vec<MeshHit>> {
         vertices: &[[f32; 3]],
         triangles: &[[u32; 3]],
     ) -> Result<GeometryId, Error> {
-        check_support(self.device())?;
         let mesh = self.new_triangles(vertices, triangles)?;
-        // SAFETY: invariants 1 and 5; by invariant 4 `collect` may take the
-        // query for what it is, since this builder's `Q` is `Vec<MeshHit>`.
-        unsafe { sys::rtcSetGeometryIntersectFilterFunction(mesh.raw(), Some(collect)) };
-        self.device().check("set a mesh's filter function")?;
-        self.attach(&mesh)
+        attach_collecting(self, &mesh)
     }
+}
+
+impl SceneBuilder<Vec<NativeHit>> {
+    /// Adds cone curves as [`attach_cone_curves`](Self::attach_cone_curves)
+    /// does; [`Scene::every_hit`] finds where the ray enters and where it leaves
+    /// each segment.
+    ///
+    /// # Errors
+    /// As for [`attach_cone_curves`](Self::attach_cone_curves), and when the
+    /// installed Embree was built without filter functions or does not see the
+    /// inside of a curve.
+    pub fn attach_collecting_cone_curves(
+        &mut self,
+        vertices: &[[f32; 4]],
+        segments: &[u32],
+        neighbours: Option<&[u8]>,
+    ) -> Result<GeometryId, Error> {
+        let curves = self.new_curves(Curve::Cone, vertices, segments, neighbours)?;
+        attach_collecting(self, &curves)
+    }
+}
+
+/// Attaches a geometry whose hits are written down and refused.
+fn attach_collecting<H: Collected + 'static>(
+    builder: &mut SceneBuilder<Vec<H>>,
+    geometry: &GeometryHandle,
+) -> Result<GeometryId, Error> {
+    check_support(builder.device())?;
+    // SAFETY: invariants 1 and 5; by invariant 4 `collect` may take the query
+    // for what it is, since the builder's `Q` is `Vec<H>`.
+    unsafe { sys::rtcSetGeometryIntersectFilterFunction(geometry.raw(), Some(collect::<H>)) };
+    builder.device().check("set a geometry's filter function")?;
+    builder.attach(geometry)
 }
 
 impl Scene<Vec<MeshHit>> {
@@ -71,17 +122,32 @@ impl Scene<Vec<MeshHit>> {
     }
 }
 
+impl Scene<Vec<NativeHit>> {
+    /// Replaces `hits` by all hits with collecting curves that Embree finds with
+    /// `t` in the ray's range, at most two a segment, sorted by geometry,
+    /// segment and `t`.
+    pub fn every_hit(&self, ray: &Ray32, hits: &mut Vec<NativeHit>) {
+        hits.clear();
+        self.closest(ray, hits);
+        hits.sort_unstable_by(|a, b| {
+            let places = (a.geometry, a.primitive).cmp(&(b.geometry, b.primitive));
+            places.then(a.t.total_cmp(&b.t))
+        });
+        hits.dedup();
+    }
+}
+
 fn triangle(hit: &MeshHit) -> (GeometryId, u32) {
     (hit.geometry, hit.primitive)
 }
 
-/// Whether all triangles would be found.
+/// Whether all hits would be found.
 fn check_support(device: &Device) -> Result<(), Error> {
     let is_set = |property| device.property(property) != 0;
     let missing = if !is_set(sys::RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED) {
         "filter functions"
     } else if is_set(sys::RTC_DEVICE_PROPERTY_BACKFACE_CULLING_ENABLED) {
-        "hits with the back of triangles"
+        "hits with the back of a surface"
     } else {
         return Ok(());
     };
@@ -89,24 +155,19 @@ fn check_support(device: &Device) -> Result<(), Error> {
 }
 
 /// Writes the candidate down and refuses it.
-unsafe extern "C" fn collect(args: *const sys::RTCFilterFunctionNArguments) {
+unsafe extern "C" fn collect<H: Collected>(args: *const sys::RTCFilterFunctionNArguments) {
     AbortOnPanic::run("filter", || {
         // SAFETY: invariant 7.
         let args = unsafe { &*args };
         assert_eq!(args.N, 1, "only single rays are traced");
         // SAFETY: invariant 4: this filter is set in scenes for this query only.
-        let hits: &mut Vec<MeshHit> =
+        let hits: &mut Vec<H> =
             unsafe { &mut *(*args.context.cast::<sys::cyltrace_context>()).query.cast() };
         // SAFETY: invariant 7: the candidate's `t` stands as the ray's end.
         let t = unsafe { *args.ray.cast::<f32>().add(word::RAY_T_FAR) };
         // SAFETY: invariant 7: one lane of hits is the structure of one hit.
         let hit = unsafe { &*args.hit.cast::<sys::RTCHit>() };
-        hits.push(MeshHit {
-            geometry: GeometryId(hit.geomID),
-            primitive: hit.primID,
-            t,
-            normal: [hit.Ng_x, hit.Ng_y, hit.Ng_z],
-        });
+        hits.push(H::new(NativeHit::new(t, hit)));
         // SAFETY: invariant 7: one mask a lane; zero refuses.
         unsafe { *args.valid = 0 };
     });

@@ -54,6 +54,20 @@ pub enum Error {
         /// What is missing.
         missing: &'static str,
     },
+    /// A map that an instance cannot have.
+    #[error(
+        "the instance's map {map:?} must be of finite numbers below {GREATEST_COORDINATE:e}, with a determinant that f32 holds and that is not zero"
+    )]
+    InstanceMap {
+        /// Its rows.
+        map: [[f32; 4]; 3],
+    },
+    /// An instance of a scene of another device.
+    #[error("an instanced scene must be of the same device as the scene it is placed in")]
+    OtherDevice,
+    /// An instance of a scene that holds instances.
+    #[error("an instanced scene must not hold instances itself")]
+    NestedInstance,
     /// A primitive of a user geometry has bounds that Embree would leave out.
     #[error(
         "primitive {primitive} of geometry {} has bounds that are empty, not finite or beyond {GREATEST_COORDINATE:e}",

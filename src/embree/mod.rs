@@ -1,6 +1,6 @@
 //! Embree behind a safe surface: devices, scenes, user geometry, triangle
-//! meshes and cone curves, single-ray queries, and all hits of a ray with
-//! triangles.
+//! meshes, straight curves and instances, single-ray queries, and all hits of a
+//! ray with triangles or curves.
 //!
 //! This layer knows neither cylinders nor scene files. A geometry written in
 //! Rust implements [`UserGeometry`]; its answers travel in a *query*, a value
@@ -17,9 +17,10 @@
 //! 1. **Handles are alive.** A handle newtype owns one reference of Embree's
 //!    and gives it back in its `Drop`, so a handle that can be named is valid.
 //! 2. **Scenes go first.** [`Scene`] and [`SceneBuilder`] drop the Embree scene
-//!    (with it, its geometries), then the user data, then the device; a device
-//!    gives its handle back before its memory counters. So every pointer that
-//!    Embree holds outlives the Embree object that holds it.
+//!    (with it, its geometries), then the user data, then the scenes that it has
+//!    instances of, then the device; a device gives its handle back before its
+//!    memory counters. So every pointer that Embree holds outlives the Embree
+//!    object that holds it.
 //! 3. **User data has one type and is shared.** The data pointer of a geometry
 //!    and its callbacks are set together, for the same type, from an `Arc`
 //!    that is never written to; `UserGeometry` is `Send + Sync`, so any thread
@@ -28,8 +29,9 @@
 //!    one by [`Scene`], goes through Embree untouched in the context of that
 //!    query, and callbacks of the query run on the calling thread, one at a
 //!    time. A geometry's `Query` is its scene's `Q`; the filter function that
-//!    collects hits is set in scenes whose `Q` is a `Vec<MeshHit>`, by code
-//!    that exists for those only. A nested query borrows from the reference
+//!    collects hits `H` is set in scenes whose `Q` is `Vec<H>`, by code that
+//!    exists for those only. An instanced scene has the `Q` of the scene that
+//!    it is placed in, which is `()`. A nested query borrows from the reference
 //!    its callback was given and ends before it.
 //! 5. **Builders write, scenes read.** Until [`SceneBuilder::commit`] one owner
 //!    holds the Embree scene and no query can run; afterwards nothing is
@@ -45,7 +47,7 @@
 //! # What is left out, and why
 //! | Embree | why |
 //! |---|---|
-//! | instances, instance arrays | placements are user geometry here: f64 transforms, any depth |
+//! | instances of more than one level, instance arrays | placements are user geometry: f64 transforms, any depth |
 //! | packets of 4, 8, 16 rays | user geometry through them comes when it is measured to pay |
 //! | ray streams | gone in Embree 4 |
 //! | filter functions but the one that collects, ray masks | a user geometry itself accepts or refuses; all masks are ones |
@@ -63,6 +65,7 @@ mod collect;
 mod device;
 mod error;
 mod float_mode;
+mod instance;
 mod isa;
 mod native;
 mod probe;

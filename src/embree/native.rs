@@ -1,9 +1,19 @@
-//! Geometry that Embree intersects by itself: triangle meshes and cone curves.
+//! Geometry that Embree intersects by itself: triangle meshes and straight
+//! curves.
 
 use super::error::Error;
 use super::ray::is_inside;
 use super::scene::{GeometryHandle, GeometryId, SceneBuilder};
 use super::sys;
+
+/// How the ends of a straight curve look.
+#[derive(Clone, Copy)]
+pub(super) enum Curve {
+    /// Flat.
+    Cone,
+    /// Spheres.
+    Round,
+}
 
 impl<Q: 'static> SceneBuilder<Q> {
     /// Adds a triangle mesh; each triangle is three vertex numbers. The
@@ -65,6 +75,34 @@ impl<Q: 'static> SceneBuilder<Q> {
         segments: &[u32],
         neighbours: Option<&[u8]>,
     ) -> Result<GeometryId, Error> {
+        let curves = self.new_curves(Curve::Cone, vertices, segments, neighbours)?;
+        self.attach(&curves)
+    }
+
+    /// Adds straight segments with round ends (`ROUND_LINEAR_CURVE`): cones that
+    /// touch a sphere at each end. For the rest as
+    /// [`attach_cone_curves`](Self::attach_cone_curves) has it.
+    ///
+    /// # Errors
+    /// As for [`attach_cone_curves`](Self::attach_cone_curves).
+    pub fn attach_round_curves(
+        &mut self,
+        vertices: &[[f32; 4]],
+        segments: &[u32],
+        neighbours: Option<&[u8]>,
+    ) -> Result<GeometryId, Error> {
+        let curves = self.new_curves(Curve::Round, vertices, segments, neighbours)?;
+        self.attach(&curves)
+    }
+
+    /// Curves that are not attached yet.
+    pub(super) fn new_curves(
+        &self,
+        curve: Curve,
+        vertices: &[[f32; 4]],
+        segments: &[u32],
+        neighbours: Option<&[u8]>,
+    ) -> Result<GeometryHandle, Error> {
         check_vertices(vertices, |&[_, _, _, radius]| radius >= 0.0)?;
         for (primitive, &first) in segments.iter().enumerate() {
             check_index(primitive, u64::from(first) + 1, vertices.len())?;
@@ -82,7 +120,11 @@ impl<Q: 'static> SceneBuilder<Q> {
                 segments: segments.len(),
             });
         }
-        let curves = GeometryHandle::new(self.device(), sys::RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE)?;
+        let kind = match curve {
+            Curve::Cone => sys::RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE,
+            Curve::Round => sys::RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE,
+        };
+        let curves = GeometryHandle::new(self.device(), kind)?;
         self.fill(
             &curves,
             sys::RTC_BUFFER_TYPE_VERTEX,
@@ -101,7 +143,7 @@ impl<Q: 'static> SceneBuilder<Q> {
             sys::RTC_FORMAT_UCHAR,
             flags,
         )?;
-        self.attach(&curves)
+        Ok(curves)
     }
 
     /// Copies `items` into a new buffer of Embree's, which pads it for the

@@ -129,20 +129,28 @@ pub struct NativeHit {
     pub v: f32,
     /// The primitive's number in its geometry.
     pub primitive: u32,
-    /// The geometry that was hit.
+    /// The geometry that was hit; in an instance, its number in the instanced
+    /// scene.
     pub geometry: GeometryId,
+    /// The instance that it was hit in.
+    pub instance: Option<GeometryId>,
 }
 
 impl NativeHit {
     pub(super) fn from_embree(query: &sys::RTCRayHit) -> Option<Self> {
-        let hit = &query.hit;
-        (hit.geomID != sys::INVALID_ID).then_some(Self {
-            t: query.ray.tfar,
+        (query.hit.geomID != sys::INVALID_ID).then(|| Self::new(query.ray.tfar, &query.hit))
+    }
+
+    pub(super) fn new(t: f32, hit: &sys::RTCHit) -> Self {
+        let instance = hit.instID[0];
+        Self {
+            t,
             normal: [hit.Ng_x, hit.Ng_y, hit.Ng_z],
             u: hit.u,
             v: hit.v,
             primitive: hit.primID,
             geometry: GeometryId(hit.geomID),
-        })
+            instance: (instance != sys::INVALID_ID).then_some(GeometryId(instance)),
+        }
     }
 }

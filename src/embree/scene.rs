@@ -71,6 +71,8 @@ struct Parts {
     /// Shared pointers because, unlike a box, one may be moved while Embree
     /// holds a pointer into it. There is no second owner.
     user_data: Vec<(GeometryId, Arc<dyn UserData>)>,
+    /// Scenes that this one has instances of.
+    instanced: Vec<Arc<Scene<()>>>,
     device: Device,
 }
 
@@ -109,6 +111,7 @@ impl<Q: 'static> SceneBuilder<Q> {
             parts: Parts {
                 handle,
                 user_data: Vec::new(),
+                instanced: Vec::new(),
                 device: device.clone(),
             },
             query: PhantomData,
@@ -136,6 +139,11 @@ impl<Q: 'static> SceneBuilder<Q> {
 
     pub(super) fn device(&self) -> &Device {
         &self.parts.device
+    }
+
+    /// Keeps a scene as long as this one.
+    pub(super) fn keep(&mut self, scene: Arc<Scene<()>>) {
+        self.parts.instanced.push(scene);
     }
 
     /// Commits a geometry and gives the scene a reference to it.
@@ -224,6 +232,18 @@ impl<Q: 'static> Scene<Q> {
     #[must_use]
     pub fn bounds(&self) -> Option<Box32> {
         self.bounds
+    }
+
+    pub(super) fn raw(&self) -> sys::RTCScene {
+        self.parts.handle.0
+    }
+
+    pub(super) fn is_of(&self, device: &Device) -> bool {
+        self.parts.device.handle() == device.handle()
+    }
+
+    pub(super) fn has_instances(&self) -> bool {
+        !self.parts.instanced.is_empty()
     }
 
     #[inline]

@@ -29,6 +29,7 @@ pub mod word {
     pub const HIT_V: usize = 16;
     pub const HIT_PRIMITIVE: usize = 17;
     pub const HIT_GEOMETRY: usize = 18;
+    pub const HIT_INSTANCE: usize = 19;
 }
 
 // For one lane the words are the fields of the single-ray structures.
@@ -39,6 +40,7 @@ const _: () = {
     assert!(hit + offset_of!(RTCHit, v) == 4 * word::HIT_V);
     assert!(hit + offset_of!(RTCHit, primID) == 4 * word::HIT_PRIMITIVE);
     assert!(hit + offset_of!(RTCHit, geomID) == 4 * word::HIT_GEOMETRY);
+    assert!(hit + offset_of!(RTCHit, instID) == 4 * word::HIT_INSTANCE);
     assert!(offset_of!(RTCRayHit, ray) == 0);
     // The structure of one hit is what filter functions get for one lane.
     assert!(hit == 4 * word::HIT_NORMAL_X && offset_of!(RTCHit, Ng_x) == 0);

@@ -117,9 +117,11 @@ unsafe extern "C" fn intersect<G: UserGeometry>(args: *const sys::RTCIntersectFu
         assert_eq!(lanes, 1, "only single rays are traced");
         // SAFETY: invariants 2 and 3.
         let data = unsafe { &*args.geometryUserPtr.cast::<Registered<G>>() };
-        // SAFETY: invariant 4: the shim put this context there, with the query
-        // behind Embree's part of it.
-        let query = unsafe { &mut *(*args.context.cast::<sys::cyltrace_context>()).query.cast() };
+        // SAFETY: invariant 4: the shim put this context there; Embree does not
+        // write to it while the callback runs.
+        let context = unsafe { &*args.context.cast::<sys::cyltrace_context>() };
+        // SAFETY: invariant 4: behind Embree's part of the context is the query.
+        let query = unsafe { &mut *context.query.cast() };
         let hit = data.geometry.intersect(args.primID, query);
 
         let lane = 0;
@@ -142,6 +144,10 @@ unsafe extern "C" fn intersect<G: UserGeometry>(args: *const sys::RTCIntersectFu
             }
             *slot(word::HIT_PRIMITIVE) = args.primID;
             *slot(word::HIT_GEOMETRY) = args.geomID;
+            // A hit in an instance may have been there before.
+            for (level, &instance) in context.embree.instID.iter().enumerate() {
+                *slot(word::HIT_INSTANCE + level) = instance;
+            }
         }
     });
 }

@@ -4,6 +4,7 @@
 
 mod balls;
 mod collect;
+mod instance;
 mod lifetime;
 mod locate;
 mod native;

@@ -142,6 +142,47 @@ fn cone_curves_end_with_neighbour_has_no_cap() {
 }
 
 #[test]
+fn cone_curves_every_hit_enters_and_leaves_each_segment() {
+    let device = Device::new(&DeviceOptions::default()).unwrap();
+    let mut builder = SceneBuilder::<Vec<NativeHit>>::new(&device).unwrap();
+    let vertices = [
+        [0.0, 0.0, 0.0, 0.5],
+        [0.0, 0.0, 2.0, 0.5],
+        [3.0, 0.0, 0.0, 0.25],
+        [3.0, 0.0, 2.0, 0.25],
+    ];
+    let curves = builder
+        .attach_collecting_cone_curves(&vertices, &[0, 2], None)
+        .unwrap();
+    let scene = builder.commit().unwrap();
+    let mut hits = vec![];
+    scene.every_hit(&ray([-3.0, 0.0, 0.5], [1.0, 0.0, 0.0]), &mut hits);
+    assert_eq!(hits.len(), 4, "{hits:?}");
+    let expected = [(0, 2.5), (0, 3.5), (1, 5.75), (1, 6.25)];
+    for (hit, (segment, t)) in hits.iter().zip(expected) {
+        assert_eq!((hit.geometry, hit.primitive), (curves, segment));
+        assert!(is_near(hit.t, t) && is_near(hit.u, 0.25), "{hit:?}");
+    }
+    let inside = ray([0.0, 0.0, 0.5], [1.0, 0.0, 0.0]);
+    scene.every_hit(&inside, &mut hits);
+    assert_eq!(hits.len(), 3, "{hits:?}");
+}
+
+#[test]
+fn round_curves_end_in_spheres() {
+    let mut builder = builder();
+    let vertices = [[0.0, 0.0, 0.0, 0.5], [0.0, 0.0, 2.0, 0.5]];
+    builder.attach_round_curves(&vertices, &[0], None).unwrap();
+    let scene = builder.commit().unwrap();
+    let side = ray([-3.0, 0.0, 0.5], [1.0, 0.0, 0.0]);
+    let hit = scene.closest_native(&side, &mut ()).unwrap();
+    assert!(is_near(hit.t, 2.5), "{hit:?}");
+    let beyond = ray([-3.0, 0.0, 2.4], [1.0, 0.0, 0.0]);
+    let hit = scene.closest_native(&beyond, &mut ()).unwrap();
+    assert!(is_near(hit.t, 2.7), "{hit:?}");
+}
+
+#[test]
 fn cone_curves_bad_input_is_refused_before_embree_sees_it() {
     let mut builder = builder();
     let line = [[0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 1.0]];
