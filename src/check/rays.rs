@@ -119,9 +119,9 @@ impl<'a> RaySource<'a> {
 
     fn wish(&self, class: Class, random: &mut Random) -> (DVec3, DVec3) {
         match class {
-            Class::Camera => self.from_camera(random),
-            Class::Sphere => self.from_sphere(random),
-            Class::Inside => self.target(random).from_inside(random),
+            Class::Camera => self.camera_ray(random),
+            Class::Sphere => self.sphere_ray(random),
+            Class::Inside => self.target(random).inside_ray(random),
             Class::Grazing => self.grazing(random),
             Class::Axial => self.target(random).along_axis(random),
         }
@@ -134,7 +134,7 @@ impl<'a> RaySource<'a> {
 
     /// Through any point of the picture; for a part of the scene, through a
     /// point of a solid of it, seen from where the camera is.
-    fn from_camera(&self, random: &mut Random) -> (DVec3, DVec3) {
+    fn camera_ray(&self, random: &mut Random) -> (DVec3, DVec3) {
         let mut position = DVec2::new(random.unit(), random.unit()) * self.film;
         if self.window.bounds.is_some() {
             let point = self.target(random).any_point(random);
@@ -144,7 +144,7 @@ impl<'a> RaySource<'a> {
         (ray.origin, ray.direction)
     }
 
-    fn from_sphere(&self, random: &mut Random) -> (DVec3, DVec3) {
+    fn sphere_ray(&self, random: &mut Random) -> (DVec3, DVec3) {
         let origin = self.centre + random.direction() * (1.5 * self.reach);
         let point = self.target(random).point_around(random);
         (origin, point - origin)
@@ -226,7 +226,7 @@ impl<'a> Target<'a> {
 
     /// From a point inside, a third of the time from next to the wall or a
     /// disc, in any direction, along the wall now and then.
-    fn from_inside(&self, random: &mut Random) -> (DVec3, DVec3) {
+    fn inside_ray(&self, random: &mut Random) -> (DVec3, DVec3) {
         let outward = self.outward(random);
         let mut share = random.unit().sqrt();
         let mut height = self.length * random.unit();

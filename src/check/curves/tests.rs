@@ -127,7 +127,6 @@ fn true_answers_agree_and_wrong_ones_are_suspects() {
             missed += u64::from(curves.compare(&ray32, Some(behind)) == Verdict::Agrees);
         }
     }
-    println!("{hits} hits, {suspects} suspects; {missed} hits 0.01 behind agree");
     assert!(
         hits > 2_000 && suspects <= SCENES * RAYS / 500,
         "{suspects}"
