@@ -125,7 +125,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Rays that were traced, each class once.
+    /// Rays of all rows; a ray is counted once for each row that it is in.
     #[must_use]
     pub fn rays(&self) -> u64 {
         self.rows.iter().map(|row| row.rays).sum()

@@ -61,6 +61,17 @@ impl fmt::Display for Replay {
     }
 }
 
+impl Replay {
+    /// What a violation is listed under; a ray that is given has no class of its
+    /// own and counts as the first of the camera's.
+    fn class_and_index(&self) -> (Class, u64) {
+        match self {
+            Self::Drawn { class, index } => (*class, *index),
+            Self::Given(_) => (Class::Camera, 0),
+        }
+    }
+}
+
 impl FromStr for Replay {
     type Err = String;
 
@@ -137,10 +148,15 @@ pub fn replay(
         let subject = Subject::new(number, window, &frame, &source);
         let answer = intersector.closest(&ray);
         replayed.describe(which, &subject, &ray, answer.as_ref());
+        replayed.judge_truly(which, &subject, &ray, answer.as_ref());
         for &segments in &settings.segments {
             let meshes = Meshes::new(&device, window, &frame, segments)?;
             replayed.judge(which, &subject, &meshes, (&ray32, &ray), answer.as_ref());
         }
+    }
+    if replayed.lines.is_empty() {
+        let word = String::from("the ray meets no part of the scene that is checked");
+        replayed.lines.push(word);
     }
     Ok(replayed)
 }
@@ -172,11 +188,35 @@ impl Replayed {
             Some(finding) => format!("answer: {finding:?}"),
         });
         lines.push(truth::in_words(about.window, ray));
-        if let Some(bounds) = truth::bounds(about.window, ray) {
-            lines.push(format!(
-                "    with the solids displaced by what f64 rounds: {:?} to {:?}",
-                bounds.low, bounds.high
-            ));
+    }
+
+    /// Against the oracle.
+    fn judge_truly(
+        &mut self,
+        which: &Replay,
+        about: &Subject,
+        ray: &Ray,
+        answer: Option<&Finding>,
+    ) {
+        let Some(bounds) = truth::bounds(about.window, ray) else {
+            return;
+        };
+        self.lines.push(format!(
+            "    with the solids displaced by what f64 rounds: {:?} to {:?}",
+            bounds.low, bounds.high
+        ));
+        if !truth::allows(&bounds, ray, answer) {
+            let (class, index) = which.class_and_index();
+            self.violations.push(Violation {
+                class,
+                witness: Witness::Oracle,
+                segments: None,
+                index,
+                ray: *ray,
+                answer: answer.cloned(),
+                allowed: (bounds.low, bounds.high),
+                what: truth::in_words(about.window, ray),
+            });
         }
     }
 
@@ -213,10 +253,7 @@ impl Replayed {
         };
         self.lines.push(format!("    {words}"));
         if let Verdict::Wrong(wrong) = verdict {
-            let (class, index) = match which {
-                Replay::Drawn { class, index } => (*class, *index),
-                Replay::Given(_) => (Class::Camera, 0),
-            };
+            let (class, index) = which.class_and_index();
             self.violations.push(Violation {
                 class,
                 witness: Witness::Prisms,

@@ -10,7 +10,7 @@ use crate::math::Ray;
 use crate::tracer::Tracer;
 
 /// Rays that one task compares.
-const BLOCK: usize = 512;
+const BLOCK: u64 = 512;
 
 /// Compares the answers `told` for `rays` with the exact ones, in the rayon pool
 /// that this is called in. `None` when `progress` asked to stop.
@@ -55,12 +55,12 @@ pub(super) fn in_blocks(
     compare: impl Fn(&mut Agreement, u64) + Sync,
 ) -> Option<Agreement> {
     let done = std::sync::atomic::AtomicU64::new(0);
-    let indices: Vec<u64> = (0..count).collect();
-    let blocks: Option<Vec<Agreement>> = indices
-        .par_chunks(BLOCK)
+    let blocks: Option<Vec<Agreement>> = (0..count.div_ceil(BLOCK))
+        .into_par_iter()
         .map(|block| {
             let mut found = none.clone();
-            block.iter().for_each(|&index| compare(&mut found, index));
+            let indices = block * BLOCK..count.min((block + 1) * BLOCK);
+            indices.for_each(|index| compare(&mut found, index));
             let before = done.fetch_add(found.rays, std::sync::atomic::Ordering::Relaxed);
             match progress(before + found.rays, count, "comparing hits") {
                 ControlFlow::Continue(()) => Some(found),

@@ -82,6 +82,11 @@ impl TracedMesh {
         if !(start <= end) {
             return None;
         }
+        // Scaled to a tiny mesh, what passes far away is beyond f32.
+        let beside = from_centre + heading * nearest;
+        if !(beside.length() <= reach) {
+            return None;
+        }
         let origin = (from_centre + heading * start) * self.scale;
         let ray32 = Ray32 {
             origin: origin.as_vec3().to_array(),

@@ -195,12 +195,11 @@ fn settings(arguments: &CheckArguments) -> Settings {
     let mut segments = arguments.segments.clone();
     segments.sort_unstable();
     segments.dedup();
+    let is_wanted = |class: &Class| arguments.class.is_empty() || arguments.class.contains(class);
     let mut settings = Settings {
         segments,
-        classes: match arguments.class.as_slice() {
-            [] => Class::ALL.to_vec(),
-            some => some.to_vec(),
-        },
+        // Each once, in the order of the table.
+        classes: Class::ALL.into_iter().filter(is_wanted).collect(),
         seed: arguments.seed,
         max_memory: arguments.max_memory,
         most_listed: MOST_LISTED,

@@ -38,10 +38,15 @@ impl Told {
                     path.display()
                 );
             };
-            let needed = file.mesh.triangles.len() as u64 * TRIANGLE_BYTES;
+            let made_rays = match arguments.rays {
+                Rays::Count(count) => count,
+                Rays::Table(_) => 0,
+            };
+            let needed = file.mesh.triangles.len() as u64 * TRIANGLE_BYTES
+                + made_rays * size_of::<Ray>() as u64;
             if needed > arguments.max_memory {
                 bail!(
-                    "{}: the mesh takes about {}, which is more than the {} of --max-memory",
+                    "{}: the mesh and the rays take about {}, which is more than the {} of --max-memory",
                     path.display(),
                     readable(needed),
                     readable(arguments.max_memory)
@@ -54,6 +59,12 @@ impl Told {
         };
         let rays = given_rays(arguments)?.unwrap_or_default();
         let hits = read_hits(path)?;
+        if hits.is_empty() {
+            bail!(
+                "{}: there is no row, so there is nothing to compare",
+                path.display()
+            );
+        }
         if hits.len() != rays.len() {
             bail!(
                 "{}: there are {} rows for {} rays; it must have one row a ray, in order",
