@@ -1,4 +1,5 @@
-//! Many rays of every class against both meshes, and a few against the oracle.
+//! Many rays of every class against both meshes, some against cone curves and a
+//! few against the oracle.
 //!
 //! Every number of sides and every class get the same rays: the windows of the
 //! scene take turns, ray `i` belongs to window `i mod windows`. Rays are traced
@@ -10,7 +11,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
-use crate::embree::{Device, DeviceOptions};
+use crate::embree::Device;
 use crate::math::Ray;
 use crate::scene::Scene;
 
@@ -36,6 +37,9 @@ const BLOCK: u64 = 512;
 
 /// One ray of so many is given to the oracle, which takes some milliseconds.
 const RAYS_A_TRUTH: u64 = 1000;
+
+/// One ray of so many is held against the cone curves, which prove nothing.
+const RAYS_A_CURVE: u64 = 10;
 
 /// Is told how many of how many rays are done and what is going on, and may
 /// break off.
@@ -66,15 +70,15 @@ pub fn compare_with(
     progress: &Progress,
 ) -> Result<Outcome, CheckError> {
     let windows = chosen_windows(scene, settings)?;
-    let device = Device::new(&DeviceOptions::default())?;
-    // The curves are one more mesh.
-    let checked = (settings.segments.len() as u64 + 1) * settings.classes.len() as u64;
+    let device = Device::new(&settings.device)?;
+    let of_class =
+        settings.segments.len() as u64 * settings.rays + settings.rays.div_ceil(RAYS_A_CURVE);
     let run = Run {
         intersector,
         settings,
         windows: windows.len() as u64,
         device,
-        total: settings.rays * checked,
+        total: of_class * settings.classes.len() as u64,
         done: AtomicU64::new(0),
         is_stopped: AtomicBool::new(false),
         progress,
@@ -170,8 +174,10 @@ impl<I: Intersector> Run<'_, I> {
         ));
         for (&class, row) in self.settings.classes.iter().zip(&mut rows.curves) {
             let what = format!("{class}, cone curves");
-            let tally = self.trace(about, &what, BLOCK, |range, _| {
-                let indices = range.map(|number| self.index(about, number));
+            let block = BLOCK * RAYS_A_CURVE;
+            let tally = self.trace(about, &what, block, |range, _| {
+                let sample = range.step_by(RAYS_A_CURVE as usize);
+                let indices = sample.map(|number| self.index(about, number));
                 curve_block(about, &curves, self.intersector, class, indices)
             })?;
             row.add(tally, self.settings.most_listed);
@@ -286,15 +292,8 @@ impl<I: Intersector> Run<'_, I> {
                 });
             } else if let (Some(finding), Verdict::Right { .. }) = (&answer, &verdict) {
                 let is_sphere = class == Class::Sphere;
-                measure(
-                    about,
-                    meshes,
-                    &ray,
-                    finding,
-                    &scratch.seen,
-                    is_sphere,
-                    &mut tally,
-                );
+                let seen = &scratch.seen;
+                measure(about, meshes, &ray, finding, seen, is_sphere, &mut tally);
             }
         }
         tally

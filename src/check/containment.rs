@@ -5,17 +5,28 @@
 //! triangles, and whatever a ray meets of them is a point of the solid.
 //!
 //! *Around.* The triangles form a closed surface `S`: every edge belongs to two
-//! of them, run through in opposite directions. Let every triangle's plane have
-//! the solid on its inner side, where its normal does not point. From a point
-//! `x` of the solid's interior, every triangle that is not degenerate is seen
-//! from inside, at a positive solid angle; the angles add up to 4π times the
-//! number of times that `S` winds around `x`, a whole number. One positive angle
-//! makes it at least 1, and then every ray from `x` meets `S`, each time from
-//! inside to outside. So a line that enters the solid at `t1` and leaves it at
-//! `t2` meets `S` from outside at least once, always at `t <= t1`, and from inside
-//! at least once, always at `t >= t2`. (A degenerate triangle has no solid angle
-//! and is not in the way of lines nearby; points of the solid's surface are
-//! limits of interior ones.) That is all that is asked of the outer prism;
+//! of them, run through in opposite directions. Let every triangle be of one of
+//! two kinds:
+//!
+//! - its plane has the solid on its inner side, where its normal does not point;
+//! - its corners are all beyond one end of the solid, so that it is, and its plane
+//!   has the middle `p` of the axis strictly on its inner side. A triangle of a
+//!   cap, with its corner in the middle, is as narrow as a side: its plane
+//!   tilts by `ε cot(π/N)` over the disc and would have to be that far outside.
+//!
+//! No triangle comes into the solid's interior, so `S` winds around all of it
+//! as often as around `p`: once, since it does in the prism that is not rounded,
+//! and as the corners move from there to where they are, no side comes nearer
+//! to the axis than the radius and no cap to the ends (`prism`). From `p` every
+//! triangle that is not degenerate is seen from inside, at a positive solid
+//! angle; the angles add up to 4π, so each ray from `p` meets `S` once. That
+//! makes `S` the surface of a star-shaped body without folds, and the solid is
+//! in it. So a ray that starts outside of the body meets `S` from outside first,
+//! one that starts inside from inside, and a line that enters the solid at
+//! `t1` and leaves it at `t2` meets `S` from outside at least once at `t <= t1`, and
+//! from inside at least once at `t >= t2`. (A degenerate triangle has no solid
+//! angle and is not in the way of lines nearby; points of the solid's surface
+//! are limits of interior ones.) That is all that is asked of the outer prism;
 //! neither its convexity nor that of the inner one is needed, which rounding
 //! would break.
 //!
@@ -29,6 +40,8 @@
 //! n = (v1 - v0) × (v2 - v0),  m = Lᵀ n           the plane, seen from the solid
 //! g = n·(v0 - L p0 - T) - max(0, m·a)            its distance from the axis' ends
 //! around:  g >= 0,   g² a·a >= r² |m × a|²       the support of a disc: r |m × a| / |a|
+//! or, for all corners:  x·a <= 0  or all  x·a >= D a·a  (D > 0, else reversed),
+//!          2 n·(v0 - L p0 - T) > m·a             p is behind the plane
 //! ```
 //!
 //! In f64 the same is tried first, in the mesh's units, with bounds of the
@@ -83,33 +96,25 @@ pub(super) fn is_enclosed(
     let mut exactly = None;
     let mut is_closed = false;
     let all_outside = triangles.all(|corners| {
-        if is_surely_outside(solid, corners.map(wide)) {
+        let wide_corners = corners.map(wide);
+        if is_surely_outside(solid, wide_corners) || is_surely_beyond_end(solid, wide_corners) {
             is_closed = true;
             return true;
         }
         let plane = Plane::new(frame, corners);
         is_closed |= !plane.is_degenerate();
-        exactly
-            .get_or_insert_with(|| ExactSolid::new(solid.placed))
-            .is_behind(&plane)
+        let exact = exactly.get_or_insert_with(|| ExactSolid::new(solid.placed));
+        exact.is_behind(&plane) || exact.is_below(&plane)
     });
     all_outside && is_closed
 }
 
 /// In f64: true only if the point of the mesh is in the solid.
 fn is_surely_inside(solid: &MeshSolid, vertex: DVec3) -> bool {
-    let map = solid.map;
-    if !(map.defect <= 0.25) {
+    let Some((y, error)) = solid_point(solid, vertex) else {
         return false;
-    }
+    };
     let (a, length) = (solid.axis, solid.length);
-    let q = vertex - solid.base;
-    let y = map.inverse * q;
-    let (reach, base) = (q.length(), solid.base.length());
-    let error =
-        map.squeeze * (4.0 * UNIT * reach + UNIT * base + 2.5 * map.defect * (reach + UNIT * base));
-    let error = length * (error + 8.0 * UNIT * y.length());
-
     let (height, top) = (y.dot(a), a.length_squared());
     let from_axis = y.cross(a).length();
     error <= height
@@ -117,41 +122,106 @@ fn is_surely_inside(solid: &MeshSolid, vertex: DVec3) -> bool {
         && from_axis * (1.0 + 8.0 * UNIT) + error <= solid.radius * length * (1.0 - 8.0 * UNIT)
 }
 
+/// `y` for a point of the mesh and the error of its products with `a`, unless
+/// the map is too rough for it.
+fn solid_point(solid: &MeshSolid, vertex: DVec3) -> Option<(DVec3, f64)> {
+    let map = solid.map;
+    if !(map.defect <= 0.25) {
+        return None;
+    }
+    let q = vertex - solid.base;
+    let y = map.inverse * q;
+    let (reach, base) = (q.length(), solid.base.length());
+    let error =
+        map.squeeze * (4.0 * UNIT * reach + UNIT * base + 2.5 * map.defect * (reach + UNIT * base));
+    Some((y, solid.length * (error + 8.0 * UNIT * y.length())))
+}
+
+/// In f64: true only if the triangle is beyond one end, and the middle of the
+/// axis strictly behind its plane.
+fn is_surely_beyond_end(solid: &MeshSolid, corners: [DVec3; 3]) -> bool {
+    let top = solid.axis.length_squared() * (1.0 + 8.0 * UNIT);
+    let heights = corners.map(|corner| {
+        let (y, error) = solid_point(solid, corner)?;
+        Some((y.dot(solid.axis), error))
+    });
+    let all = |is_beyond: &dyn Fn(f64, f64) -> bool| {
+        let mut heights = heights.iter();
+        heights.all(|height| height.is_some_and(|(height, error)| is_beyond(height, error)))
+    };
+    let is_beyond =
+        all(&|height, error| height + error <= 0.0) || all(&|height, error| height - error >= top);
+    if !is_beyond {
+        return false;
+    }
+    let plane = RoundedPlane::new(solid, corners);
+    let along = 0.5 * plane.along;
+    plane.height - along > plane.error + UNIT * along.abs()
+}
+
 /// In f64: true only if the solid is behind the triangle's plane, and the
 /// triangle is not degenerate.
-fn is_surely_outside(solid: &MeshSolid, [v0, v1, v2]: [DVec3; 3]) -> bool {
-    let (a, length, map) = (solid.axis, solid.length, solid.map);
-    let (d1, d2) = (v1 - v0, v2 - v0);
-    let n = d1.cross(d2);
-    let size = n.length();
-    let n_error = 8.0 * UNIT * d1.length() * d2.length();
-    let m = map.matrix.transpose() * n;
-    let m_error = map.stretch * (n_error + 5.0 * UNIT * size);
-    let m_error = length * (m_error + 8.0 * UNIT * m.length());
+fn is_surely_outside(solid: &MeshSolid, corners: [DVec3; 3]) -> bool {
+    let plane = RoundedPlane::new(solid, corners);
+    let ends = plane.along.max(0.0);
+    let error = plane.error + UNIT * ends;
+    let disc = solid.radius * (plane.across + plane.m_error) / solid.length;
+    plane.height - ends - error > disc * (1.0 + 16.0 * UNIT)
+}
 
-    let q = v0 - solid.base;
-    let (reach, base) = (q.length(), solid.base.length());
-    let height = n.dot(q);
-    let height_error = n_error * (reach + UNIT * base) + size * UNIT * (5.0 * reach + base);
-    let ends = m.dot(a).max(0.0);
-    let error = height_error + m_error + UNIT * (height.abs() + ends);
-    let disc = solid.radius * (m.cross(a).length() + m_error) / length;
-    height - ends - error > disc * (1.0 + 16.0 * UNIT)
+/// A triangle's plane seen from the solid, in f64.
+struct RoundedPlane {
+    /// `n·q`.
+    height: f64,
+    /// `m·a`.
+    along: f64,
+    /// `|m × a|`.
+    across: f64,
+    /// Of each of the two.
+    m_error: f64,
+    /// Of `n·q` and `m·a` together.
+    error: f64,
+}
+
+impl RoundedPlane {
+    fn new(solid: &MeshSolid, [v0, v1, v2]: [DVec3; 3]) -> Self {
+        let (a, length, map) = (solid.axis, solid.length, solid.map);
+        let (d1, d2) = (v1 - v0, v2 - v0);
+        let n = d1.cross(d2);
+        let size = n.length();
+        let n_error = 8.0 * UNIT * d1.length() * d2.length();
+        let m = map.matrix.transpose() * n;
+        let m_error = map.stretch * (n_error + 5.0 * UNIT * size);
+        let m_error = length * (m_error + 8.0 * UNIT * m.length());
+
+        let q = v0 - solid.base;
+        let (reach, base) = (q.length(), solid.base.length());
+        let height = n.dot(q);
+        let height_error = n_error * (reach + UNIT * base) + size * UNIT * (5.0 * reach + base);
+        Self {
+            height,
+            along: m.dot(a),
+            across: m.cross(a).length(),
+            m_error,
+            error: height_error + m_error + UNIT * height.abs(),
+        }
+    }
 }
 
 /// The plane of a triangle, in the world.
 struct Plane {
-    point: ExactVector,
+    corners: [ExactVector; 3],
     /// Outward, of any length.
     normal: ExactVector,
 }
 
 impl Plane {
     fn new(frame: &MeshFrame, corners: [[f32; 3]; 3]) -> Self {
-        let [v0, v1, v2] = corners.map(|corner| frame.exact_world_from_mesh(wide(corner)));
+        let corners = corners.map(|corner| frame.exact_world_from_mesh(wide(corner)));
+        let [v0, v1, v2] = &corners;
         Self {
-            normal: (&v1 - &v0).cross(&(&v2 - &v0)),
-            point: v0,
+            normal: (v1 - v0).cross(&(v2 - v0)),
+            corners,
         }
     }
 
@@ -197,8 +267,7 @@ impl ExactSolid {
     }
 
     fn is_inside(&self, vertex: &ExactVector) -> bool {
-        let scaled = self.adjugate.times(&(vertex - &self.translation));
-        let x = &scaled - &self.start.times(&self.determinant);
+        let x = self.solid_point(vertex);
         let (height, top) = (x.dot(&self.axis), &self.determinant * &self.axis_squared);
         let zero = exact(0.0);
         let between = if self.determinant < zero {
@@ -210,11 +279,37 @@ impl ExactSolid {
         between && across.dot(&across) <= &self.radius_squared * &self.determinant * &top
     }
 
+    /// `D` times the `x` of a point of the world.
+    fn solid_point(&self, point: &ExactVector) -> ExactVector {
+        let scaled = self.adjugate.times(&(point - &self.translation));
+        &scaled - &self.start.times(&self.determinant)
+    }
+
+    /// Whether the triangle is beyond one end, and the middle of the axis strictly
+    /// behind its plane.
+    fn is_below(&self, plane: &Plane) -> bool {
+        // Times D, so that the sense of the axis does not depend on its sign.
+        let top = &self.determinant * &self.determinant * &self.axis_squared;
+        let heights = plane
+            .corners
+            .each_ref()
+            .map(|corner| self.solid_point(corner).dot(&self.axis) * &self.determinant);
+        let is_beyond = heights.iter().all(|height| *height <= exact(0.0))
+            || heights.iter().all(|height| *height >= top);
+        let (gap, along) = self.gap_and_along(plane);
+        is_beyond && gap * exact(2.0) > along
+    }
+
+    /// `n·(v0 - L p0 - T)` and `m·a`.
+    fn gap_and_along(&self, plane: &Plane) -> (Exact, Exact) {
+        let start = &self.matrix.times(&self.start) + &self.translation;
+        let along = self.matrix.times_from_left(&plane.normal).dot(&self.axis);
+        (plane.normal.dot(&(&plane.corners[0] - &start)), along)
+    }
+
     fn is_behind(&self, plane: &Plane) -> bool {
         let m = self.matrix.times_from_left(&plane.normal);
-        let start = &self.matrix.times(&self.start) + &self.translation;
-        let along = m.dot(&self.axis);
-        let mut gap = plane.normal.dot(&(&plane.point - &start));
+        let (mut gap, along) = self.gap_and_along(plane);
         if along > exact(0.0) {
             gap -= along;
         }

@@ -126,15 +126,16 @@ impl Meshes {
         [&self.outer, &self.inner].map(|mesh| mesh.triangles_of(solid))
     }
 
-    /// Writes what Embree finds the ray to meet to `scratch.seen`.
-    pub fn look(&self, ray: &Ray32, scratch: &mut Scratch) {
+    /// Writes what Embree finds the ray to meet up to a parameter, which may be
+    /// infinite, to `scratch.seen`.
+    pub fn look(&self, ray: &Ray32, up_to: f32, scratch: &mut Scratch) {
         let origin = point(ray.origin);
         let direction = point(ray.direction);
-        let endless = Ray32 {
-            t_far: f32::INFINITY,
+        let whole = Ray32 {
+            t_far: up_to,
             ..*ray
         };
-        self.scene.every_hit(&endless, &mut scratch.hits);
+        self.scene.every_hit(&whole, &mut scratch.hits);
         let crossings = &mut scratch.crossings;
         crossings.clear();
         for hit in &scratch.hits {
@@ -163,6 +164,10 @@ impl Meshes {
                     &mut inner
                 };
                 prism.add(crossing.t, crossing.enters);
+            }
+            if up_to < f32::INFINITY {
+                outer.leave_later();
+                inner.leave_later();
             }
             let solid = of_solid[0].solid;
             scratch.seen.push(Seen {

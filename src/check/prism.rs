@@ -23,23 +23,31 @@
 //! a side of width `w`, at a point of the solid at the distance `y` from the face's
 //! middle line, `Σ|λ| <= 3 + 4 |y| / w`, and the wall recedes there by
 //! `r - √(r² - y²) >= y² / 2r`; the greatest of `4 δ |y| / w - y² / 2r` is
-//! `8 r δ² / w²`. For a triangle of a cap, which has a corner in the middle,
-//! `Σ|λ| <= 2 + max(1, cot(π/N))` over the disc. With `w = 2 r tan(π/N)` the margins
-//! are
+//! `8 r δ² / w²`. With `w = 2 r tan(π/N)` the margin is
 //!
 //! ```text
-//! side  δ (3 + 2 δ / (r tan²(π/N)))        cap  δ (2 + max(1, cot(π/N)))
+//! side  δ (3 + 2 δ / (r tan²(π/N)))
 //! ```
+//!
+//! A triangle of a cap has a corner in the middle; it is enough that it is
+//! beyond the end and that the solid's middle is behind its plane
+//! (`containment`), for which the caps move by `δ(a/|a|)`. A solid so flat that
+//! the planes tilt past its middle gets them where they pass over the whole
+//! disc, on which `Σ|λ| <= 2 + max(1, cot(π/N))`: that many `δ` away. This grows
+//! with N, and so it is not done for all: at 512 sides it is 165 `δ`, and the
+//! caps' silhouettes would be wider than the walls'.
 //!
 //! That takes faces to be as wide as in the regular polygon. Where a map is so
 //! flat that margins differ much between neighbours it need not hold, so every
 //! prism is verified as built (`containment`). A circumscribed one that fails is
-//! built again with twice the margin, up to [`MOST_DOUBLINGS`] times.
+//! built again with its caps over the disc, then with twice the margin, up to
+//! [`MOST_DOUBLINGS`] times.
 //!
 //! A margin that takes an inscribed prism's faces past the axis, or its corners
 //! past each other, leaves nothing of it.
 
 use std::f64::consts::PI;
+use std::iter;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -230,20 +238,26 @@ impl Builder {
     /// The vertices of a prism that was proven to be on its side of the solid.
     fn verified(&self, solid: &MeshSolid, frame: &MeshFrame) -> Option<Vec<[f32; 3]>> {
         if self.side == Side::Inscribed {
-            let vertices = self.vertices(solid, 1.0)?;
+            let vertices = self.vertices(solid, 1.0, 1.0)?;
             return holds_all(solid, frame, &vertices).then_some(vertices);
         }
-        (0..=MOST_DOUBLINGS).find_map(|doublings| {
-            let vertices = self.vertices(solid, f64::from(1 << doublings))?;
-            let triangles = self.triangles(solid.map.is_mirrored).iter();
-            let corners = triangles.map(|corners| corners.map(|i| vertices[i as usize]));
-            is_enclosed(solid, frame, corners).then_some(vertices)
-        })
+        let over_disc = 2.0 + (1.0 / self.half.1).max(1.0);
+        let doubled = (0..=MOST_DOUBLINGS).map(|doublings| f64::from(1 << doublings));
+        let looser = doubled.map(|margins| (margins, over_disc * margins));
+        iter::once((1.0, 1.0))
+            .chain(looser)
+            .find_map(|(sides, caps)| {
+                let vertices = self.vertices(solid, sides, caps)?;
+                let triangles = self.triangles(solid.map.is_mirrored).iter();
+                let corners = triangles.map(|corners| corners.map(|i| vertices[i as usize]));
+                is_enclosed(solid, frame, corners).then_some(vertices)
+            })
     }
 
-    /// The vertices, rounded, with so many times the margins: first those in the
-    /// middles of the caps, then those of the corners, at `p0` and `p1` in turn.
-    fn vertices(&self, solid: &MeshSolid, margins: f64) -> Option<Vec<[f32; 3]>> {
+    /// The vertices, rounded, with so many times the margins of the sides and so
+    /// many `δ` at the caps: first those in the middles of the caps, then those
+    /// of the corners, at `p0` and `p1` in turn.
+    fn vertices(&self, solid: &MeshSolid, sides: f64, caps: f64) -> Option<Vec<[f32; 3]>> {
         let (radius, map) = (solid.radius, solid.map);
         let (cos, tan) = self.half;
         let unit = solid.axis / solid.length;
@@ -253,13 +267,10 @@ impl Builder {
         let back = map.inverse.transpose();
         let (back_first, back_second) = (back * first, back * second);
 
-        let axial = epsilon * (back * unit).length();
+        let axial = epsilon * (back * unit).length() * caps;
         let (low, high) = match self.side {
-            Side::Inscribed => (axial * margins, solid.length - axial * margins),
-            Side::Circumscribed => {
-                let margin = axial * (2.0 + (1.0 / tan).max(1.0)) * margins;
-                (-margin, solid.length + margin)
-            }
+            Side::Inscribed => (axial, solid.length - axial),
+            Side::Circumscribed => (-axial, solid.length + axial),
         };
         if !(low < high) {
             return None;
@@ -267,9 +278,9 @@ impl Builder {
         let distance = |&(cos_i, sin_i): &(f64, f64)| {
             let delta = epsilon * (back_first * cos_i + back_second * sin_i).length();
             match self.side {
-                Side::Inscribed => radius * cos - delta * margins,
+                Side::Inscribed => radius * cos - delta * sides,
                 Side::Circumscribed => {
-                    radius + delta * (3.0 + 2.0 * delta / (radius * tan * tan)) * margins
+                    radius + delta * (3.0 + 2.0 * delta / (radius * tan * tan)) * sides
                 }
             }
         };

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use glam::DVec3;
 
-use crate::embree::{Device, DeviceOptions, Ray32};
+use crate::embree::{Device, Ray32};
 use crate::math::Ray;
 use crate::scene::Scene;
 
@@ -128,7 +128,7 @@ pub fn replay(
     which: &Replay,
 ) -> Result<Replayed, CheckError> {
     let windows = chosen_windows(scene, settings)?;
-    let device = Device::new(&DeviceOptions::default())?;
+    let device = Device::new(&settings.device)?;
     let mut replayed = Replayed::default();
     let count = windows.len() as u64;
     for (number, window) in (0..).zip(&windows) {

@@ -24,12 +24,12 @@
 //!
 //! *Faces.* A side of a prism of f32 vertices is two triangles that are not
 //! quite in one plane, so a line may cross the surface more than twice. What is
-//! used stays true: an outer prism holds the solid by the half-spaces of
-//! *every* triangle, so `a`, its first entry, is not behind the solid, nor its
-//! last exit `b` before the solid's end; each point of the inner prism's
-//! triangles is between its vertices and hence in the solid, so any entry is
-//! at or after `e`, any exit at or before `l`. A ray starts inside a prism if
-//! it meets an exit before any entry.
+//! used stays true: an outer prism is the surface of a star-shaped body that
+//! holds the solid (`containment`), so `a`, its first entry, is not behind the
+//! solid, nor its last exit `b` before the solid's end; each point of the inner
+//! prism's triangles is between its vertices and hence in the solid, so any
+//! entry is at or after `e`, any exit at or before `l`. A ray starts inside a
+//! prism if it meets an exit before any entry.
 //!
 //! *Tubes.* Without one of its discs the surface is a part of the boundary of
 //! `C`: a first hit is that of the boundary or later, so the lower bounds hold.
@@ -46,6 +46,19 @@
 //!
 //! *Many solids.* The first hit of all is between the least lower and the least
 //! upper bound.
+//!
+//! *Seen in part.* What a ray meets beyond some `T` may be left out to settle an
+//! answer `t <= T`. A prism that is entered and not left by then is left *later*.
+//! A bound that is not seen is above `T`, hence above `t`: an upper one allows
+//! `t`, and a solid whose lower one is not seen cannot come before it. A solid
+//! that starts around the ray and is left after `T` isn't seen either; it has
+//! `t_min` for a lower and more than `T` for an upper bound, and both allow `t`.
+//! So what agrees with the bounds in part agrees with those of the whole. The
+//! converse does not hold, and an answer that isn't settled is judged again by
+//! the whole.
+
+/// Stands for a parameter beyond what was seen.
+pub(crate) const LATER: f64 = f64::MAX;
 
 /// Where a ray crosses the surface of a prism, at or after its start.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +86,14 @@ impl Crossings {
         } else {
             self.leave = self.leave.min(t);
             self.last_leave = self.last_leave.max(t);
+        }
+    }
+
+    /// After crossings were seen in part: whoever is in leaves later.
+    pub fn leave_later(&mut self) {
+        if self.enter < f64::INFINITY && self.leave == f64::INFINITY {
+            self.leave = LATER;
+            self.last_leave = LATER;
         }
     }
 

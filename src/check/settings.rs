@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::embree::DeviceOptions;
+
 /// How the rays of a check are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Class {
@@ -72,6 +74,8 @@ pub struct Settings {
     pub max_memory: u64,
     /// Violations that are listed; all are counted.
     pub most_listed: usize,
+    /// Of the Embree that holds the meshes.
+    pub device: DeviceOptions,
 }
 
 impl Default for Settings {
@@ -83,6 +87,7 @@ impl Default for Settings {
             seed: 0,
             max_memory: 4 << 30,
             most_listed: 20,
+            device: DeviceOptions::default(),
         }
     }
 }

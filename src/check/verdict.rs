@@ -1,17 +1,26 @@
 //! The verdict on one answer: by what Embree sees, and exactly where that is
 //! not enough.
 
+use std::f64::consts::PI;
+
 use crate::embree::Ray32;
 use crate::math::Ray;
 
 use super::finding::Finding;
-use super::judge::{Directory, Wrong, first, judge};
+use super::judge::{Directory, Wrong, first, judge, solid_of};
 use super::mesh_frame::MeshFrame;
 use super::meshes::{Meshes, Scratch, Seen, may_meet};
 use super::placed::Window;
 use super::rays::RaySource;
 use super::retrial::retry;
+use super::sandwich::LATER;
+use super::surface::LocalRay;
 use super::tally::Tally;
+
+/// How far beyond an answer is looked for the bounds of its solid, in sagittas: the
+/// inscribed prism is met within so many where the ray is at more than 4° to
+/// the wall.
+const SAGITTAS_BEYOND: f64 = 16.0;
 
 /// A window and what belongs to it.
 pub(super) struct Subject<'a> {
@@ -97,7 +106,16 @@ pub(super) fn verdict(
     {
         return Verdict::Unwitnessed;
     }
-    meshes.look(ray32, scratch);
+    if let Some(finding) = answer
+        && is_settled(about, meshes, ray32, ray, finding, scratch)
+    {
+        return Verdict::Right {
+            is_band: first(&scratch.seen).is_open(ray.t_max),
+            is_for_want: false,
+            is_cleared: false,
+        };
+    }
+    meshes.look(ray32, f32::INFINITY, scratch);
     let is_odd = scratch.seen.iter().any(|seen| seen.bounds.is_odd);
     let is_suspect = is_odd || judge(&about.directory, ray, answer, &scratch.seen).is_some();
     if is_suspect {
@@ -115,4 +133,33 @@ pub(super) fn verdict(
         is_for_want: is_band && scratch.seen.iter().any(lacks_inner),
         is_cleared: is_suspect,
     }
+}
+
+/// Whether an answer that names its solid agrees with what the ray meets up to a
+/// little beyond it, where the solid itself has its upper bound. Most of what the
+/// whole ray meets in a deep scene lies farther.
+fn is_settled(
+    about: &Subject,
+    meshes: &Meshes,
+    ray32: &Ray32,
+    ray: &Ray,
+    finding: &Finding,
+    scratch: &mut Scratch,
+) -> bool {
+    let place = finding.place.as_ref();
+    let Some(solid) = place.and_then(|place| about.directory.find(place)) else {
+        return false;
+    };
+    let local = LocalRay::new(&about.window.solids[solid as usize], ray);
+    let sagitta = 1.0 - libm::cos(PI / f64::from(meshes.segments));
+    let beyond = SAGITTAS_BEYOND * sagitta / local.radii(1.0);
+    let up_to = (finding.t + beyond) as f32;
+    if !(finding.t < f64::from(up_to)) {
+        return false;
+    }
+    meshes.look(ray32, up_to, scratch);
+    let is_odd = scratch.seen.iter().any(|seen| seen.bounds.is_odd);
+    let has_high = solid_of(&about.directory, finding, &scratch.seen)
+        .is_some_and(|seen| seen.bounds.interval.high < LATER);
+    has_high && !is_odd && judge(&about.directory, ray, Some(finding), &scratch.seen).is_none()
 }

@@ -11,7 +11,7 @@ use cyltrace::check::{self, Class, Intersector, Outcome, Replay, Settings, repla
 use cyltrace::scene::{self, Scene};
 use cyltrace::tracer::{Options, Tracer};
 
-use scenes::{random_scene, separate_cylinders};
+use scenes::{random_scene, single_cylinder};
 
 fn sample(name: &str) -> Arc<Scene> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -101,30 +101,28 @@ fn random_scenes_hold() {
 
 /// The share of rays between the prisms falls as their distance does, as N^-2.
 ///
-/// From 8 to 128 sides. Of these million rays, 57 were in the band at 256 sides
-/// and 35 at 512, where N^-2 leaves 46 and 11: more than chance, cause unknown.
+/// With rays as N^2, so that some 100 are in the band for every number of sides and
+/// each share is known to a tenth; the slope then to 0.03. The cylinder is as
+/// large as the meshes' space: its margins of f32 are 5 % of the distance at
+/// 512 sides.
 #[test]
 fn silhouette_band_falls_with_the_square_of_the_sides() {
-    let scene = Arc::new(separate_cylinders());
-    let settings = Settings {
-        segments: vec![8, 16, 32, 64, 128],
-        rays: 1_000_000,
-        classes: vec![Class::Sphere],
-        ..Settings::default()
-    };
-    let outcome = checked("band", &scene, &tracer(&scene), &settings);
-    assert!(outcome.holds());
-    let points: Vec<(f64, f64)> = outcome
-        .convergence
-        .iter()
-        .map(|at| {
-            (
-                libm::log(f64::from(at.segments)),
-                libm::log(at.band_percent),
-            )
-        })
-        .collect();
-    println!("{:?}", outcome.convergence);
+    let scene = Arc::new(single_cylinder());
+    let tracer = tracer(&scene);
+    let points = [8_u32, 16, 32, 64, 128, 256, 512].map(|segments| {
+        let settings = Settings {
+            segments: vec![segments],
+            rays: 30 * u64::from(segments).pow(2),
+            classes: vec![Class::Sphere],
+            ..Settings::default()
+        };
+        let name = format!("band of {segments} sides");
+        let outcome = checked(&name, &scene, &tracer, &settings);
+        assert!(outcome.holds());
+        let percent = outcome.convergence[0].band_percent;
+        println!("{segments} sides: {percent} %");
+        (libm::log(f64::from(segments)), libm::log(percent))
+    });
     let mean =
         |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
     let (x, y) = (mean(|p| p.0), mean(|p| p.1));

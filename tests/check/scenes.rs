@@ -66,13 +66,9 @@ pub fn random_scene(seed: u64) -> Scene {
     Scene::new(prototypes)
 }
 
-/// Cylinders whose discs and walls hide little of each other.
-pub fn separate_cylinders() -> Scene {
-    let along = [DVec3::X, DVec3::Y, DVec3::Z];
-    let cylinders = (0..5).map(|number| {
-        let axis = along[number % 3] * 4.0;
-        let middle = DVec3::splat(5.0 * number as f64);
-        Cylinder::new(middle - axis, middle + axis, 1.0, Caps::Both).expect("a cylinder")
-    });
-    Scene::new(vec![prototype(cylinders)])
+/// A cylinder that is about as thick as it is long, askew.
+pub fn single_cylinder() -> Scene {
+    let axis = DVec3::new(0.6, 0.5, 0.7);
+    let cylinder = Cylinder::new(-axis, axis, 1.0, Caps::Both).expect("a cylinder");
+    Scene::new(vec![prototype([cylinder])])
 }

@@ -203,6 +203,7 @@ fn settings(arguments: &CheckArguments) -> Settings {
         seed: arguments.seed,
         max_memory: arguments.max_memory,
         most_listed: MOST_LISTED,
+        device: device_options(arguments),
         ..Settings::default()
     };
     if let Rays::Count(count) = arguments.rays {
