@@ -100,6 +100,9 @@ pub(super) fn chosen_windows(
     scene: &Scene,
     settings: &Settings,
 ) -> Result<Vec<Window>, CheckError> {
+    if settings.rays == 0 || settings.classes.is_empty() || settings.segments.is_empty() {
+        return Err(CheckError::NothingAsked);
+    }
     for &segments in &settings.segments {
         if !(3..=4096).contains(&segments) {
             return Err(CheckError::Segments { segments });

@@ -68,11 +68,11 @@ pub struct ClassRow {
 
 impl ClassRow {
     /// Whether more than half of the rays had no witness: such a row says
-    /// nothing and fails. Not so for cone curves, which are not there for every
-    /// placement and prove nothing where they are.
+    /// nothing and fails. It is asked of the prisms, which are there for every
+    /// ray: cone curves are not, and the oracle is given a few.
     #[must_use]
     pub fn is_unwitnessed(&self) -> bool {
-        self.witness != Witness::ConeCurve && 2 * self.unwitnessed > self.rays
+        self.witness == Witness::Prisms && 2 * self.unwitnessed > self.rays
     }
 }
 

@@ -76,7 +76,10 @@ impl<'a> RaySource<'a> {
         for _ in 0..MOST_DRAWS {
             let (origin, direction) = self.wish(class, &mut random);
             if let Some(rays) = self.exact_ray(origin, direction) {
-                return rays;
+                return match class {
+                    Class::Sphere => rays,
+                    _ => self.in_part(rays, &mut random),
+                };
             }
         }
         let origin = self.centre + random.direction() * (1.5 * self.reach);
@@ -103,6 +106,19 @@ impl<'a> RaySource<'a> {
             ray.t_max = f64::from(far);
         }
         Some((ray32, ray))
+    }
+
+    /// One ray in four is asked about within a part of its range only.
+    fn in_part(&self, (mut ray32, mut ray): (Ray32, Ray), random: &mut Random) -> (Ray32, Ray) {
+        let way = self.reach / ray.direction.length();
+        let near = ray.t_min + random.uniform(0.0, 2.0) * way;
+        let far = near + random.uniform(0.0, 2.0) * way;
+        let range = (near as f32, (far as f32).min(ray32.t_far));
+        if random.below(4) == 0 && range.0 <= range.1 {
+            (ray32.t_near, ray32.t_far) = range;
+            (ray.t_min, ray.t_max) = (f64::from(range.0), f64::from(range.1));
+        }
+        (ray32, ray)
     }
 
     /// An origin far outside moves along the ray to two diagonals before the

@@ -102,9 +102,12 @@ pub enum CheckError {
         segments: u32,
     },
     /// Not even one prism fits.
-    #[error("the meshes need {needed} bytes, which is more than the {allowed} allowed")]
+    #[error(
+        "the meshes of the smallest part of the scene that was tried take more than the {allowed} \
+         bytes allowed; even eight solids take {needed}"
+    )]
     Memory {
-        /// What the smallest window would take.
+        /// What eight solids take.
         needed: u64,
         /// [`Settings::max_memory`].
         allowed: u64,
@@ -112,6 +115,9 @@ pub enum CheckError {
     /// Progress was told to stop.
     #[error("interrupted")]
     Interrupted,
+    /// Nothing is asked for, which would hold.
+    #[error("no rays, no class of rays or no number of segments: there is nothing to check")]
+    NothingAsked,
     /// Nothing to check.
     #[error("the scene holds no solid")]
     Empty,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cyltrace::check::{Class, Finding, Intersector, Outcome, Settings};
+use cyltrace::check::{self, Class, Finding, Intersector, Outcome, Settings};
 use cyltrace::math::{Random, Ray};
 use cyltrace::scene::{CylinderRecord, MaterialIndex, Scene};
 use cyltrace::solid::{Caps, Cylinder};
@@ -103,6 +103,35 @@ fn far_root_is_caught() {
         Some(far.map_or(first.clone(), |far| Finding { t: far.t, ..first }))
     });
     bites("far root", &scene, &wrong, 1_000, &Class::ALL);
+}
+
+#[test]
+fn ignored_range_is_caught() {
+    let scene = scene();
+    let tracer = tracer(&Arc::new(scene.clone()));
+    let classes = [Class::Inside, Class::Grazing, Class::Axial];
+    let no_start = Tampered(|ray: &Ray| {
+        let t_min = 0.0;
+        Intersector::closest(&tracer, &Ray { t_min, ..*ray })
+    });
+    bites("start of the range", &scene, &no_start, 1_000, &classes);
+    let no_end = Tampered(|ray: &Ray| {
+        let t_max = f64::INFINITY;
+        Intersector::closest(&tracer, &Ray { t_max, ..*ray })
+    });
+    bites("end of the range", &scene, &no_end, 1_000, &classes);
+}
+
+#[test]
+fn nothing_asked_is_refused() {
+    let scene = scene();
+    let tracer = tracer(&Arc::new(scene.clone()));
+    let settings = Settings {
+        classes: Vec::new(),
+        ..settings(1_000)
+    };
+    let refused = check::compare(&scene, &tracer, &settings);
+    assert!(matches!(refused, Err(check::CheckError::NothingAsked)));
 }
 
 #[test]

@@ -171,29 +171,3 @@ fn replayed_rays_are_the_same() {
     assert!("grazing".parse::<Replay>().is_err());
     assert!("0:0:0:0:0:0:0:0".parse::<Replay>().is_err());
 }
-
-/// The figure of the documentation: rays of one class against both meshes.
-#[test]
-#[ignore = "a measurement"]
-fn speed_of_the_lattice() {
-    let scene = sample("lattice.toml");
-    let tracer = tracer(&scene);
-    for class in Class::ALL {
-        for rays in [1, 100_000] {
-            let settings = Settings {
-                segments: vec![64],
-                rays,
-                classes: vec![class],
-                ..Settings::default()
-            };
-            let start = std::time::Instant::now();
-            let outcome = check::compare(&scene, &tracer, &settings).expect("an outcome");
-            let seconds = start.elapsed().as_secs_f64();
-            println!(
-                "{class}: {rays} rays in {seconds:.1} s, holds {}",
-                outcome.holds()
-            );
-            println!("  {:?}", outcome.rows);
-        }
-    }
-}
