@@ -217,7 +217,11 @@ struct Plane {
 
 impl Plane {
     fn new(frame: &MeshFrame, corners: [[f32; 3]; 3]) -> Self {
-        let corners = corners.map(|corner| frame.exact_world_from_mesh(wide(corner)));
+        Self::of(corners.map(|corner| frame.exact_world_from_mesh(wide(corner))))
+    }
+
+    /// Through points of the world.
+    fn of(corners: [ExactVector; 3]) -> Self {
         let [v0, v1, v2] = &corners;
         Self {
             normal: (v1 - v0).cross(&(v2 - v0)),

@@ -27,7 +27,10 @@ pub(in crate::check) fn is_enclosed_exactly(
     mut triangles: impl Iterator<Item = [[f32; 3]; 3]>,
 ) -> bool {
     let solid = ExactSolid::new(solid);
-    triangles.all(|corners| solid.is_behind(&Plane::new(frame, corners)))
+    triangles.all(|corners| {
+        let plane = Plane::new(frame, corners);
+        solid.is_behind(&plane) || solid.is_below(&plane)
+    })
 }
 
 /// A window about one cylinder in up to three placements that stretch, shear
@@ -143,11 +146,7 @@ fn planes_near_the_surface_are_never_taken_for_outside_wrongly() {
         {
             corners.swap(1, 2);
         }
-        let [v0, v1, v2] = corners.map(|corner| frame.exact_world_from_mesh(corner));
-        let plane = Plane {
-            normal: (&v1 - &v0).cross(&(&v2 - &v0)),
-            point: v0,
-        };
+        let plane = Plane::of(corners.map(|corner| frame.exact_world_from_mesh(corner)));
         let truth = ExactSolid::new(placed).is_behind(&plane);
         let filtered = is_surely_outside(&solid, corners);
         assert!(
@@ -160,5 +159,51 @@ fn planes_near_the_surface_are_never_taken_for_outside_wrongly() {
     assert!(
         decided > outside / 2 && decided < outside,
         "{outside} outside, {decided} of them surely"
+    );
+}
+
+/// Triangles of caps, tilted a little and up to past the middle of the axis, with
+/// corners next to the plane of the end.
+#[test]
+fn triangles_near_an_end_are_never_taken_for_beyond_it_wrongly() {
+    let mut random = Random::new(63, 0);
+    let (mut beyond, mut decided) = (0, 0);
+    for case in 0..20_000 {
+        let window = random_window(&mut random);
+        let (frame, placed) = (MeshFrame::new(&window), &window.solids[0]);
+        let map = MeshMap::new(&frame, &placed.frame);
+        let solid = MeshSolid::new(&frame, &map, placed);
+        let unit = solid.axis / solid.length;
+        let across = unit.cross(random.direction()).normalize();
+        let beside = unit.cross(across);
+        let is_top = random.below(2) == 0;
+        let mut corner = |u: f64, v: f64| {
+            let lift = match random.below(4) {
+                0 => solid.length * random.log_uniform(1e-3, 10.0),
+                _ => solid.length * tiny(&mut random).abs(),
+            };
+            // One in 16 is on the wrong side, by little.
+            let lift = if random.below(16) == 0 { -lift } else { lift };
+            let height = if is_top { solid.length + lift } else { -lift };
+            let off = (across * u + beside * v) * solid.radius;
+            solid.base + map.matrix * (unit * height + off)
+        };
+        let mut corners = [corner(0.0, 0.0), corner(1.0, -0.1), corner(1.0, 0.1)];
+        if is_top == map.is_mirrored {
+            corners.swap(1, 2);
+        }
+        let plane = Plane::of(corners.map(|corner| frame.exact_world_from_mesh(corner)));
+        let truth = ExactSolid::new(placed).is_below(&plane);
+        let filtered = is_surely_beyond_end(&solid, corners);
+        assert!(
+            truth || !filtered,
+            "case {case}: {corners:?} is not beyond an end of {placed:?}"
+        );
+        beyond += u32::from(truth);
+        decided += u32::from(filtered);
+    }
+    assert!(
+        decided > beyond / 4 && decided < beyond && beyond < 20_000,
+        "{beyond} beyond, {decided} of them surely"
     );
 }

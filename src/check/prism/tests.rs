@@ -91,7 +91,7 @@ fn prisms_without_margins_are_caught() {
             let solid = MeshSolid::new(&frame, &map, &window.solids[0]);
             for (side, caught) in BOTH.into_iter().zip(&mut caught) {
                 let builder = Builder::new(segments, side);
-                let vertices = builder.vertices(&solid, 0.0).expect("a prism");
+                let vertices = builder.vertices(&solid, 0.0, 0.0).expect("a prism");
                 let triangles = builder.triangles(map.is_mirrored).iter();
                 let corners = triangles.map(|corners| corners.map(|i| vertices[i as usize]));
                 let (filtered, truth) = match side {
