@@ -114,7 +114,7 @@ fn refusals_name_the_remedy_and_write_nothing() {
         ),
         (
             "scene.toml -o old.obj --max-memory 2kB",
-            "nothing is written: use fewer --segments, or a greater --max-memory: the file needs up to",
+            "error: nothing is written, as the file may take ",
         ),
         ("scene.toml -o scene.toml", "would destroy"),
         ("scene.toml -o a.obj --json a.obj", "are the same file"),

@@ -23,6 +23,7 @@ use super::mesh_frame::MeshFrame;
 use super::meshes::{Meshes, Scratch, Seen};
 use super::outcome::{Outcome, Violation, Witness};
 use super::placed::{Window, windows};
+use super::plan::{self, Missing};
 use super::prism::bytes_needed;
 use super::rays::RaySource;
 use super::settings::{CheckError, Class, Settings};
@@ -89,7 +90,7 @@ pub fn compare_with(
         let frame = MeshFrame::new(window);
         let source = RaySource::new(scene, window, &frame, number, settings.seed);
         let about = Subject::new(number, window, &frame, &source);
-        outcome.windows.extend(run.window(&about, &mut rows)?);
+        outcome.windows.push(run.window(&about, &mut rows)?);
     }
     rows.finish(settings, &mut outcome);
     Ok(outcome)
@@ -155,12 +156,16 @@ struct Run<'a, I> {
 
 impl<I: Intersector> Run<'_, I> {
     /// Checks one window and says what it held.
-    fn window(&self, about: &Subject, rows: &mut Rows) -> Result<Vec<String>, CheckError> {
-        let mut words = Vec::new();
+    fn window(&self, about: &Subject, rows: &mut Rows) -> Result<String, CheckError> {
+        let mut missing = Vec::new();
         for (&segments, rows) in self.settings.segments.iter().zip(&mut rows.prisms) {
             self.tell(0, &format!("building prisms of {segments} sides"))?;
             let meshes = Meshes::new(&self.device, about.window, about.frame, segments)?;
-            words.push(self.describe(about, &meshes));
+            missing.push(Missing {
+                segments,
+                inscribed: meshes.empty(),
+                circumscribed: meshes.unbounded().len(),
+            });
             for (&class, row) in self.settings.classes.iter().zip(rows) {
                 let what = format!("{class}, {segments} sides");
                 let tally = self.trace(about, &what, BLOCK, |range, scratch| {
@@ -171,10 +176,7 @@ impl<I: Intersector> Run<'_, I> {
         }
         self.tell(0, "building cone curves")?;
         let curves = ConeCurves::of_window(&self.device, about.window, about.frame)?;
-        words.push(format!(
-            "{} of them as cone curves",
-            curves.witnessed_solids()
-        ));
+        let with_curves = curves.witnessed_solids();
         for (&class, row) in self.settings.classes.iter().zip(&mut rows.curves) {
             let what = format!("{class}, cone curves");
             let block = BLOCK * RAYS_A_CURVE;
@@ -192,29 +194,14 @@ impl<I: Intersector> Run<'_, I> {
             })?;
             row.add(tally, self.settings.most_listed);
         }
-        Ok(words)
-    }
-
-    fn describe(&self, about: &Subject, meshes: &Meshes) -> String {
-        let solids = about.window.solids.len();
-        let bytes = bytes_needed(solids as u64, meshes.segments);
-        let place = match &about.window.bounds {
-            None => String::from("the whole scene"),
-            Some(bounds) => format!(
-                "part {} of {}: {:.3e} wide about {:.6}",
-                about.number + 1,
-                self.windows,
-                bounds.extent().max_element(),
-                bounds.centre()
-            ),
-        };
-        format!(
-            "{place}: {solids} solids with {} sides, about {bytes} bytes; {} too small for an \
-             inscribed prism, {} without a circumscribed one",
-            meshes.segments,
-            meshes.empty(),
-            meshes.unbounded().len()
-        )
+        let number = about.number;
+        Ok(plan::in_words(
+            about.window,
+            number,
+            self.windows,
+            &missing,
+            with_curves,
+        ))
     }
 
     /// Gives the rays of a window to `block`, in ranges of the window's own

@@ -1,8 +1,11 @@
-//! What a check will take, before anything is built.
+//! What a check will take before anything is built, and what each part of the
+//! scene held.
 
 use super::compare::chosen_windows;
+use super::placed::Window;
 use super::prism::bytes_needed;
 use super::{CheckError, Settings};
+use crate::report::{figure, readable};
 use crate::scene::Scene;
 
 /// The memory that the largest meshes of a check take.
@@ -31,4 +34,50 @@ pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, CheckError> {
         solids,
         bytes: bytes_needed(solids as u64, segments),
     })
+}
+
+/// Solids of a window that have no prism of a number of sides.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Missing {
+    /// Sides.
+    pub segments: u32,
+    /// Solids too small for an inscribed prism in f32.
+    pub inscribed: usize,
+    /// Solids for which no circumscribed prism could be proven.
+    pub circumscribed: usize,
+}
+
+/// What a window held, in a line.
+pub(super) fn in_words(
+    window: &Window,
+    number: u64,
+    windows: u64,
+    missing: &[Missing],
+    with_curves: usize,
+) -> String {
+    let place = match &window.bounds {
+        None => String::from("the whole scene"),
+        Some(bounds) => format!(
+            "part {} of {windows}, {} wide about {:.6}",
+            number + 1,
+            figure(bounds.extent().max_element()),
+            bounds.centre()
+        ),
+    };
+    let solids = window.solids.len();
+    let segments = missing.iter().map(|one| one.segments).max().unwrap_or(3);
+    let bytes = readable(bytes_needed(solids as u64, segments));
+    let mut text = format!(
+        "{place}: {solids} solids, about {bytes} with {segments} sides; {with_curves} of them as cone curves"
+    );
+    for (kind, count) in [
+        ("inscribed", (|one| one.inscribed) as fn(&Missing) -> usize),
+        ("circumscribed", |one| one.circumscribed),
+    ] {
+        for one in missing.iter().filter(|one| count(one) > 0) {
+            let (count, segments) = (count(one), one.segments);
+            text += &format!("; {count} without {kind} prism of {segments} sides");
+        }
+    }
+    text
 }

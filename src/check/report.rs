@@ -1,7 +1,7 @@
 //! What came of a check as tables and as a page.
 
 use super::agreement::Disagreement;
-use super::{Agreement, ClassRow, Outcome, Pictures, Replay, Violation};
+use super::{Agreement, ClassRow, Outcome, Pictures, Replay, Violation, Witness};
 use crate::report::{Figure, Mark, Page, Series, Symbol, figure};
 
 /// The columns of [`table_rows`].
@@ -11,12 +11,12 @@ pub const TABLE_HEADINGS: [&str; 12] = [
     "sides",
     "count",
     "hits",
+    "violations",
     "witnessed %",
     "band %",
     "unwitnessed %",
     "Embree's errors",
     "wrong normals",
-    "violations",
     "dt / chord",
 ];
 
@@ -29,19 +29,25 @@ pub const TABLE_NAMES: usize = 2;
 pub fn table_rows(outcome: &Outcome, agreements: &[Agreement]) -> Vec<Vec<String>> {
     let of_class = |row: &ClassRow| {
         let percent = |count| figure(percent(count, row.rays));
+        // What a witness has no way to find is not called none.
+        let is_known = |is_known: bool, text: String| if is_known { text } else { dash() };
+        let is_prisms = row.witness == Witness::Prisms;
         vec![
             row.class.name().to_owned(),
             row.witness.name().to_owned(),
             row.segments.map_or_else(dash, |sides| sides.to_string()),
             row.rays.to_string(),
             row.hits.to_string(),
+            row.violations.to_string(),
             percent(row.witnessed),
             percent(row.band),
             percent(row.unwitnessed),
-            row.triangle_errors.to_string(),
-            row.wrong_normals.to_string(),
-            row.violations.to_string(),
-            figure(row.max_dt_over_chord),
+            is_known(
+                row.witness != Witness::Oracle,
+                row.triangle_errors.to_string(),
+            ),
+            is_known(is_prisms, row.wrong_normals.to_string()),
+            is_known(is_prisms, figure(row.max_dt_over_chord)),
         ]
     };
     let told = |row: &Agreement| {
@@ -51,12 +57,12 @@ pub fn table_rows(outcome: &Outcome, agreements: &[Agreement]) -> Vec<Vec<String
             dash(),
             row.rays.to_string(),
             row.hits.to_string(),
+            row.disagreements.to_string(),
             figure(percent(row.rays - row.silhouette, row.rays)),
             figure(percent(row.silhouette, row.rays)),
             figure(0.0),
             dash(),
             dash(),
-            row.disagreements.to_string(),
             dash(),
         ]
     };
@@ -132,7 +138,11 @@ pub struct PageContent<'a> {
     pub outcome: &'a Outcome,
     /// Comparisons with hits from elsewhere.
     pub agreements: &'a [Agreement],
-    /// Where they could be made.
+    /// Where the answer for a ray from elsewhere stands, as an addition to its
+    /// number.
+    pub source: &'a dyn Fn(u64) -> String,
+    /// Where they could be made; of the scene and its prisms, so they have no
+    /// place beside hits from elsewhere.
     pub pictures: Option<&'a Pictures>,
 }
 
@@ -144,13 +154,21 @@ pub fn page(content: &PageContent) -> String {
         agreements,
         ..
     } = content;
-    let mut page = Page::new(&format!("Analytic hits against meshes: {}", content.scene));
+    let subject = match agreements.first().map(|told| told.witness) {
+        Some(Witness::UserHits) => "Hits of another program against exact ones",
+        Some(_) => "Hits of a mesh against exact ones",
+        None => "Analytic hits against meshes",
+    };
+    let mut page = Page::new(&format!("{subject}: {}", content.scene));
     page.note(content.sentence);
     page.paragraph(&verdict(outcome, agreements));
     page.heading("Agreement");
-    let rows = table_rows(outcome, agreements);
-    page.table(&TABLE_HEADINGS, &rows);
-    page.note(READING);
+    agreement_table(&mut page, &table_rows(outcome, agreements));
+    page.note(if agreements.is_empty() {
+        READING
+    } else {
+        READING_TOLD
+    });
     if let Some(pictures) = content.pictures {
         show(&mut page, pictures);
     }
@@ -162,22 +180,14 @@ pub fn page(content: &PageContent) -> String {
         );
     }
     page.heading("Worst rays");
-    let mut worst: Vec<Vec<String>> = outcome.violations.iter().map(violation_cells).collect();
-    for agreement in *agreements {
-        worst.extend(agreement.listed.iter().map(|found| {
-            vec![
-                format!("{} {}", agreement.class, found.index),
-                agreement.witness.name().to_owned(),
-                t_text(found.told),
-                t_text(found.exact),
-                Replay::Given(found.ray).to_string(),
-            ]
-        }));
+    for violation in &outcome.violations {
+        page.entry(&violation_text(violation));
     }
-    if worst.is_empty() {
+    for found in agreements.iter().flat_map(|told| &told.listed) {
+        page.entry(&disagreement_text(found, &(content.source)(found.index)));
+    }
+    if outcome.violations.is_empty() && agreements.iter().all(|told| told.listed.is_empty()) {
         page.paragraph("No answer is wrong.");
-    } else {
-        page.table(&["ray", "witness", "answer", "right", "to replay"], &worst);
     }
     for window in &outcome.windows {
         page.note(window);
@@ -185,8 +195,21 @@ pub fn page(content: &PageContent) -> String {
     page.finish()
 }
 
+/// The table without the columns of which no row has anything.
+fn agreement_table(page: &mut Page, rows: &[Vec<String>]) {
+    let is_shown = |column: &usize| rows.iter().any(|row| row[*column] != dash());
+    let shown: Vec<usize> = (0..TABLE_HEADINGS.len()).filter(is_shown).collect();
+    let headings: Vec<&str> = shown.iter().map(|&column| TABLE_HEADINGS[column]).collect();
+    let cells = |row: &Vec<String>| shown.iter().map(|&column| row[column].clone()).collect();
+    let rows: Vec<Vec<String>> = rows.iter().map(cells).collect();
+    page.table(&headings, &rows);
+}
+
 /// How to read the table.
-const READING: &str = "Witnessed: the meshes bound the answer on both sides. Band: the ray meets a circumscribed prism before any certain hit, so that a hit and a miss are both allowed. Unwitnessed: no bound at all. Embree's errors: Embree's triangle test contradicted the answer, and exact arithmetic on the same triangles cleared it. dt / chord: the greatest way from the answer to the inscribed prism in units of the chord error.";
+const READING: &str = "Witnessed: the meshes bound the answer on both sides. Band: the ray meets a circumscribed prism before any certain hit, so that a hit and a miss are both allowed. Unwitnessed: no bound at all. Embree's errors: Embree's triangle test contradicted the answer, and exact arithmetic on the same triangles cleared it; for cone curves, their contradictions that the exact oracle cleared. dt / chord: the greatest way from the answer to the inscribed prism in units of the chord error; far above 4 where a solid is so far or so tiny that f32 moves the prism's corners by more than that.";
+
+/// How to read the table of hits from elsewhere.
+const READING_TOLD: &str = "Violations: answers farther from the exact one than is allowed. Witnessed: answers that agree. Band: rays within the allowed distance of a silhouette or an edge, where the answers may differ.";
 
 /// The outcome in a sentence.
 #[must_use]
@@ -203,20 +226,6 @@ pub fn verdict(outcome: &Outcome, agreements: &[Agreement]) -> String {
         (1, _) => String::from("fails: 1 answer is wrong"),
         (wrong, _) => format!("fails: {wrong} answers are wrong"),
     }
-}
-
-fn violation_cells(violation: &Violation) -> Vec<String> {
-    let (low, high) = violation.allowed;
-    vec![
-        format!("{} {}", violation.class, violation.index),
-        violation.segments.map_or_else(
-            || violation.witness.name().to_owned(),
-            |sides| format!("{} {sides}", violation.witness.name()),
-        ),
-        t_text(violation.answer.as_ref().map(|answer| answer.t)),
-        format!("{}: {low:?} to {high:?}", violation.what),
-        violation.replay().to_string(),
-    ]
 }
 
 fn show(page: &mut Page, pictures: &Pictures) {
@@ -340,6 +349,7 @@ mod tests {
             sentence: "1000 rays",
             outcome: &outcome,
             agreements: &[],
+            source: &|_| String::new(),
             pictures: None,
         });
         for part in [
@@ -347,8 +357,8 @@ mod tests {
             "fails: 1 answer is wrong",
             "<td>1.25</td>",
             "1/N² through the first",
-            "&lt;missed&gt;: 0.5 to 0.75",
-            "3ff0000000000000:0000000000000000:0000000000000000:bff0000000000000",
+            "&lt;missed&gt;; answered a miss, allowed 0.5 to 0.75",
+            "<code>--replay 3ff0000000000000:0000000000000000:0000000000000000:bff0000000000000",
             "the whole scene",
         ] {
             assert!(text.contains(part), "no {part} in\n{text}");

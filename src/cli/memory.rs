@@ -2,6 +2,8 @@
 
 use std::fs;
 
+pub use cyltrace::report::readable;
+
 /// The greatest resident size of this process so far, in bytes, where the
 /// system tells it as Linux does.
 pub fn peak_resident_bytes() -> Option<u64> {
@@ -15,19 +17,6 @@ fn peak_in_status(status: &str) -> Option<u64> {
         .find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes * 1024)
-}
-
-/// A number of bytes for people, in powers of ten.
-pub fn readable(bytes: u64) -> String {
-    let units = ["B", "kB", "MB", "GB", "TB"];
-    let mut value = bytes as f64;
-    let mut unit = 0;
-    while value >= 1000.0 && unit + 1 < units.len() {
-        value /= 1000.0;
-        unit += 1;
-    }
-    let decimals = usize::from(unit > 0 && value < 100.0);
-    format!("{value:.decimals$} {}", units[unit])
 }
 
 /// A number of bytes as people write it: `500MB`, `4GiB`, `1.5 TB`, `1000`.

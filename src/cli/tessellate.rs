@@ -4,7 +4,7 @@ use std::io::Write;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use cyltrace::mesh_file::{self, Format, MeshFileError, Plan};
 use cyltrace::solid::tessellation::Fit;
 use serde_json::json;
@@ -39,11 +39,11 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
     let plan = Plan::new(&scene, arguments.segments, fit)?;
     let name = arguments.scene.to_string_lossy();
     let bytes = plan.file_bytes(format, &name);
+    plan.check(format, &name, arguments.max_memory)
+        .map_err(refusal)?;
     if common.prints() {
         print(&stated(arguments, &plan, format, bytes))?;
     }
-    plan.check(format, &name, arguments.max_memory)
-        .context("nothing is written: use fewer --segments, or a greater --max-memory")?;
 
     interrupt::end_in_order();
     let mut target = Target::create(&arguments.output)?;
@@ -96,13 +96,29 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
     print(&text)
 }
 
+/// A refusal in terms of the options.
+fn refusal(error: MeshFileError) -> anyhow::Error {
+    match error {
+        MeshFileError::TooLarge { needed, allowed } => anyhow!(
+            "nothing is written, as the file may take {} and --max-memory allows {}; use fewer --segments, or a greater --max-memory",
+            readable(needed),
+            memory::readable(allowed)
+        ),
+        other => other.into(),
+    }
+}
+
+/// Sizes beyond 64 bits are called the greatest of them.
+fn readable(bytes: u128) -> String {
+    memory::readable(u64::try_from(bytes).unwrap_or(u64::MAX))
+}
+
 /// What will be written, in lines for people.
 fn stated(arguments: &TessellateArguments, plan: &Plan, format: Format, bytes: u128) -> String {
     let most = match format {
         Format::Obj => "at most ",
         Format::Ply => "",
     };
-    let bytes = u64::try_from(bytes).unwrap_or(u64::MAX);
     let mut text = format!(
         "{}: {} {} prisms of {} sides, {} vertices, {} triangles, {most}{}\n",
         arguments.output.display(),
@@ -111,7 +127,7 @@ fn stated(arguments: &TessellateArguments, plan: &Plan, format: Format, bytes: u
         plan.segments(),
         plan.vertices(),
         plan.triangles(),
-        memory::readable(bytes),
+        readable(bytes),
     );
     text += "deviation: at most ";
     text::push_number(&mut text, plan.deviation());

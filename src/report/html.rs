@@ -1,7 +1,8 @@
 //! A page that needs nothing but itself.
 //!
-//! Colours follow the reader's preference for light or dark; wide tables
-//! scroll by themselves, so that the page fits a phone.
+//! Colours follow the reader's preference for light or dark. Headings of tables
+//! wrap, so that a dozen columns fit a page; a table that is still too wide
+//! scrolls by itself, with a shadow at the edge behind which there is more.
 
 use std::fmt::Write as _;
 
@@ -15,14 +16,19 @@ body { margin: 0 auto; padding: 1rem; max-width: 64rem; font: 16px/1.5 system-ui
 h1 { font-size: 1.5rem; line-height: 1.25; }
 h2 { font-size: 1.15rem; margin-top: 2rem; }
 p.note { color: var(--faint); font-size: 0.9rem; }
-.wide { overflow-x: auto; margin: 1rem 0; }
+.wide { overflow-x: auto; margin: 1rem 0; background: linear-gradient(to right, var(--paper), var(--paper)) left / 1.5rem 100% no-repeat local, linear-gradient(to left, var(--paper), var(--paper)) right / 1.5rem 100% no-repeat local, linear-gradient(to right, var(--faint), transparent) left / 0.75rem 100% no-repeat scroll, linear-gradient(to left, var(--faint), transparent) right / 0.75rem 100% no-repeat scroll; }
+.entry { overflow-wrap: anywhere; }
+.entry code { display: block; color: var(--faint); font-size: 0.8rem; }
 .pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(18rem, 1fr)); gap: 1rem; }
 .pictures figure { margin: 0; }
 .pictures img { display: block; width: 100%; image-rendering: pixelated; border: 1px solid var(--rule); }
 figcaption { color: var(--faint); font-size: 0.9rem; }
 .wide svg { display: block; width: 100%; min-width: 40rem; height: auto; }
 table { border-collapse: collapse; font-size: 0.85rem; font-variant-numeric: tabular-nums; }
-th, td { padding: 0.2rem 0.6rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--rule); }
+th, td { padding: 0.2rem 0.5rem; text-align: right; border-bottom: 1px solid var(--rule); }
+td { white-space: nowrap; }
+th { vertical-align: bottom; }
+@media (max-width: 60rem) { th, td { padding: 0.2rem 0.3rem; font-size: 0.75rem; } }
 th:first-child, td:first-child { text-align: left; position: sticky; left: 0; background: var(--paper); }
 thead th { background: var(--shade); }
 thead th:first-child { background: var(--shade); }
@@ -57,6 +63,15 @@ impl Page {
     /// Adds a paragraph of small print.
     pub fn note(&mut self, text: &str) {
         let _ = writeln!(self.body, "<p class=\"note\">{}</p>", escape(text));
+    }
+
+    /// Adds an entry of a list: its first line as a paragraph, the others below
+    /// as code, each on lines of its own and broken where they are too long.
+    pub fn entry(&mut self, text: &str) {
+        let mut lines = text.lines().map(|line| escape(line.trim()));
+        let first = lines.next().unwrap_or_default();
+        let others: String = lines.map(|line| format!("<code>{line}</code>")).collect();
+        let _ = writeln!(self.body, "<p class=\"entry\">{first}{others}</p>");
     }
 
     /// Adds a figure that was made as SVG.
@@ -134,6 +149,7 @@ mod tests {
         page.paragraph("<script>");
         page.table(&["name", "<n>"], &[vec!["x&y".into(), "1".into()]]);
         page.figure("<svg></svg>\n");
+        page.entry("first <\n  second\n");
         let text = page.finish();
         for part in [
             "<title>a &lt; b</title>",
@@ -142,6 +158,7 @@ mod tests {
             "<th>&lt;n&gt;</th>",
             "<td>x&amp;y</td>",
             "<svg></svg>",
+            "first &lt;<code>second</code>",
             "prefers-color-scheme: dark",
         ] {
             assert!(text.contains(part), "no {part} in\n{text}");

@@ -10,4 +10,4 @@ mod table;
 pub use csv::csv;
 pub use figure::{Figure, Mark, Series, Symbol};
 pub use html::{Page, escape};
-pub use table::{Table, figure};
+pub use table::{Table, figure, readable};

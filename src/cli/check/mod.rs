@@ -83,7 +83,7 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
             plan.solids,
             match plan.windows {
                 1 => "the whole scene".to_owned(),
-                parts => format!("{parts} parts of the scene"),
+                parts => format!("the largest of {parts} parts of the scene"),
             }
         ))?;
     }
@@ -115,28 +115,34 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
     let elapsed = start.elapsed().as_secs_f64();
 
     if let Some(page) = &page_path {
-        let pictures = workers.install(|| {
-            check::pictures(
-                &tracer,
-                PICTURE_SEGMENTS,
-                picture_film(loaded.film),
-                arguments.max_memory,
-                &device_options(arguments),
-            )
-        })?;
+        // Hits from elsewhere have nothing to do with these prisms.
+        let pictures = if told.is_some() {
+            None
+        } else {
+            workers.install(|| {
+                check::pictures(
+                    &tracer,
+                    PICTURE_SEGMENTS,
+                    picture_film(loaded.film),
+                    arguments.max_memory,
+                    &device_options(arguments),
+                )
+            })?
+        };
         interrupt::check()?;
         let text = check::page(&PageContent {
             scene: &arguments.scene.display().to_string(),
-            sentence: &sentence(arguments, &tracer),
+            sentence: &sentence(arguments, &tracer, &found),
             outcome: &found.outcome,
             agreements: &found.agreements,
+            source: &|index| source(told.as_ref(), index),
             pictures: pictures.as_ref(),
         });
         write_text(page, &text)?;
     }
     json::write(common, &figures(arguments, &tracer, &found, elapsed))?;
     if common.prints() {
-        let mut text = summary(arguments, &found, told.as_ref());
+        let mut text = summary(&found, told.as_ref());
         text += &format!(
             "time: {elapsed:.2} s on {} threads\n",
             workers.current_num_threads()
@@ -144,6 +150,11 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         if let Some(page) = &page_path {
             text += &format!("report: {}\n", page.display());
         }
+        text += &format!(
+            "{} {}\n",
+            arguments.scene.display(),
+            check::verdict(&found.outcome, &found.agreements)
+        );
         print(&text)?;
     }
     let told_hold = found.agreements.iter().all(|one| one.disagreements == 0);
@@ -229,10 +240,19 @@ fn picture_film(film: Film) -> Film {
 }
 
 /// What the page is about, without anything that differs from run to run.
-fn sentence(arguments: &CheckArguments, tracer: &Tracer) -> String {
+fn sentence(arguments: &CheckArguments, tracer: &Tracer, found: &Found) -> String {
+    let compared = arguments.hits.as_ref().or(arguments.mesh.as_ref());
+    let compared = compared.map_or_else(String::new, |path| format!("{}: ", path.display()));
+    let told: u64 = found.agreements.iter().map(|one| one.rays).sum();
     let rays = match &arguments.rays {
-        Rays::Count(count) => format!("{count} rays of each class, seed {}", arguments.seed),
-        Rays::Table(path) => format!("the rays of {}", path.display()),
+        Rays::Table(path) => format!("{compared}{told} rays of {}", path.display()),
+        Rays::Count(count) if compared.is_empty() => {
+            format!("{count} rays of each class, seed {}", arguments.seed)
+        }
+        Rays::Count(_) => format!(
+            "{compared}{told} rays around the scene, seed {}",
+            arguments.seed
+        ),
     };
     let statistics = tracer.statistics();
     format!(
@@ -242,16 +262,12 @@ fn sentence(arguments: &CheckArguments, tracer: &Tracer) -> String {
 }
 
 /// The lines for people.
-fn summary(arguments: &CheckArguments, found: &Found, told: Option<&Told>) -> String {
+fn summary(found: &Found, told: Option<&Told>) -> String {
     let Found {
         outcome,
         agreements,
     } = found;
-    let mut text = format!(
-        "{}: {}\n",
-        arguments.scene.display(),
-        check::verdict(outcome, agreements)
-    );
+    let mut text = String::new();
     for window in &outcome.windows {
         text += &format!("{window}\n");
     }
@@ -272,10 +288,15 @@ fn summary(arguments: &CheckArguments, found: &Found, told: Option<&Told>) -> St
         text += &check::violation_text(violation);
     }
     for disagreement in agreements.iter().flat_map(|one| &one.listed) {
-        let source = told.map_or_else(String::new, |told| told.source(disagreement.index));
+        let source = source(told, disagreement.index);
         text += &check::disagreement_text(disagreement, &source);
     }
     text
+}
+
+/// Where the answer for a ray stands, when it is not the tracer's.
+fn source(told: Option<&Told>, index: u64) -> String {
+    told.map_or_else(String::new, |told| told.source(index))
 }
 
 /// All figures.
