@@ -100,7 +100,7 @@ pub fn violation_text(violation: &Violation) -> String {
     )
 }
 
-/// A disagreement in two lines, as [`violation_text`]; `source` says where the
+/// A disagreement in two lines, the second with the ray; `source` says where the
 /// answer stands.
 #[must_use]
 pub fn disagreement_text(found: &Disagreement, source: &str) -> String {
@@ -110,11 +110,11 @@ pub fn disagreement_text(found: &Disagreement, source: &str) -> String {
         (None, _) => "a miss".to_owned(),
     };
     format!(
-        "ray {}{source}: told {}, exactly {exact}; allowed a distance of {}\n  --replay {}\n",
+        "ray {}{source}: told {}, exactly {exact}; allowed a distance of {}\n  {}\n",
         found.index,
         t_text(found.told),
         figure(found.allowance),
-        Replay::Given(found.ray),
+        super::words::ray_text(&found.ray),
     )
 }
 
