@@ -23,10 +23,10 @@
 //! - `curves`, `curve_blocks`: how often Embree's own cone curves, another solver,
 //!   agree; the oracle judges where they do not;
 //! - `compare`: all of it over many rays, and the outcome;
-//! - `agreement`: hits told from elsewhere, within a stated distance: those of
-//!   another program (`user_hits`), or of a mesh from a file (`mesh_file`,
+//! - `agreement`: hits told from elsewhere, within a stated distance (`nearness`):
+//!   those of another program (`user_hits`), or of a mesh from a file (`mesh_file`,
 //!   `user_mesh`);
-//! - `report`, `pictures`: tables and the page; `plan`: what it will take.
+//! - `report`, `pictures`, `words`: tables, the page and what is said; `plan`: what it will take.
 
 mod agreement;
 mod compare;
@@ -39,6 +39,7 @@ mod mesh_file;
 mod mesh_frame;
 mod mesh_solid;
 mod meshes;
+mod nearness;
 mod open_ends;
 mod outcome;
 mod pictures;
@@ -57,6 +58,7 @@ mod truth;
 mod user_hits;
 mod user_mesh;
 mod verdict;
+mod words;
 
 pub use agreement::{Agreement, Disagreement, F32_TOLERANCE};
 pub use compare::{Progress, compare, compare_with};

@@ -19,6 +19,7 @@ use super::rays::RaySource;
 use super::settings::{CheckError, Class, Settings};
 use super::truth;
 use super::verdict::{Subject, Verdict, verdict};
+use super::words::{answer_text, instance_text, interval_text, ray_text};
 
 /// A ray to look at again.
 ///
@@ -46,6 +47,10 @@ pub struct Replayed {
     /// What is wrong, by segments.
     pub violations: Vec<Violation>,
 }
+
+/// What a word for [`Replay`] looks like.
+const REPLAY_WORDS: &str = "it must be CLASS:INDEX, such as grazing:17, or a ray as a run printed \
+    it: 8 numbers of 16 hexadecimal digits with colons between";
 
 impl fmt::Display for Replay {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -80,20 +85,18 @@ impl FromStr for Replay {
         if let [class, index] = parts[..] {
             let index = index
                 .parse()
-                .map_err(|_| format!("`{index}` is no number of a ray"))?;
+                .map_err(|_| format!("`{index}` is no number of a ray: {REPLAY_WORDS}"))?;
             let class = class.parse()?;
             return Ok(Self::Drawn { class, index });
         }
-        let bits: Vec<f64> = parts
+        let numbers = parts
             .iter()
-            .map(|bits| u64::from_str_radix(bits, 16).map(f64::from_bits))
+            .map(|bits| u64::from_str_radix(bits, 16).map(f64::from_bits));
+        let bits: Vec<f64> = numbers
             .collect::<Result<_, _>>()
-            .map_err(|error| format!("`{text}` is no ray: {error}"))?;
+            .map_err(|_| REPLAY_WORDS.to_owned())?;
         let [ox, oy, oz, dx, dy, dz, t_min, t_max] = bits[..] else {
-            let found = bits.len();
-            return Err(format!(
-                "a ray is class:index or 8 numbers with colons between, not {found}"
-            ));
+            return Err(REPLAY_WORDS.to_owned());
         };
         let ray = Ray {
             origin: DVec3::new(ox, oy, oz),
@@ -102,7 +105,10 @@ impl FromStr for Replay {
             t_max,
         };
         if !ray.is_valid() {
-            return Err(format!("{ray:?} is not a ray that can hit anything"));
+            return Err(format!(
+                "{} is not a ray that can hit anything",
+                ray_text(&ray)
+            ));
         }
         Ok(Self::Given(ray))
     }
@@ -174,7 +180,7 @@ impl Replayed {
     fn describe(&mut self, which: &Replay, about: &Subject, ray: &Ray, answer: Option<&Finding>) {
         let lines = &mut self.lines;
         lines.push(format!("ray {}", Replay::Given(*ray)));
-        lines.push(format!("    {ray:?}"));
+        lines.push(format!("    {}", ray_text(ray)));
         if let Replay::Given(given) = which
             && given != ray
         {
@@ -183,10 +189,7 @@ impl Replayed {
                 "    the nearest that the meshes can have; its origin moved by {moved:e}"
             ));
         }
-        lines.push(match answer {
-            None => String::from("answer: a miss"),
-            Some(finding) => format!("answer: {finding:?}"),
-        });
+        lines.push(format!("answer: {}", answer_text(answer)));
         lines.push(truth::in_words(about.window, ray));
     }
 
@@ -202,8 +205,8 @@ impl Replayed {
             return;
         };
         self.lines.push(format!(
-            "    with the solids displaced by what f64 rounds: {:?} to {:?}",
-            bounds.low, bounds.high
+            "    with the solids displaced by what f64 rounds: {}",
+            interval_text(bounds.low, bounds.high)
         ));
         if !truth::allows(&bounds, ray, answer) {
             let (class, index) = which.class_and_index();
@@ -232,15 +235,18 @@ impl Replayed {
         let verdict = verdict(about, meshes, ray32, ray, answer, &mut scratch);
         let bounds = first(&scratch.seen);
         self.lines.push(format!(
-            "{} sides: first hit between {:?} and {:?}",
-            meshes.segments, bounds.low, bounds.high
+            "{} sides: {}",
+            meshes.segments,
+            interval_text(bounds.low, bounds.high)
         ));
         for seen in &scratch.seen {
             let solid = &about.window.solids[seen.solid as usize];
             let interval = seen.bounds.interval;
             self.lines.push(format!(
-                "    cylinder {} of {:?}: {:?} to {:?}",
-                solid.primitive, solid.frame.instance, interval.low, interval.high
+                "    cylinder {} of {}: {}",
+                solid.primitive,
+                instance_text(&solid.frame.instance),
+                interval_text(interval.low, interval.high)
             ));
         }
         let words = match &verdict {

@@ -1,7 +1,7 @@
 //! What came of a check as tables and as a page.
 
 use super::agreement::Disagreement;
-use super::{Agreement, ClassRow, Outcome, Pictures, Replay, Violation, Witness};
+use super::{Agreement, ClassRow, Outcome, Pictures, Violation, Witness};
 use crate::report::{Figure, Mark, Page, Series, Symbol, figure};
 
 /// The columns of [`table_rows`].
@@ -106,7 +106,7 @@ pub fn violation_text(violation: &Violation) -> String {
     )
 }
 
-/// A disagreement in two lines, as [`violation_text`]; `source` says where the
+/// A disagreement in two lines, the second with the ray; `source` says where the
 /// answer stands.
 #[must_use]
 pub fn disagreement_text(found: &Disagreement, source: &str) -> String {
@@ -116,11 +116,11 @@ pub fn disagreement_text(found: &Disagreement, source: &str) -> String {
         (None, _) => "a miss".to_owned(),
     };
     format!(
-        "ray {}{source}: told {}, exactly {exact}; allowed a distance of {}\n  --replay {}\n",
+        "ray {}{source}: told {}, exactly {exact}; allowed a distance of {}\n  {}\n",
         found.index,
         t_text(found.told),
         figure(found.allowance),
-        Replay::Given(found.ray),
+        super::words::ray_text(&found.ray),
     )
 }
 
@@ -209,7 +209,7 @@ fn agreement_table(page: &mut Page, rows: &[Vec<String>]) {
 const READING: &str = "Witnessed: the meshes bound the answer on both sides. Band: the ray meets a circumscribed prism before any certain hit, so that a hit and a miss are both allowed. Unwitnessed: no bound at all. Embree's errors: Embree's triangle test contradicted the answer, and exact arithmetic on the same triangles cleared it; for cone curves, their contradictions that the exact oracle cleared. dt / chord: the greatest way from the answer to the inscribed prism in units of the chord error; far above 4 where a solid is so far or so tiny that f32 moves the prism's corners by more than that.";
 
 /// How to read the table of hits from elsewhere.
-const READING_TOLD: &str = "Violations: answers farther from the exact one than is allowed. Witnessed: answers that agree. Band: rays within the allowed distance of a silhouette or an edge, where the answers may differ.";
+const READING_TOLD: &str = "Violations: answers that no displacement by the allowed distance explains. Witnessed: answers that agree. Band: the rest, near a silhouette or an edge or at a low angle, where answers may differ.";
 
 /// The outcome in a sentence.
 #[must_use]

@@ -54,7 +54,10 @@ impl FromStr for Class {
 
     fn from_str(name: &str) -> Result<Self, String> {
         let known = Self::ALL.into_iter().find(|class| class.name() == name);
-        known.ok_or_else(|| format!("`{name}` is no class of rays"))
+        known.ok_or_else(|| {
+            let names = Self::ALL.map(Self::name).join(", ");
+            format!("`{name}` is no class of rays: they are {names}")
+        })
     }
 }
 

@@ -22,6 +22,7 @@ use super::meshes::may_meet;
 use super::placed::{PlacedSolid, Window};
 use super::sandwich::{Crossings, Interval, solid_bounds};
 use super::surface::LocalRay;
+use super::words::instance_text;
 
 /// Roundings of the ray that an intersector may make up for one of ours: a
 /// solver has some 30 operations from the ray to `t`.
@@ -47,11 +48,11 @@ pub(crate) fn in_words(window: &Window, ray: &Ray) -> String {
     match first {
         None => String::from("truly a miss"),
         Some((solid, hit)) => format!(
-            "truly t = {:?} on {} of cylinder {} of {:?}",
+            "truly t {:?} on {} of cylinder {} of {}",
             hit.t_f64(),
             hit.part.name(),
             solid.primitive,
-            solid.frame.instance
+            instance_text(&solid.frame.instance)
         ),
     }
 }

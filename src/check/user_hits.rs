@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use rayon::prelude::*;
 
 use super::agreement::{Agreement, allowance, greatest_coordinate};
+use super::nearness::Surfaces;
 use super::{Progress, Witness};
 use crate::math::Ray;
 use crate::tracer::Tracer;
@@ -32,6 +33,7 @@ pub fn compare_hits(
 ) -> Option<Agreement> {
     assert_eq!(rays.len(), told.len(), "one answer a ray");
     let greatest = greatest_coordinate(tracer);
+    let surfaces = Surfaces::new(tracer.scene());
     in_blocks(
         Agreement::new("given", Witness::UserHits),
         rays.len() as u64,
@@ -40,7 +42,7 @@ pub fn compare_hits(
         |agreement, index| {
             let (ray, told) = (&rays[index as usize], told[index as usize]);
             let near = |t| allowance(tolerance, ray, t, greatest);
-            agreement.add(tracer, index, ray, told, most_listed, near);
+            agreement.add((tracer, &surfaces), index, ray, told, most_listed, near);
         },
     )
 }

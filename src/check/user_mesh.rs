@@ -12,6 +12,7 @@
 use glam::DVec3;
 
 use super::agreement::{Agreement, F32_TOLERANCE};
+use super::nearness::Surfaces;
 use super::user_hits::in_blocks;
 use super::{Progress, Witness};
 use crate::embree::{self, Device, DeviceOptions, Ray32, SceneBuilder};
@@ -121,6 +122,7 @@ pub fn compare_mesh(
     progress: &Progress,
 ) -> Option<Agreement> {
     let allowance = deviation + mesh.rounding();
+    let surfaces = Surfaces::new(tracer.scene());
     in_blocks(
         Agreement::new(class, Witness::UserMesh),
         rays.len() as u64,
@@ -129,7 +131,9 @@ pub fn compare_mesh(
         |agreement, index| {
             let ray = &rays[index as usize];
             let told = mesh.closest(ray).map(|hit| hit.t);
-            agreement.add(tracer, index, ray, told, most_listed, |_| allowance);
+            agreement.add((tracer, &surfaces), index, ray, told, most_listed, |_| {
+                allowance
+            });
         },
     )
 }

@@ -1,7 +1,7 @@
 //! The arguments, as clap reads them.
 
 use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cyltrace::cases::{Family, Inputs};
@@ -202,7 +202,7 @@ pub struct CheckArguments {
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
     /// Sides of the prisms; each number is checked with the same rays
-    #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "16,64", value_parser = clap::value_parser!(u32).range(3..=4096))]
+    #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "16,64", value_parser = parse_segments, allow_negative_numbers = true)]
     pub segments: Vec<u32>,
     /// Rays of each class, or a table of rays as `trace` reads it, for --hits
     /// and --mesh
@@ -339,17 +339,16 @@ fn parse_seed(text: &str) -> Result<u64, String> {
     seed.map_err(|_| format!("it must be a whole number from 0 to {}", u64::MAX))
 }
 
-/// A whole number is a count, everything else a file.
+/// A whole number is a count, the name of a file that is there a table.
 fn parse_rays(text: &str) -> Result<Rays, String> {
-    let is_number = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    if !is_number {
-        return Ok(Rays::Table(text.into()));
-    }
     let count: Option<u64> = text.parse().ok();
-    count
-        .filter(|count| (1..=GREATEST_RAYS).contains(count))
-        .map(Rays::Count)
-        .ok_or_else(|| format!("it must be a whole number from 1 to {GREATEST_RAYS}, or a file"))
+    match count.filter(|count| (1..=GREATEST_RAYS).contains(count)) {
+        Some(count) => Ok(Rays::Count(count)),
+        None if text == "-" || Path::new(text).exists() => Ok(Rays::Table(text.into())),
+        None => Err(String::from(
+            "it is neither a whole number from 1 to 10^9 nor a file that is there",
+        )),
+    }
 }
 
 /// Most rays of a class.

@@ -1,5 +1,6 @@
 //! `cyltrace check`.
 
+mod figures;
 mod hit_file;
 mod told;
 
@@ -10,15 +11,13 @@ use std::time::Instant;
 
 use anyhow::bail;
 use cyltrace::check::{
-    self, Agreement, Class, ClassRow, Outcome, PageContent, Replay, Settings, TABLE_HEADINGS,
-    TABLE_NAMES, percent,
+    self, Agreement, Class, Outcome, PageContent, Replay, Settings, TABLE_HEADINGS, TABLE_NAMES,
 };
 use cyltrace::embree::DeviceOptions;
 use cyltrace::render::NewFile;
 use cyltrace::report::{Table, figure};
 use cyltrace::scene::Film;
 use cyltrace::tracer::Tracer;
-use serde_json::{Value, json};
 
 use super::arguments::{CheckArguments, Rays};
 use super::memory::readable;
@@ -26,6 +25,7 @@ use super::outputs::Files;
 use super::print::print;
 use super::target::{make_directory, write_text};
 use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
+use figures::figures;
 use told::Told;
 
 /// Wrong answers that are listed, of each kind.
@@ -41,6 +41,14 @@ const PICTURE_SEGMENTS: u32 = 16;
 struct Found {
     outcome: Outcome,
     agreements: Vec<Agreement>,
+}
+
+impl Found {
+    /// Whether nothing is wrong and the witnesses say enough.
+    fn holds(&self) -> bool {
+        let told_hold = self.agreements.iter().all(|one| one.disagreements == 0);
+        self.outcome.holds() && told_hold
+    }
 }
 
 /// Runs the check; the exit code says whether it holds.
@@ -59,6 +67,14 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         );
     }
     json::check(common)?;
+    if let Some(directory) = &arguments.report
+        && directory.is_file()
+    {
+        bail!(
+            "--report {}: it is a file, not a directory",
+            directory.display()
+        );
+    }
     if let (Some(directory), Some(page)) = (&arguments.report, &page_path) {
         make_directory(directory)?;
         NewFile::check(page)?;
@@ -140,7 +156,10 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         });
         write_text(page, &text)?;
     }
-    json::write(common, &figures(arguments, &tracer, &found, elapsed))?;
+    json::write(
+        common,
+        &figures(arguments, &tracer, &found, told.as_ref(), elapsed),
+    )?;
     if common.prints() {
         let mut text = summary(&found, told.as_ref());
         text += &format!(
@@ -157,12 +176,7 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         );
         print(&text)?;
     }
-    let told_hold = found.agreements.iter().all(|one| one.disagreements == 0);
-    Ok(if found.outcome.holds() && told_hold {
-        GOOD
-    } else {
-        CHECK_FAILED
-    })
+    Ok(if found.holds() { GOOD } else { CHECK_FAILED })
 }
 
 /// Prints one ray and what everyone says of it.
@@ -297,96 +311,4 @@ fn summary(found: &Found, told: Option<&Told>) -> String {
 /// Where the answer for a ray stands, when it is not the tracer's.
 fn source(told: Option<&Told>, index: u64) -> String {
     told.map_or_else(String::new, |told| told.source(index))
-}
-
-/// All figures.
-fn figures(arguments: &CheckArguments, tracer: &Tracer, found: &Found, elapsed: f64) -> Value {
-    let Found {
-        outcome,
-        agreements,
-    } = found;
-    let disagreements: u64 = agreements.iter().map(|one| one.disagreements).sum();
-    let told_rays: u64 = agreements.iter().map(|one| one.rays).sum();
-    let classes = outcome.rows.iter().map(class_figures);
-    let classes = classes.chain(agreements.iter().map(agreement_figures));
-    let convergence = outcome.convergence.iter().map(|row| {
-        json!({
-            "segments": row.segments,
-            "band_percent": row.band_percent,
-            "p99_dt_r": row.p99_dt_r,
-        })
-    });
-    let listed = outcome.violations.iter().map(|violation| {
-        json!({
-            "class": violation.class.name(),
-            "witness": violation.witness.name(),
-            "segments": violation.segments,
-            "index": violation.index,
-            "t": violation.answer.as_ref().map(|answer| answer.t),
-            "what": violation.what,
-            "replay": violation.replay().to_string(),
-        })
-    });
-    let told = agreements.iter().flat_map(|one| {
-        one.listed.iter().map(move |found| {
-            json!({
-                "class": one.class,
-                "witness": one.witness.name(),
-                "segments": null,
-                "index": found.index,
-                "t": found.told,
-                "what": found.exact.map_or_else(|| "exactly a miss".to_owned(), |t| format!("exactly {t:?}")),
-                "replay": Replay::Given(found.ray).to_string(),
-            })
-        })
-    });
-    json!({
-        "scene": arguments.scene,
-        "violations": outcome.violation_count() + disagreements,
-        "rays": outcome.rays() + told_rays,
-        "classes": classes.collect::<Vec<_>>(),
-        "convergence": convergence.collect::<Vec<_>>(),
-        "listed": listed.chain(told).collect::<Vec<_>>(),
-        "windows": outcome.windows,
-        "seed": arguments.seed,
-        "cylinders": json::cylinders(tracer.statistics()),
-        "embree": tracer.statistics().embree_version,
-        "isa": tracer.statistics().isa,
-        "check_s": elapsed,
-    })
-}
-
-fn class_figures(row: &ClassRow) -> Value {
-    json!({
-        "name": row.class.name(),
-        "witness": row.witness.name(),
-        "segments": row.segments,
-        "rays": row.rays,
-        "violations": row.violations,
-        "band_percent": percent(row.band, row.rays),
-        "max_dt_over_chord": row.max_dt_over_chord,
-        "hits": row.hits,
-        "witnessed_percent": percent(row.witnessed, row.rays),
-        "unwitnessed_percent": percent(row.unwitnessed, row.rays),
-        "triangle_errors": row.triangle_errors,
-        "wrong_normals": row.wrong_normals,
-    })
-}
-
-/// The row of hits from elsewhere: its band is that of silhouettes.
-fn agreement_figures(row: &Agreement) -> Value {
-    json!({
-        "name": row.class,
-        "witness": row.witness.name(),
-        "segments": null,
-        "rays": row.rays,
-        "violations": row.disagreements,
-        "band_percent": percent(row.silhouette, row.rays),
-        "max_dt_over_chord": null,
-        "hits": row.hits,
-        "witnessed_percent": percent(row.rays - row.silhouette, row.rays),
-        "unwitnessed_percent": 0.0,
-        "triangle_errors": 0,
-        "wrong_normals": 0,
-    })
 }

@@ -79,9 +79,17 @@ impl Told {
 
     /// Where the answer for a ray stands, as an addition to its number.
     pub fn source(&self, index: u64) -> String {
+        match (self, self.line(index)) {
+            (Self::Hits(_, _, name), Some(line)) => format!(" ({name}:{line})"),
+            _ => String::new(),
+        }
+    }
+
+    /// The line of a table of hits in which the answer for a ray stands.
+    pub fn line(&self, index: u64) -> Option<u64> {
         match self {
-            Self::Hits(_, hits, name) => format!(" ({name}:{})", hits[index as usize].line),
-            Self::Mesh(..) => String::new(),
+            Self::Hits(_, hits, _) => Some(hits[index as usize].line),
+            Self::Mesh(..) => None,
         }
     }
 

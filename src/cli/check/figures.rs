@@ -1,0 +1,115 @@
+//! The figures of a check, as JSON.
+
+use cyltrace::check::{Agreement, ClassRow, percent};
+use cyltrace::tracer::Tracer;
+use serde_json::{Value, json};
+
+use super::Found;
+use super::told::Told;
+use crate::cli::arguments::CheckArguments;
+use crate::cli::json;
+
+/// All figures.
+pub fn figures(
+    arguments: &CheckArguments,
+    tracer: &Tracer,
+    found: &Found,
+    told: Option<&Told>,
+    elapsed: f64,
+) -> Value {
+    let Found {
+        outcome,
+        agreements,
+    } = found;
+    let disagreements: u64 = agreements.iter().map(|one| one.disagreements).sum();
+    let told_rays: u64 = agreements.iter().map(|one| one.rays).sum();
+    let classes = outcome.rows.iter().map(class_figures);
+    let classes = classes.chain(agreements.iter().map(agreement_figures));
+    let convergence = outcome.convergence.iter().map(|row| {
+        json!({
+            "segments": row.segments,
+            "band_percent": row.band_percent,
+            "p99_dt_r": row.p99_dt_r,
+        })
+    });
+    let listed = outcome.violations.iter().map(|violation| {
+        json!({
+            "class": violation.class.name(),
+            "witness": violation.witness.name(),
+            "segments": violation.segments,
+            "index": violation.index,
+            "t": violation.answer.as_ref().map(|answer| answer.t),
+            "what": violation.what,
+            "replay": violation.replay().to_string(),
+            "exact_t": null,
+            "line": null,
+        })
+    });
+    let told_listed = agreements.iter().flat_map(|one| {
+        one.listed.iter().map(move |found| {
+            json!({
+                "class": one.class,
+                "witness": one.witness.name(),
+                "segments": null,
+                "index": found.index,
+                "t": found.told,
+                "what": found.exact.map_or_else(|| "exactly a miss".to_owned(), |t| format!("exactly {t:?}")),
+                "replay": null,
+                "exact_t": found.exact,
+                "line": told.and_then(|told| told.line(found.index)),
+                "origin": found.ray.origin.to_array(),
+                "direction": found.ray.direction.to_array(),
+            })
+        })
+    });
+    json!({
+        "scene": arguments.scene,
+        "violations": outcome.violation_count() + disagreements,
+        "rays": outcome.rays() + told_rays,
+        "classes": classes.collect::<Vec<_>>(),
+        "convergence": convergence.collect::<Vec<_>>(),
+        "listed": listed.chain(told_listed).collect::<Vec<_>>(),
+        "windows": outcome.windows,
+        "seed": arguments.seed,
+        "cylinders": json::cylinders(tracer.statistics()),
+        "embree": tracer.statistics().embree_version,
+        "isa": tracer.statistics().isa,
+        "check_s": elapsed,
+        "holds": found.holds(),
+    })
+}
+
+fn class_figures(row: &ClassRow) -> Value {
+    json!({
+        "name": row.class.name(),
+        "witness": row.witness.name(),
+        "segments": row.segments,
+        "rays": row.rays,
+        "violations": row.violations,
+        "band_percent": percent(row.band, row.rays),
+        "max_dt_over_chord": row.max_dt_over_chord,
+        "hits": row.hits,
+        "witnessed_percent": percent(row.witnessed, row.rays),
+        "unwitnessed_percent": percent(row.unwitnessed, row.rays),
+        "triangle_errors": row.triangle_errors,
+        "wrong_normals": row.wrong_normals,
+    })
+}
+
+/// The row of hits from elsewhere: its band is that of silhouettes.
+fn agreement_figures(row: &Agreement) -> Value {
+    json!({
+        "name": row.class,
+        "witness": row.witness.name(),
+        "segments": null,
+        "rays": row.rays,
+        "violations": row.disagreements,
+        "band_percent": percent(row.silhouette, row.rays),
+        "max_dt_over_chord": null,
+        "hits": row.hits,
+        "witnessed_percent": percent(row.rays - row.silhouette, row.rays),
+        "unwitnessed_percent": 0.0,
+        "triangle_errors": null,
+        "wrong_normals": null,
+    })
+}

@@ -1,0 +1,115 @@
+//! Verdicts on meshes and hits from elsewhere: none is false, and real defects
+//! are found.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+
+use cyltrace::check::{Agreement, TracedMesh, compare_hits, compare_mesh, rays_around};
+use cyltrace::embree::DeviceOptions;
+use cyltrace::scene::{Scene, load};
+use cyltrace::solid::tessellation::{Fit, Mesh, deviation, prism};
+use cyltrace::tracer::{Options, Tracer};
+use glam::DVec3;
+
+const RAYS: u64 = 20_000;
+
+fn scene() -> Arc<Scene> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/minimal.toml");
+    Arc::new(load(&path).expect("a scene"))
+}
+
+fn tracer(scene: &Arc<Scene>) -> Tracer {
+    Tracer::new(scene.clone(), &Options::default()).expect("a tracer")
+}
+
+/// The meshes of the scene's cylinders, and their greatest deviation.
+fn meshes(scene: &Scene, segments: u32, fit: Fit) -> (Vec<Mesh>, f64) {
+    let cylinders = scene.prototypes[0].cylinders.iter();
+    let cylinders: Vec<_> = cylinders.map(|record| record.cylinder()).collect();
+    let meshes = cylinders.iter().map(|one| prism(one, segments, fit));
+    let deviations = cylinders.iter().map(|one| deviation(one, segments, fit));
+    (meshes.collect(), deviations.fold(0.0, f64::max))
+}
+
+fn verdict(tracer: &Tracer, meshes: &[Mesh], seed: u64, deviation: f64) -> Agreement {
+    let mut whole = Mesh::default();
+    meshes.iter().for_each(|one| whole.append(one));
+    let mesh = TracedMesh::new(&whole, &DeviceOptions::default()).expect("a mesh");
+    let rays = rays_around(tracer, seed, RAYS);
+    let go_on = |_: u64, _: u64, _: &str| ControlFlow::Continue(());
+    compare_mesh(tracer, &mesh, ("around", &rays), deviation, 3, &go_on).expect("an end")
+}
+
+#[test]
+fn right_meshes_are_never_called_wrong() {
+    let scene = scene();
+    let tracer = tracer(&scene);
+    for segments in [8, 16, 32, 64] {
+        for fit in [Fit::Inscribed, Fit::Circumscribed] {
+            let (meshes, deviation) = meshes(&scene, segments, fit);
+            for seed in 0..3 {
+                let found = verdict(&tracer, &meshes, seed, deviation);
+                assert_eq!(found.rays, RAYS);
+                assert_eq!(
+                    found.disagreements, 0,
+                    "{segments} {fit:?} {seed}: {:?}",
+                    found.listed
+                );
+                let share = found.silhouette as f64 / RAYS as f64;
+                println!("{segments} {fit:?} {seed}: band {share}");
+                assert!(share < 0.05, "{segments} {fit:?} {seed}: band {share}");
+            }
+        }
+    }
+}
+
+#[test]
+fn moved_vertex_is_found() {
+    let scene = scene();
+    let tracer = tracer(&scene);
+    let (mut meshes, deviation) = meshes(&scene, 32, Fit::Inscribed);
+    // Of the drum, outward.
+    meshes[3].vertices[0] += DVec3::new(10.0 * deviation, 0.0, 0.0);
+    let found = verdict(&tracer, &meshes, 0, deviation);
+    assert!(found.disagreements > 0);
+    println!("moved vertex: {}", found.disagreements);
+}
+
+#[test]
+fn missing_cylinder_is_found() {
+    let scene = scene();
+    let tracer = tracer(&scene);
+    for missing in 0..4 {
+        let (mut meshes, deviation) = meshes(&scene, 32, Fit::Inscribed);
+        meshes.remove(missing);
+        let found = verdict(&tracer, &meshes, 0, deviation);
+        println!("without {missing}: {}", found.disagreements);
+        assert!(found.disagreements > RAYS / 100, "{missing}");
+    }
+}
+
+#[test]
+fn hits_off_by_a_thousandth_are_found() {
+    let scene = scene();
+    let tracer = tracer(&scene);
+    let rays = rays_around(&tracer, 0, RAYS);
+    let told = |factor: f64| -> Vec<Option<f64>> {
+        let hits = rays.iter().map(|ray| tracer.closest(ray));
+        hits.map(|hit| hit.map(|hit| hit.t * factor)).collect()
+    };
+    let go_on = |_: u64, _: u64, _: &str| ControlFlow::Continue(());
+    for factor in [1.0 - 1e-3, 1.0 + 1e-3] {
+        let found = compare_hits(
+            &tracer,
+            &rays,
+            &told(factor),
+            16.0 / 16_777_216.0,
+            3,
+            &go_on,
+        );
+        let found = found.expect("an end");
+        println!("{factor}: {} of {}", found.disagreements, found.hits);
+        assert!(100 * found.disagreements > 99 * found.hits);
+    }
+}
