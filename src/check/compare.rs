@@ -15,22 +15,22 @@ use crate::embree::Device;
 use crate::math::Ray;
 use crate::scene::Scene;
 
-use super::curve_blocks::curve_block;
 use super::curves::ConeCurves;
+use super::curves::blocks::curve_block;
 use super::finding::{Finding, Intersector};
-use super::judge::solid_of;
-use super::mesh_frame::MeshFrame;
-use super::meshes::{Meshes, Scratch, Seen};
+use super::judging::judge::solid_of;
+use super::judging::surface::LocalRay;
+use super::judging::truth;
+use super::judging::verdict::{Subject, Verdict, verdict};
 use super::outcome::{Outcome, Violation, Witness};
-use super::placed::{Window, windows};
-use super::plan::{self, Missing};
-use super::prism::bytes_needed;
+use super::prisms::mesh_frame::MeshFrame;
+use super::prisms::meshes::{Meshes, Scratch, Seen};
+use super::prisms::placed::{Window, windows};
+use super::prisms::prism::bytes_needed;
 use super::rays::RaySource;
 use super::settings::{CheckError, Class, Settings};
-use super::surface::LocalRay;
 use super::tally::Tally;
-use super::truth;
-use super::verdict::{Subject, Verdict, verdict};
+use super::telling::plan::{self, Missing};
 
 /// Rays that a thread takes at a time: long enough to share the work evenly
 /// without a word about it, short enough to stop at once when told to.

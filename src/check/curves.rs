@@ -39,6 +39,8 @@
 //! normal: `|Δt| |n·d| <= 2ε`. A hit and a miss never agree; near silhouettes
 //! the oracle clears them.
 
+pub(super) mod blocks;
+
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
@@ -46,10 +48,10 @@ use crate::embree::{Device, Error, GREATEST_COORDINATE, NativeHit, Ray32, Scene,
 use crate::math::{frobenius_norm, power_of_two};
 use crate::solid::{Caps, Cylinder};
 
-use super::mesh_frame::MeshFrame;
-use super::mesh_solid::{MeshMap, MeshSolid};
-use super::meshes::point;
-use super::placed::{PlacedSolid, Window};
+use super::prisms::mesh_frame::MeshFrame;
+use super::prisms::mesh_solid::{MeshMap, MeshSolid};
+use super::prisms::meshes::point;
+use super::prisms::placed::{PlacedSolid, Window};
 
 /// Half an ulp of 1 in f32.
 const U: f64 = power_of_two(-24);

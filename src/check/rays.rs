@@ -14,8 +14,8 @@ use crate::math::{Bounds, Random, Ray};
 use crate::scene::{AimedCamera, Scene};
 
 use super::Class;
-use super::mesh_frame::MeshFrame;
-use super::placed::{PlacedSolid, Window};
+use super::prisms::mesh_frame::MeshFrame;
+use super::prisms::placed::{PlacedSolid, Window};
 
 /// Draws of a ray before the window's box is aimed at itself.
 const MOST_DRAWS: u32 = 32;

@@ -11,15 +11,15 @@ use crate::scene::Scene;
 
 use super::compare::chosen_windows;
 use super::finding::{Finding, Intersector};
-use super::judge::first;
-use super::mesh_frame::MeshFrame;
-use super::meshes::{Meshes, Scratch};
+use super::judging::judge::first;
+use super::judging::truth;
+use super::judging::verdict::{Subject, Verdict, verdict};
 use super::outcome::{Violation, Witness};
+use super::prisms::mesh_frame::MeshFrame;
+use super::prisms::meshes::{Meshes, Scratch};
 use super::rays::RaySource;
 use super::settings::{CheckError, Class, Settings};
-use super::truth;
-use super::verdict::{Subject, Verdict, verdict};
-use super::words::{answer_text, instance_text, interval_text, ray_text};
+use super::telling::words::{answer_text, instance_text, interval_text, ray_text};
 
 /// A ray to look at again.
 ///

@@ -6,16 +6,16 @@ use std::f64::consts::PI;
 use crate::embree::Ray32;
 use crate::math::Ray;
 
-use super::finding::Finding;
 use super::judge::{Directory, Wrong, first, judge, solid_of};
-use super::mesh_frame::MeshFrame;
-use super::meshes::{Meshes, Scratch, Seen, may_meet};
-use super::placed::Window;
-use super::rays::RaySource;
 use super::retrial::retry;
 use super::sandwich::LATER;
 use super::surface::LocalRay;
-use super::tally::Tally;
+use crate::check::finding::Finding;
+use crate::check::prisms::mesh_frame::MeshFrame;
+use crate::check::prisms::meshes::{Meshes, Scratch, Seen, may_meet};
+use crate::check::prisms::placed::Window;
+use crate::check::rays::RaySource;
+use crate::check::tally::Tally;
 
 /// How far beyond an answer is looked for the bounds of its solid, in sagittas: the
 /// inscribed prism is met within so many where the ray is at more than 4° to
@@ -23,7 +23,7 @@ use super::tally::Tally;
 const SAGITTAS_BEYOND: f64 = 16.0;
 
 /// A window and what belongs to it.
-pub(super) struct Subject<'a> {
+pub(in crate::check) struct Subject<'a> {
     pub number: u64,
     pub window: &'a Window,
     pub frame: &'a MeshFrame,
@@ -49,7 +49,7 @@ impl<'a> Subject<'a> {
 }
 
 /// What both meshes say of an answer.
-pub(super) enum Verdict {
+pub(in crate::check) enum Verdict {
     /// Nothing bounds this ray's hits.
     Unwitnessed,
     /// Within the bounds.
@@ -91,7 +91,7 @@ impl Verdict {
 
 /// Judges an answer by what Embree sees, and if it is suspect, exactly. What was
 /// seen, or found exactly, is left in `scratch.seen`.
-pub(super) fn verdict(
+pub(in crate::check) fn verdict(
     about: &Subject,
     meshes: &Meshes,
     ray32: &Ray32,

@@ -1,10 +1,10 @@
 //! What a check will take before anything is built, and what each part of the
 //! scene held.
 
-use super::compare::chosen_windows;
-use super::placed::Window;
-use super::prism::bytes_needed;
-use super::{CheckError, Settings};
+use crate::check::compare::chosen_windows;
+use crate::check::prisms::placed::Window;
+use crate::check::prisms::prism::bytes_needed;
+use crate::check::{CheckError, Settings};
 use crate::report::{figure, readable};
 use crate::scene::Scene;
 
@@ -38,7 +38,7 @@ pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, CheckError> {
 
 /// Solids of a window that have no prism of a number of sides.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Missing {
+pub(in crate::check) struct Missing {
     /// Sides.
     pub segments: u32,
     /// Solids too small for an inscribed prism in f32.
@@ -48,7 +48,7 @@ pub(super) struct Missing {
 }
 
 /// What a window held, in a line.
-pub(super) fn in_words(
+pub(in crate::check) fn in_words(
     window: &Window,
     number: u64,
     windows: u64,

@@ -15,7 +15,7 @@ use std::collections::HashMap;
 use glam::{DAffine3, DVec2, DVec3};
 use rayon::prelude::*;
 
-use super::user_mesh::{TracedMesh, TriangleHit};
+use crate::check::elsewhere::user_mesh::{TracedMesh, TriangleHit};
 use crate::embree::{self, DeviceOptions};
 use crate::math::Ray;
 use crate::render::{png_bytes, srgb_encode};

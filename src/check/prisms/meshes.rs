@@ -12,10 +12,10 @@ use crate::embree::{self, Device, GeometryId, MeshHit, Ray32, SceneBuilder};
 use crate::math::{Bounds, Ray};
 
 use super::mesh_frame::MeshFrame;
-use super::open_ends::OpenEnds;
 use super::placed::{PlacedSolid, Window};
 use super::prism::{Prisms, Side, prisms};
-use super::sandwich::{Crossings, SolidBounds, solid_bounds};
+use crate::check::judging::open_ends::OpenEnds;
+use crate::check::judging::sandwich::{Crossings, SolidBounds, solid_bounds};
 
 /// No prism stands for a solid.
 const NONE: u32 = u32::MAX;

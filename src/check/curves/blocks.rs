@@ -6,19 +6,19 @@
 //! fault: of a block of rays the first [`MOST_QUESTIONS`] are asked, and the
 //! others count as not witnessed.
 
-use super::curves::{ConeCurves, Told, Verdict};
-use super::finding::Intersector;
-use super::outcome::{Violation, Witness};
-use super::settings::Class;
-use super::tally::Tally;
-use super::truth;
-use super::verdict::Subject;
+use super::{ConeCurves, Told, Verdict};
+use crate::check::finding::Intersector;
+use crate::check::judging::truth;
+use crate::check::judging::verdict::Subject;
+use crate::check::outcome::{Violation, Witness};
+use crate::check::settings::Class;
+use crate::check::tally::Tally;
 
 /// Suspects of a block that the oracle is asked about.
 const MOST_QUESTIONS: u64 = 4;
 
 /// Holds an intersector's answers for the rays of a class against the curves.
-pub(super) fn curve_block(
+pub(in crate::check) fn curve_block(
     about: &Subject,
     curves: &ConeCurves,
     intersector: &impl Intersector,

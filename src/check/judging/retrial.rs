@@ -31,8 +31,8 @@ use crate::embree::Ray32;
 use crate::math::{Ray, UNIT_ROUNDOFF};
 use crate::oracle::{Exact, ExactVector, exact, to_f64};
 
-use super::meshes::{Meshes, Seen, may_meet, point};
 use super::sandwich::Crossings;
+use crate::check::prisms::meshes::{Meshes, Seen, may_meet, point};
 
 /// Bits of the quotient from which a parameter is rounded.
 const QUOTIENT_BITS: usize = 256;

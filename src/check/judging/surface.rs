@@ -27,7 +27,7 @@ use glam::DVec3;
 use crate::math::{ChildFromParent, PlacementErrors, Ray, UNIT_ROUNDOFF};
 use crate::solid::{Part, tessellation};
 
-use super::placed::PlacedSolid;
+use crate::check::prisms::placed::PlacedSolid;
 
 /// What a normal may be off by beyond what is derived: intersectors that shade
 /// with f32 normals are welcome.

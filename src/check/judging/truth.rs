@@ -17,12 +17,12 @@ use crate::math::Ray;
 use crate::oracle::{self, CylinderTruth};
 use crate::solid::{Caps, Crossing, Cylinder};
 
-use super::finding::Finding;
-use super::meshes::may_meet;
-use super::placed::{PlacedSolid, Window};
 use super::sandwich::{Crossings, Interval, solid_bounds};
 use super::surface::LocalRay;
-use super::words::instance_text;
+use crate::check::finding::Finding;
+use crate::check::prisms::meshes::may_meet;
+use crate::check::prisms::placed::{PlacedSolid, Window};
+use crate::check::telling::words::instance_text;
 
 /// Roundings of the ray that an intersector may make up for one of ours: a
 /// solver has some 30 operations from the ray to `t`.

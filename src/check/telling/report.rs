@@ -1,7 +1,7 @@
 //! What came of a check as tables and as a page.
 
-use super::agreement::Disagreement;
-use super::{Agreement, ClassRow, Outcome, Pictures, Violation, Witness};
+use crate::check::elsewhere::agreement::Disagreement;
+use crate::check::{Agreement, ClassRow, Outcome, Pictures, Violation, Witness};
 use crate::report::{Figure, Mark, Page, Series, Symbol, figure};
 
 /// The columns of [`table_rows`].

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::agreement::{Agreement, allowance, greatest_coordinate};
 use super::nearness::Surfaces;
-use super::{Progress, Witness};
+use crate::check::{Progress, Witness};
 use crate::math::Ray;
 use crate::tracer::Tracer;
 
@@ -18,7 +18,7 @@ const BLOCK: u64 = 512;
 ///
 /// `tolerance` is relative to the distances of a ray's origin from the scene's,
 /// of the hit from the ray's origin, and of the scene's farthest corner from its
-/// origin, added up; [`super::F32_TOLERANCE`] suits a renderer in f32.
+/// origin, added up; [`crate::check::F32_TOLERANCE`] suits a renderer in f32.
 ///
 /// # Panics
 /// When there is not one answer a ray.
@@ -49,7 +49,7 @@ pub fn compare_hits(
 
 /// Runs `compare` for every number below `count`, on all threads, in an order that
 /// the outcome does not show.
-pub(super) fn in_blocks(
+pub(in crate::check) fn in_blocks(
     none: Agreement,
     count: u64,
     most_listed: usize,

@@ -14,7 +14,7 @@ use glam::DVec3;
 use super::agreement::{Agreement, F32_TOLERANCE};
 use super::nearness::Surfaces;
 use super::user_hits::in_blocks;
-use super::{Progress, Witness};
+use crate::check::{Progress, Witness};
 use crate::embree::{self, Device, DeviceOptions, Ray32, SceneBuilder};
 use crate::math::{Bounds, Random, Ray, power_of_two_below};
 use crate::solid::tessellation::Mesh;

@@ -4,8 +4,10 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use super::*;
-use crate::check::containment::tests::{holds_all_exactly, is_enclosed_exactly, random_window};
-use crate::check::placed::windows;
+use crate::check::prisms::containment::tests::{
+    holds_all_exactly, is_enclosed_exactly, random_window,
+};
+use crate::check::prisms::placed::windows;
 use crate::embree::{Device, DeviceOptions, SceneBuilder};
 use crate::math::Random;
 

@@ -23,8 +23,8 @@ use glam::DVec3;
 use crate::math::{UNIT_ROUNDOFF, power_of_two};
 use crate::oracle::{Exact, ExactVector, exact, to_f64};
 
-use super::mesh_frame::MeshFrame;
-use super::placed::PlacedSolid;
+use crate::check::prisms::mesh_frame::MeshFrame;
+use crate::check::prisms::placed::PlacedSolid;
 
 /// The planes of the discs that a tube does not have, in the mesh's space.
 #[derive(Clone, Debug, Default)]

@@ -77,7 +77,11 @@ fn wide(vertex: [f32; 3]) -> DVec3 {
 }
 
 /// Whether all vertices of the mesh are in the closed capped solid.
-pub(super) fn holds_all(solid: &MeshSolid, frame: &MeshFrame, vertices: &[[f32; 3]]) -> bool {
+pub(in crate::check) fn holds_all(
+    solid: &MeshSolid,
+    frame: &MeshFrame,
+    vertices: &[[f32; 3]],
+) -> bool {
     let mut exactly = None;
     vertices.iter().all(|&vertex| {
         is_surely_inside(solid, wide(vertex))
@@ -88,7 +92,7 @@ pub(super) fn holds_all(solid: &MeshSolid, frame: &MeshFrame, vertices: &[[f32; 
 }
 
 /// Whether the closed surface of these triangles encloses the capped solid.
-pub(super) fn is_enclosed(
+pub(in crate::check) fn is_enclosed(
     solid: &MeshSolid,
     frame: &MeshFrame,
     mut triangles: impl Iterator<Item = [[f32; 3]; 3]>,
@@ -324,4 +328,4 @@ impl ExactSolid {
 }
 
 #[cfg(test)]
-pub(super) mod tests;
+pub(in crate::check) mod tests;

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use super::finding::Finding;
+use crate::check::finding::Finding;
 use crate::math::Ray;
 
 /// A ray: origin, direction, and its range where that is not everything ahead.
-pub(super) fn ray_text(ray: &Ray) -> String {
+pub(in crate::check) fn ray_text(ray: &Ray) -> String {
     let mut text = format!(
         "o {} d {}",
         point_text(ray.origin),
@@ -23,7 +23,7 @@ fn point_text(point: DVec3) -> String {
 }
 
 /// An answer in words.
-pub(super) fn answer_text(answer: Option<&Finding>) -> String {
+pub(in crate::check) fn answer_text(answer: Option<&Finding>) -> String {
     let Some(answer) = answer else {
         return String::from("a miss");
     };
@@ -43,7 +43,7 @@ pub(super) fn answer_text(answer: Option<&Finding>) -> String {
 }
 
 /// What holds a solid: the scene itself, or placements, outermost first.
-pub(super) fn instance_text(instance: &[u32]) -> String {
+pub(in crate::check) fn instance_text(instance: &[u32]) -> String {
     if instance.is_empty() {
         return String::from("the scene itself");
     }
@@ -52,7 +52,7 @@ pub(super) fn instance_text(instance: &[u32]) -> String {
 }
 
 /// The bounds of a hit in words; infinity stands for a miss.
-pub(super) fn interval_text(low: f64, high: f64) -> String {
+pub(in crate::check) fn interval_text(low: f64, high: f64) -> String {
     match (low.is_finite(), high.is_finite()) {
         (false, _) => String::from("a miss"),
         (true, false) => format!("a hit from {low:?} on, or a miss"),

@@ -26,7 +26,7 @@ const SECTIONS: u32 = 64;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// A solid's own space.
-pub(super) struct Frame {
+pub(in crate::check) struct Frame {
     object_from_world: DAffine3,
     /// The bound of `|M|`.
     stretch: f64,
@@ -36,7 +36,7 @@ pub(super) struct Frame {
 }
 
 /// A cylinder there.
-pub(super) struct PlacedCylinder<'a> {
+pub(in crate::check) struct PlacedCylinder<'a> {
     pub cylinder: Cylinder,
     pub frame: &'a Frame,
 }
@@ -182,7 +182,7 @@ fn surface_distance(cylinder: &Cylinder, point: DVec3) -> f64 {
 }
 
 /// All surfaces of a scene.
-pub(super) struct Surfaces<'a> {
+pub(in crate::check) struct Surfaces<'a> {
     scene: &'a Scene,
     /// The box of each prototype, as far as the root holds it.
     boxes: Vec<Option<Bounds>>,

@@ -3,8 +3,8 @@
 use glam::{DAffine3, DMat3};
 
 use super::*;
-use crate::check::mesh_solid::MeshMap;
-use crate::check::placed::{Window, windows};
+use crate::check::prisms::mesh_solid::MeshMap;
+use crate::check::prisms::placed::{Window, windows};
 use crate::math::Random;
 use crate::scene::{CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene};
 use crate::solid::{Caps, Cylinder};

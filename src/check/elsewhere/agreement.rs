@@ -32,15 +32,15 @@
 
 use glam::DAffine3;
 
-use super::Witness;
 use super::nearness::{Frame, PlacedCylinder, Surfaces};
+use crate::check::Witness;
 use crate::math::Ray;
 use crate::oracle::{ExactAffine, placed_first_hit};
 use crate::scene::{CylinderRecord, PrototypeIndex, Scene};
 use crate::tracer::{DEFAULT_BATCH, Hit, Tracer};
 
 /// The unit roundoff of f32.
-pub(super) const UNIT_ROUNDOFF_32: f64 = 1.0 / (1 << 24) as f64;
+pub(in crate::check) const UNIT_ROUNDOFF_32: f64 = 1.0 / (1 << 24) as f64;
 
 /// What a ray's displacement and a surface's come to in an f32 renderer, in
 /// units of 2^-24 of the distances: the origin 1, the direction 1, end points
@@ -96,7 +96,7 @@ pub struct Disagreement {
 
 /// What one comparison came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Verdict {
+pub(in crate::check) enum Verdict {
     /// With the distance along the ray in units of the allowance.
     Agrees(f64),
     Silhouette,
@@ -105,7 +105,7 @@ pub(super) enum Verdict {
 
 impl Agreement {
     /// Nothing compared yet.
-    pub(super) fn new(class: &'static str, witness: Witness) -> Self {
+    pub(in crate::check) fn new(class: &'static str, witness: Witness) -> Self {
         Self {
             class,
             witness,
@@ -119,7 +119,7 @@ impl Agreement {
     }
 
     /// Compares the answer for one more ray.
-    pub(super) fn add(
+    pub(in crate::check) fn add(
         &mut self,
         (tracer, surfaces): (&Tracer, &Surfaces),
         index: u64,
@@ -152,7 +152,7 @@ impl Agreement {
     }
 
     /// Adds what was found for the rays that follow.
-    pub(super) fn append(&mut self, other: Self, most_listed: usize) {
+    pub(in crate::check) fn append(&mut self, other: Self, most_listed: usize) {
         self.rays += other.rays;
         self.hits += other.hits;
         self.silhouette += other.silhouette;
@@ -167,7 +167,7 @@ impl Agreement {
 /// all the distances that its arithmetic sees, which are the ray's origin, the
 /// way to the hit, and the scene's greatest coordinate. A miss has come past
 /// the scene.
-pub(super) fn allowance(tolerance: f64, ray: &Ray, t: Option<f64>, greatest: f64) -> f64 {
+pub(in crate::check) fn allowance(tolerance: f64, ray: &Ray, t: Option<f64>, greatest: f64) -> f64 {
     let origin = ray.origin.length();
     let way = t.map_or(origin + 2.0 * greatest, |t| {
         t.abs() * ray.direction.length()
@@ -176,7 +176,7 @@ pub(super) fn allowance(tolerance: f64, ray: &Ray, t: Option<f64>, greatest: f64
 }
 
 /// The length of the farthest corner of the box around a scene.
-pub(super) fn greatest_coordinate(tracer: &Tracer) -> f64 {
+pub(in crate::check) fn greatest_coordinate(tracer: &Tracer) -> f64 {
     let bounds = tracer.bounds();
     if bounds.is_empty() {
         return 0.0;

@@ -22,7 +22,7 @@ use super::placed::{PlacedFrame, PlacedSolid};
 
 /// From the space of a placed prototype to the meshes and back; vectors only.
 #[derive(Clone, Debug)]
-pub(super) struct MeshMap {
+pub(in crate::check) struct MeshMap {
     /// `M`: to the mesh.
     pub matrix: DMat3,
     /// `G`: from the mesh.
@@ -59,7 +59,7 @@ impl MeshMap {
 
 /// A placed solid as the meshes have it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct MeshSolid<'a> {
+pub(in crate::check) struct MeshSolid<'a> {
     /// The solid as it was stated.
     pub placed: &'a PlacedSolid,
     /// Where it stands.

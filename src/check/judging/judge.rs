@@ -5,11 +5,11 @@ use std::fmt;
 
 use crate::math::Ray;
 
-use super::finding::{Finding, Place};
-use super::meshes::Seen;
-use super::placed::Window;
 use super::sandwich::Interval;
 use super::surface::{LocalRay, WrongSurface};
+use crate::check::finding::{Finding, Place};
+use crate::check::prisms::meshes::Seen;
+use crate::check::prisms::placed::Window;
 
 /// The solids of a window by their places in the scene.
 pub(crate) struct Directory<'a> {
