@@ -25,7 +25,7 @@ impl Intersector for Late {
     }
 }
 
-/// The outcome without prisms, which take most of the time.
+/// The outcome with the simplest prisms: the others take most of the time.
 fn outcome(name: &str, rays: u64, by: f64) -> Outcome {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("scenes")
@@ -33,7 +33,7 @@ fn outcome(name: &str, rays: u64, by: f64) -> Outcome {
     let scene = Arc::new(scene::load(&path).unwrap());
     let tracer = Tracer::new(Arc::clone(&scene), &Options::default()).unwrap();
     let settings = Settings {
-        segments: vec![],
+        segments: vec![3],
         rays,
         ..Settings::default()
     };
@@ -94,7 +94,8 @@ fn curves_agree_on_the_pathological_scene() {
 
 #[test]
 fn late_hits_are_violations_by_curves_and_oracle() {
-    let outcome = outcome("minimal.toml", 2_000, 0.05);
+    // Some of the four questions of a block are about open ends, which excuse more.
+    let outcome = outcome("minimal.toml", 40_000, 0.05);
     assert!(!outcome.holds());
     for row in &outcome.rows {
         if row.witness == Witness::ConeCurve && row.hits > 0 {
