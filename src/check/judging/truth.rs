@@ -10,11 +10,11 @@
 //! in place of triangles, and the same bounds follow (`sandwich`).
 //!
 //! A crossing of a tube is certain if its height is more than `2 δ` from the
-//! missing discs. Of a ray that comes in through one, only the lower bound is
-//! used: there is but the first hit of each cylinder to go by.
+//! missing discs. A ray that comes in through one and goes out through another
+//! has no upper bound: that it misses is not certain to the sandwich.
 
 use crate::math::Ray;
-use crate::oracle::{self, CylinderTruth};
+use crate::oracle::{self, ExactAffine};
 use crate::solid::{Caps, Crossing, Cylinder};
 
 use super::sandwich::{Crossings, Interval, solid_bounds};
@@ -83,11 +83,8 @@ fn displaced_bounds(solid: &PlacedSolid, ray: &Ray) -> Option<Interval> {
         t_max: f64::INFINITY,
         ..*ray
     };
-    let first = |cylinder: &Cylinder| {
-        let placement = &solid.frame.exact;
-        crossings(&oracle::placed_first_hit(cylinder, placement, &endless))
-    };
-    let (outer, inner) = (first(&grown), first(&shrunk));
+    let [outer, inner] =
+        [grown, shrunk].map(|cylinder| crossings(&cylinder, &solid.frame.exact, &endless));
     let is_certain = |t: f64| {
         cylinder.caps() == Caps::Both || (t.is_finite() && local.is_between_ends(t, 2.0 * leeway))
     };
@@ -113,10 +110,20 @@ fn displaced(cylinder: &Cylinder, outward: f64) -> Option<Cylinder> {
         .flatten()
 }
 
-fn crossings(truth: &CylinderTruth) -> Crossings {
+/// Where the ray enters a capped cylinder and where it leaves it. The exit is
+/// looked for from the next f64 on.
+fn crossings(cylinder: &Cylinder, placement: &ExactAffine, ray: &Ray) -> Crossings {
     let mut crossings = Crossings::NONE;
-    if let Some(hit) = &truth.hit {
-        crossings.add(hit.t_f64(), hit.crossing == Crossing::Enter);
+    let first = |ray: &Ray| oracle::placed_first_hit(cylinder, placement, ray).hit;
+    let Some(hit) = first(ray) else {
+        return crossings;
+    };
+    crossings.add(hit.t_f64(), hit.crossing == Crossing::Enter);
+    if hit.crossing == Crossing::Enter {
+        let t_min = hit.t_f64().next_up();
+        if let Some(exit) = first(&Ray { t_min, ..*ray }) {
+            crossings.add(exit.t_f64(), exit.crossing == Crossing::Enter);
+        }
     }
     crossings
 }
