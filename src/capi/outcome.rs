@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::status::c_text;
 use super::types::CyltraceCheckOutcome;
-use crate::check::{ClassRow, Outcome, Violation};
+use crate::check::{self, Outcome, Violation};
 
 /// The outcome, with texts that [`free`] gives back.
 pub(super) fn of(outcome: &Outcome) -> CyltraceCheckOutcome {
@@ -84,46 +84,9 @@ fn text(outcome: &Outcome) -> String {
 
 /// What the text says and more, in the keys of `cyltrace check --json`.
 fn json(outcome: &Outcome) -> Value {
-    let percent = |part: u64, row: &ClassRow| 100.0 * part as f64 / row.rays.max(1) as f64;
-    let classes = outcome.rows.iter().map(|row| {
-        json!({
-            "name": row.class.name(),
-            "witness": row.witness.name(),
-            "segments": row.segments,
-            "rays": row.rays,
-            "violations": row.violations,
-            "band_percent": percent(row.band, row),
-            "max_dt_over_chord": row.max_dt_over_chord,
-            "hits": row.hits,
-            "witnessed_percent": percent(row.witnessed, row),
-            "unwitnessed_percent": percent(row.unwitnessed, row),
-            "triangle_errors": row.triangle_errors,
-            "wrong_normals": row.wrong_normals,
-        })
-    });
-    let convergence = outcome.convergence.iter().map(|of| {
-        json!({
-            "segments": of.segments,
-            "band_percent": of.band_percent,
-            "p99_dt_r": of.p99_dt_r,
-        })
-    });
-    let listed = outcome.violations.iter().map(|violation| {
-        let ray = &violation.ray;
-        json!({
-            "class": violation.class.name(),
-            "witness": violation.witness.name(),
-            "segments": violation.segments,
-            "index": violation.index,
-            "origin": ray.origin.to_array(),
-            "direction": ray.direction.to_array(),
-            "t_min": ray.t_min,
-            "t_max": ray.t_max,
-            "t": violation.answer.as_ref().map(|answer| answer.t),
-            "allowed": [violation.allowed.0, violation.allowed.1],
-            "what": violation.what,
-        })
-    });
+    let classes = outcome.rows.iter().map(check::class_figures);
+    let convergence = outcome.convergence.iter().map(check::convergence_figures);
+    let listed = outcome.violations.iter().map(check::violation_figures);
     json!({
         "holds": outcome.holds(),
         "rays": outcome.rays(),

@@ -43,6 +43,7 @@ pub use finding::{Finding, Intersector, Place};
 pub use outcome::{ClassRow, Convergence, Outcome, Violation, Witness};
 pub use replay::{Replay, Replayed, replay};
 pub use settings::{CheckError, Class, Settings};
+pub use telling::figures::{class_figures, convergence_figures, violation_figures};
 pub use telling::pictures::{Pictures, PicturesError, pictures};
 pub use telling::plan::{Plan, plan};
 pub use telling::report::{

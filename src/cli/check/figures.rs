@@ -1,6 +1,6 @@
 //! The figures of a check, as JSON.
 
-use cyltrace::check::{Agreement, ClassRow, percent};
+use cyltrace::check::{self, Agreement, percent};
 use cyltrace::tracer::Tracer;
 use serde_json::{Value, json};
 
@@ -23,28 +23,10 @@ pub fn figures(
     } = found;
     let disagreements: u64 = agreements.iter().map(|one| one.disagreements).sum();
     let told_rays: u64 = agreements.iter().map(|one| one.rays).sum();
-    let classes = outcome.rows.iter().map(class_figures);
+    let classes = outcome.rows.iter().map(check::class_figures);
     let classes = classes.chain(agreements.iter().map(agreement_figures));
-    let convergence = outcome.convergence.iter().map(|row| {
-        json!({
-            "segments": row.segments,
-            "band_percent": row.band_percent,
-            "p99_dt_r": row.p99_dt_r,
-        })
-    });
-    let listed = outcome.violations.iter().map(|violation| {
-        json!({
-            "class": violation.class.name(),
-            "witness": violation.witness.name(),
-            "segments": violation.segments,
-            "index": violation.index,
-            "t": violation.answer.as_ref().map(|answer| answer.t),
-            "what": violation.what,
-            "replay": violation.replay().to_string(),
-            "exact_t": null,
-            "line": null,
-        })
-    });
+    let convergence = outcome.convergence.iter().map(check::convergence_figures);
+    let listed = outcome.violations.iter().map(check::violation_figures);
     let told_listed = agreements.iter().flat_map(|one| {
         one.listed.iter().map(move |found| {
             json!({
@@ -76,23 +58,6 @@ pub fn figures(
         "isa": tracer.statistics().isa,
         "check_s": elapsed,
         "holds": found.holds(),
-    })
-}
-
-fn class_figures(row: &ClassRow) -> Value {
-    json!({
-        "name": row.class.name(),
-        "witness": row.witness.name(),
-        "segments": row.segments,
-        "rays": row.rays,
-        "violations": row.violations,
-        "band_percent": percent(row.band, row.rays),
-        "max_dt_over_chord": row.max_dt_over_chord,
-        "hits": row.hits,
-        "witnessed_percent": percent(row.witnessed, row.rays),
-        "unwitnessed_percent": percent(row.unwitnessed, row.rays),
-        "triangle_errors": row.triangle_errors,
-        "wrong_normals": row.wrong_normals,
     })
 }
 
