@@ -18,18 +18,25 @@ use locate::{Embree, VARIABLES, locate};
 
 /// The C functions that Rust calls itself; all others stay out of the bindings.
 const FUNCTIONS: &str = "cyltrace_.*|rtc(New|Release)(Device|Scene|Geometry)\
-    |rtc(Attach|Commit)Geometry|rtcCommitScene|rtcGetSceneBounds|rtcSetSceneFlags\
+    |rtc(Attach|Commit)Geometry|rtc(Commit|JoinCommit)Scene|rtcGetSceneBounds|rtcSetScene(Flags|BuildQuality)\
     |rtcGetDevice(Property|Error)|rtcSetDevice(Error|MemoryMonitor)Function\
     |rtcSetGeometry(InstancedScene|Transform|Mask|UserData|UserPrimitiveCount)|rtcSetNewGeometryBuffer\
     |rtcSetGeometry(Bounds|Intersect|Occluded|IntersectFilter)Function";
 
 /// The constants of C enumerations that Rust names.
-const CONSTANTS: [&str; 26] = [
+const CONSTANTS: [&str; 35] = [
     "RTC_BUFFER_TYPE_FLAGS",
     "RTC_BUFFER_TYPE_INDEX",
     "RTC_BUFFER_TYPE_VERTEX",
+    "RTC_BUILD_QUALITY_HIGH",
+    "RTC_BUILD_QUALITY_LOW",
+    "RTC_BUILD_QUALITY_MEDIUM",
     "RTC_DEVICE_PROPERTY_BACKFACE_CULLING_ENABLED",
     "RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED",
+    "RTC_DEVICE_PROPERTY_JOIN_COMMIT_SUPPORTED",
+    "RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED",
+    "RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED",
+    "RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED",
     "RTC_DEVICE_PROPERTY_VERSION_MAJOR",
     "RTC_DEVICE_PROPERTY_VERSION_MINOR",
     "RTC_DEVICE_PROPERTY_VERSION_PATCH",
@@ -50,12 +57,16 @@ const CONSTANTS: [&str; 26] = [
     "RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE",
     "RTC_GEOMETRY_TYPE_TRIANGLE",
     "RTC_GEOMETRY_TYPE_USER",
+    "RTC_SCENE_FLAG_COMPACT",
+    "RTC_SCENE_FLAG_DYNAMIC",
     "RTC_SCENE_FLAG_ROBUST",
 ];
 
 fn main() {
     println!("cargo::rerun-if-changed=src/embree/shim.h");
     println!("cargo::rerun-if-changed=src/embree/shim.c");
+    println!("cargo::rerun-if-changed=src/bench/c_rival.h");
+    println!("cargo::rerun-if-changed=src/bench/c_rival.c");
     println!("cargo::rerun-if-changed=build/locate.rs");
     for variable in VARIABLES {
         println!("cargo::rerun-if-env-changed={variable}");
@@ -70,7 +81,7 @@ fn main() {
     println!("cargo::rerun-if-changed={}", embree.header().display());
 
     bind(&embree);
-    compile_shim(&embree);
+    compile_c(&embree);
     link(&embree);
 }
 
@@ -103,10 +114,11 @@ impl ParseCallbacks for UsedConstants {
 fn bind(embree: &Embree) {
     let builder = bindgen::Builder::default()
         .header("src/embree/shim.h")
+        .header("src/bench/c_rival.h")
         .clang_arg(format!("-I{}", embree.include.display()))
         .clang_arg(format!("-DCYLTRACE_EMBREE_MAJOR={}", embree.major))
         .allowlist_function(FUNCTIONS)
-        .allowlist_type("cyltrace_context|RTCRayHit|RTCBounds|RTC(Bounds|Intersect|Occluded|Filter)Function(N?)Arguments")
+        .allowlist_type("cyltrace_context|cyltrace_c_(cylinder|geometry|query)|RTCRayHit(4|8|16)?|RTCBounds|RTC(Bounds|Intersect|Occluded|Filter)Function(N?)Arguments")
         .allowlist_var("RTC_VERSION_(MAJOR|MINOR|PATCH)")
         .default_enum_style(bindgen::EnumVariation::NewType {
             is_bitfield: false,
@@ -115,7 +127,7 @@ fn bind(embree: &Embree) {
         .prepend_enum_name(false)
         .parse_callbacks(Box::new(UsedConstants))
         .derive_default(true)
-        .no_default(".*(Arguments|Context)|cyltrace_.*")
+        .no_default(".*(Arguments|Context)|cyltrace_.*|RTC(Ray|Hit|RayHit)(4|8|16)")
         .generate_comments(false)
         .use_core();
 
@@ -142,9 +154,12 @@ fn bind(embree: &Embree) {
     }
 }
 
-fn compile_shim(embree: &Embree) {
+fn compile_c(embree: &Embree) {
     cc::Build::new()
         .file("src/embree/shim.c")
+        // The rival of Rust callbacks is compiled for speed in every profile.
+        .file("src/bench/c_rival.c")
+        .opt_level(3)
         .include(&embree.include)
         .define("CYLTRACE_EMBREE_MAJOR", embree.major.to_string().as_str())
         // A fused multiply-add would make results depend on the compiler.

@@ -14,13 +14,26 @@ pub struct AbortOnPanic {
 }
 
 impl AbortOnPanic {
+    /// From here to [`passed`](Self::passed) a panic ends the process with
+    /// `callback` in the message.
+    #[inline(always)]
+    pub fn new(callback: &'static str) -> Self {
+        Self { callback }
+    }
+
+    /// There was no panic.
+    #[inline(always)]
+    pub fn passed(self) {
+        mem::forget(self);
+    }
+
     /// Runs `body`; a panic in it ends the process with `callback` in the
     /// message.
     #[inline]
     pub fn run<T>(callback: &'static str, body: impl FnOnce() -> T) -> T {
-        let guard = Self { callback };
+        let guard = Self::new(callback);
         let value = body();
-        mem::forget(guard);
+        guard.passed();
         value
     }
 }

@@ -9,6 +9,8 @@ use std::sync::atomic::{AtomicIsize, Ordering};
 use super::abort::AbortOnPanic;
 use super::error::{Error, check, keep_message};
 use super::isa::MaxIsa;
+use super::kernel::Instructions;
+use super::packet::PacketWidth;
 use super::probe;
 use super::sys;
 
@@ -73,6 +75,8 @@ pub struct Device {
 struct Shared {
     handle: sys::RTCDevice,
     memory: Arc<Memory>,
+    isa: Option<MaxIsa>,
+    packet_width: Option<PacketWidth>,
 }
 
 // SAFETY: invariant 1, and Embree's device functions may be called on any
@@ -109,6 +113,8 @@ impl Device {
             shared: Arc::new(Shared {
                 handle,
                 memory: Arc::default(),
+                isa: MaxIsa::in_use(options.max_isa),
+                packet_width: widest_packets(handle),
             }),
         };
         let memory = Arc::as_ptr(&device.shared.memory).cast_mut().cast();
@@ -151,6 +157,25 @@ impl Device {
         as_bytes(&self.shared.memory.peak)
     }
 
+    /// The widest packets of rays that Embree traverses without taking them
+    /// apart; `None` if it was built without packets.
+    #[inline]
+    #[must_use]
+    pub fn packet_width(&self) -> Option<PacketWidth> {
+        self.shared.packet_width
+    }
+
+    /// The instructions that code of this crate may use beside Embree's.
+    #[must_use]
+    pub fn instructions(&self) -> Instructions {
+        Instructions::of(self.isa_in_use())
+    }
+
+    /// The instruction set that Embree uses, which the processor has.
+    pub(super) fn isa_in_use(&self) -> Option<MaxIsa> {
+        self.shared.isa
+    }
+
     pub(super) fn property(&self, property: sys::RTCDeviceProperty) -> isize {
         // SAFETY: invariant 1.
         unsafe { sys::rtcGetDeviceProperty(self.handle(), property) }
@@ -165,6 +190,23 @@ impl Device {
     pub(super) fn check(&self, step: &'static str) -> Result<(), Error> {
         check(self.handle(), step)
     }
+}
+
+/// The widest packets that a device, which is alive, traverses as they are.
+fn widest_packets(device: sys::RTCDevice) -> Option<PacketWidth> {
+    let native = |width| {
+        let property = match width {
+            PacketWidth::Four => sys::RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED,
+            PacketWidth::Eight => sys::RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED,
+            PacketWidth::Sixteen => sys::RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED,
+        };
+        // SAFETY: invariant 1.
+        unsafe { sys::rtcGetDeviceProperty(device, property) != 0 }
+    };
+    PacketWidth::ALL
+        .into_iter()
+        .rev()
+        .find(|&width| native(width))
 }
 
 /// What Embree holds, counted by its memory monitor.

@@ -64,7 +64,13 @@ impl MaxIsa {
     /// when it is above the processor's best.
     #[must_use]
     pub fn name_in_use(limit: Option<Self>) -> &'static str {
-        Self::lesser(limit, Self::best()).map_or("unknown", Self::name)
+        Self::in_use(limit).map_or("unknown", Self::name)
+    }
+
+    /// The one in use where Embree is held to `limit`; `None` where its code goes
+    /// by no name of these.
+    pub(super) fn in_use(limit: Option<Self>) -> Option<Self> {
+        Self::lesser(limit, Self::best())
     }
 
     fn lesser(limit: Option<Self>, best: Option<Self>) -> Option<Self> {

@@ -2,6 +2,7 @@
 //! curves.
 
 use super::error::Error;
+use super::query::Query;
 use super::ray::is_inside;
 use super::scene::{GeometryHandle, GeometryId, SceneBuilder};
 use super::sys;
@@ -15,7 +16,7 @@ pub(super) enum Curve {
     Round,
 }
 
-impl<Q: 'static> SceneBuilder<Q> {
+impl<Q: Query> SceneBuilder<Q> {
     /// Adds a triangle mesh; each triangle is three vertex numbers. The
     /// vertices are copied.
     ///

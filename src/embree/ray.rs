@@ -59,7 +59,7 @@ impl Ray32 {
         }
     }
 
-    fn is_legal(&self) -> bool {
+    pub(super) fn is_legal(&self) -> bool {
         is_inside(&self.origin)
             && is_inside(&self.direction)
             && (0.0..f32::INFINITY).contains(&self.t_near)
@@ -82,6 +82,21 @@ pub struct Box32 {
 }
 
 impl Box32 {
+    /// The box that holds nothing; the neutral element of [`Box32::union`].
+    pub const EMPTY: Self = Self {
+        lower: [f32::INFINITY; 3],
+        upper: [f32::NEG_INFINITY; 3],
+    };
+
+    /// The least box that holds both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        Self {
+            lower: std::array::from_fn(|axis| self.lower[axis].min(other.lower[axis])),
+            upper: std::array::from_fn(|axis| self.upper[axis].max(other.upper[axis])),
+        }
+    }
+
     /// Whether Embree would accept it as the bounds of a primitive: not empty,
     /// and every coordinate below [`GREATEST_COORDINATE`]. Embree leaves out a
     /// primitive with other bounds without a word.

@@ -7,6 +7,8 @@ use std::sync::Arc;
 
 use super::device::Device;
 use super::error::Error;
+use super::joint::JointCommit;
+use super::query::Query;
 use super::ray::{Box32, NativeHit, Ray32};
 use super::sys;
 use super::user::{UserData, UserGeometry, new_user_geometry};
@@ -66,7 +68,7 @@ impl Drop for GeometryHandle {
 
 /// An Embree scene and what has to outlive it; the order of the fields is the
 /// order in which they are dropped (invariant 2).
-struct Parts {
+pub(super) struct Parts {
     handle: SceneHandle,
     /// Shared pointers because, unlike a box, one may be moved while Embree
     /// holds a pointer into it. There is no second owner.
@@ -74,6 +76,29 @@ struct Parts {
     /// Scenes that this one has instances of.
     instanced: Vec<Arc<Scene<()>>>,
     device: Device,
+}
+
+/// How much effort goes into a hierarchy: more of it builds slower, and is
+/// faster to trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BuildQuality {
+    /// Sorted along a space-filling curve.
+    Low,
+    /// Split by the surface area heuristic.
+    Medium,
+    /// That, and primitives may be split, where their kind allows it.
+    High,
+}
+
+/// What a hierarchy is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SceneKind {
+    /// Speed of queries.
+    Fast,
+    /// Little memory.
+    Compact,
+    /// A quick build, as of a scene that changes.
+    Dynamic,
 }
 
 /// A scene that is being put together, for queries with a state of type `Q`.
@@ -86,14 +111,14 @@ struct Parts {
 /// fn shared<T: Sync>() {}
 /// shared::<cyltrace::embree::SceneBuilder<()>>();
 /// ```
-pub struct SceneBuilder<Q: 'static> {
+pub struct SceneBuilder<Q: Query> {
     parts: Parts,
     query: PhantomData<fn(&mut Q)>,
     /// A `Cell` may not be shared between threads, so a builder may not.
     unshared: PhantomData<Cell<()>>,
 }
 
-impl<Q: 'static> SceneBuilder<Q> {
+impl<Q: Query> SceneBuilder<Q> {
     /// An empty scene.
     ///
     /// # Errors
@@ -102,12 +127,7 @@ impl<Q: 'static> SceneBuilder<Q> {
         // SAFETY: invariant 1.
         let handle = SceneHandle(unsafe { sys::rtcNewScene(device.handle()) });
         device.check("make a scene")?;
-        // Meshes are the witness of exact answers, so no ray may slip between
-        // two triangles. User geometry is the same with and without.
-        // SAFETY: invariants 1 and 5.
-        unsafe { sys::rtcSetSceneFlags(handle.0, sys::RTC_SCENE_FLAG_ROBUST) };
-        device.check("set a scene's flags")?;
-        Ok(Self {
+        let mut builder = Self {
             parts: Parts {
                 handle,
                 user_data: Vec::new(),
@@ -116,7 +136,9 @@ impl<Q: 'static> SceneBuilder<Q> {
             },
             query: PhantomData,
             unshared: PhantomData,
-        })
+        };
+        builder.set_kind(SceneKind::Fast)?;
+        Ok(builder)
     }
 
     /// Adds a geometry whose primitives `geometry` bounds and intersects.
@@ -129,7 +151,16 @@ impl<Q: 'static> SceneBuilder<Q> {
     {
         // Declared before the handle, hence dropped after it on an error.
         let (data, handle) = new_user_geometry(&self.parts.device, geometry)?;
-        let id = self.attach(&handle);
+        self.attach_with(data, &handle)
+    }
+
+    /// Attaches a geometry and keeps what its data pointer points to.
+    pub(super) fn attach_with(
+        &mut self,
+        data: Arc<dyn UserData>,
+        geometry: &GeometryHandle,
+    ) -> Result<GeometryId, Error> {
+        let id = self.attach(geometry);
         // Kept with the scene also after an error: the geometry may have been
         // attached all the same.
         let kept_for = *id.as_ref().unwrap_or(&GeometryId(u32::MAX));
@@ -169,7 +200,64 @@ impl<Q: 'static> SceneBuilder<Q> {
         // has been taken.
         unsafe { sys::rtcCommitScene(parts.handle.0) };
         parts.device.check("commit a scene")?;
-        for (geometry, data) in &parts.user_data {
+        parts.into_scene()
+    }
+
+    /// Lets several threads take part in building the hierarchy.
+    #[must_use]
+    pub fn into_joint(self) -> JointCommit<Q> {
+        JointCommit::new(self.parts)
+    }
+
+    /// How much effort goes into the hierarchy; a new builder's is
+    /// [`BuildQuality::Medium`].
+    ///
+    /// # Errors
+    /// When Embree refuses.
+    pub fn set_build_quality(&mut self, quality: BuildQuality) -> Result<(), Error> {
+        let quality = match quality {
+            BuildQuality::Low => sys::RTC_BUILD_QUALITY_LOW,
+            BuildQuality::Medium => sys::RTC_BUILD_QUALITY_MEDIUM,
+            BuildQuality::High => sys::RTC_BUILD_QUALITY_HIGH,
+        };
+        // SAFETY: invariants 1 and 5.
+        unsafe { sys::rtcSetSceneBuildQuality(self.parts.handle.0, quality) };
+        self.device().check("set a scene's build quality")
+    }
+
+    /// What kind of hierarchy is built; a new builder's is
+    /// [`SceneKind::Fast`].
+    ///
+    /// # Errors
+    /// When Embree refuses.
+    pub fn set_kind(&mut self, kind: SceneKind) -> Result<(), Error> {
+        let flag = match kind {
+            SceneKind::Fast => sys::RTCSceneFlags(0),
+            SceneKind::Compact => sys::RTC_SCENE_FLAG_COMPACT,
+            SceneKind::Dynamic => sys::RTC_SCENE_FLAG_DYNAMIC,
+        };
+        // Meshes are the witness of exact answers, so no ray may slip between
+        // two triangles. User geometry is the same with and without.
+        let flags = sys::RTCSceneFlags(flag.0 | sys::RTC_SCENE_FLAG_ROBUST.0);
+        // SAFETY: invariants 1 and 5.
+        unsafe { sys::rtcSetSceneFlags(self.parts.handle.0, flags) };
+        self.device().check("set a scene's flags")
+    }
+}
+
+impl Parts {
+    /// The Embree scene, for as long as these parts are kept.
+    pub(super) fn raw(&self) -> sys::RTCScene {
+        self.handle.0
+    }
+
+    pub(super) fn device(&self) -> &Device {
+        &self.device
+    }
+
+    /// The scene of parts that were committed.
+    pub(super) fn into_scene<Q: Query>(self) -> Result<Scene<Q>, Error> {
+        for (geometry, data) in &self.user_data {
             if let Some(primitive) = data.refused() {
                 return Err(Error::Bounds {
                     geometry: *geometry,
@@ -179,10 +267,10 @@ impl<Q: 'static> SceneBuilder<Q> {
         }
         let mut bounds = sys::RTCBounds::default();
         // SAFETY: invariant 1; `bounds` is written during the call only.
-        unsafe { sys::rtcGetSceneBounds(parts.handle.0, &raw mut bounds) };
-        parts.device.check("tell a scene's bounds")?;
+        unsafe { sys::rtcGetSceneBounds(self.handle.0, &raw mut bounds) };
+        self.device.check("tell a scene's bounds")?;
         Ok(Scene {
-            parts,
+            parts: self,
             bounds: Some(Box32::from_embree(&bounds)).filter(Box32::is_legal),
             query: PhantomData,
         })
@@ -191,14 +279,15 @@ impl<Q: 'static> SceneBuilder<Q> {
 
 /// A built scene, which never changes and which any number of threads may
 /// query at a time, also from within a callback of another query. Each level
-/// of such nesting takes about 11 kB of the thread's stack.
-pub struct Scene<Q: 'static> {
+/// of such nesting takes 5 to 12 kB of the thread's stack for a single ray, and 24
+/// to 65 kB for a packet.
+pub struct Scene<Q: Query> {
     parts: Parts,
     bounds: Option<Box32>,
     query: PhantomData<fn(&mut Q)>,
 }
 
-impl<Q: 'static> Scene<Q> {
+impl<Q: Query> Scene<Q> {
     /// Traverses the scene for the closest hit. User geometries answer through
     /// `query`; what Embree finds by itself is not reported.
     #[inline]
@@ -236,6 +325,11 @@ impl<Q: 'static> Scene<Q> {
 
     pub(super) fn raw(&self) -> sys::RTCScene {
         self.parts.handle.0
+    }
+
+    #[inline]
+    pub(super) fn device(&self) -> &Device {
+        &self.parts.device
     }
 
     pub(super) fn is_of(&self, device: &Device) -> bool {

@@ -4,43 +4,62 @@
 
 #if CYLTRACE_EMBREE_MAJOR >= 4
 
-void cyltrace_intersect1(RTCScene scene, struct RTCRayHit *rayhit, void *query) {
-  struct cyltrace_context context;
-  struct RTCIntersectArguments arguments;
-  rtcInitRayQueryContext(&context.embree);
-  context.query = query;
-  rtcInitIntersectArguments(&arguments);
-  arguments.context = &context.embree;
-  rtcIntersect1(scene, rayhit, &arguments);
-}
-
-void cyltrace_occluded1(RTCScene scene, struct RTCRay *ray, void *query) {
-  struct cyltrace_context context;
-  struct RTCOccludedArguments arguments;
-  rtcInitRayQueryContext(&context.embree);
-  context.query = query;
-  rtcInitOccludedArguments(&arguments);
-  arguments.context = &context.embree;
-  rtcOccluded1(scene, ray, &arguments);
-}
+/* The context and the arguments that a query takes. */
+#define PREPARE(Arguments, of_packet, is_coherent)                                      \
+  struct cyltrace_context context;                                                     \
+  struct RTC##Arguments arguments;                                                     \
+  rtcInitRayQueryContext(&context.embree);                                             \
+  rtcInit##Arguments(&arguments);                                                      \
+  if (is_coherent) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;                      \
+  arguments.context = &context.embree;                                                 \
+  context.query = query;                                                               \
+  context.is_packet = of_packet
+#define TRACE1(function, ray) function(scene, ray, &arguments)
+#define TRACE(function, rays) function(valid, scene, rays, &arguments)
 
 #else
 
+/* The context that a query takes. */
+#define PREPARE(Arguments, of_packet, is_coherent)                                      \
+  struct cyltrace_context context;                                                     \
+  rtcInitIntersectContext(&context.embree);                                            \
+  if (is_coherent) context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;         \
+  context.query = query;                                                               \
+  context.is_packet = of_packet
+#define TRACE1(function, ray) function(scene, &context.embree, ray)
+#define TRACE(function, rays) function(valid, scene, &context.embree, rays)
+
+#endif
+
 void cyltrace_intersect1(RTCScene scene, struct RTCRayHit *rayhit, void *query) {
-  struct cyltrace_context context;
-  rtcInitIntersectContext(&context.embree);
-  context.query = query;
-  rtcIntersect1(scene, &context.embree, rayhit);
+  PREPARE(IntersectArguments, false, false);
+  TRACE1(rtcIntersect1, rayhit);
 }
 
 void cyltrace_occluded1(RTCScene scene, struct RTCRay *ray, void *query) {
-  struct cyltrace_context context;
-  rtcInitIntersectContext(&context.embree);
-  context.query = query;
-  rtcOccluded1(scene, &context.embree, ray);
+  PREPARE(OccludedArguments, false, false);
+  TRACE1(rtcOccluded1, ray);
 }
 
-#endif
+void cyltrace_intersect_packet(unsigned int width, const int *valid, RTCScene scene,
+                               void *rayhits, void *query, bool coherent) {
+  PREPARE(IntersectArguments, true, coherent);
+  switch (width) {
+  case 4: TRACE(rtcIntersect4, rayhits); break;
+  case 8: TRACE(rtcIntersect8, rayhits); break;
+  case 16: TRACE(rtcIntersect16, rayhits); break;
+  }
+}
+
+void cyltrace_occluded_packet(unsigned int width, const int *valid, RTCScene scene,
+                              void *rays, void *query, bool coherent) {
+  PREPARE(OccludedArguments, true, coherent);
+  switch (width) {
+  case 4: TRACE(rtcOccluded4, rays); break;
+  case 8: TRACE(rtcOccluded8, rays); break;
+  case 16: TRACE(rtcOccluded16, rays); break;
+  }
+}
 
 #if defined(__x86_64__) || defined(_M_X64)
 

@@ -15,6 +15,7 @@ typedef struct RTCRayQueryContext cyltrace_embree_context;
 typedef struct RTCIntersectContext cyltrace_embree_context;
 #endif
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* What callbacks find behind args->context. Embree's own context comes first,
@@ -22,6 +23,9 @@ typedef struct RTCIntersectContext cyltrace_embree_context;
 struct cyltrace_context {
   cyltrace_embree_context embree;
   void *query;
+  /* Whether `query` is that of a packet. The number of lanes does not tell:
+   * Embree may take a packet apart, down to single rays. */
+  bool is_packet;
 };
 
 /* The closest hit of one ray. Callbacks reach `query` through their context. */
@@ -29,6 +33,17 @@ void cyltrace_intersect1(RTCScene scene, struct RTCRayHit *rayhit, void *query);
 
 /* Whether one ray hits anything: ray->tfar is minus infinity afterwards. */
 void cyltrace_occluded1(RTCScene scene, struct RTCRay *ray, void *query);
+
+/* The closest hits of a packet of `width` (4, 8 or 16) rays, which `rayhits`
+ * points to as RTCRayHit4, 8 or 16, and `valid` as that many masks. `coherent`
+ * tells Embree that the rays are alike. */
+void cyltrace_intersect_packet(unsigned int width, const int *valid, RTCScene scene,
+                               void *rayhits, void *query, bool coherent);
+
+/* Which rays of a packet hit anything: their tfar is minus infinity afterwards.
+ * `rays` points to RTCRay4, 8 or 16. */
+void cyltrace_occluded_packet(unsigned int width, const int *valid, RTCScene scene,
+                              void *rays, void *query, bool coherent);
 
 /* Embree builds scenes with denormal numbers flushed to zero, callbacks
  * included. The first gives this thread the mode that Rust and C code expect,

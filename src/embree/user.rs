@@ -1,29 +1,35 @@
 //! Geometry whose primitives are bounded and intersected in Rust.
 //!
-//! Embree calls the three functions below with a pointer to the user data;
-//! they find the query in the context and hand both to the trait's methods.
-//! They are written for any number of lanes but accept one, until packets are
-//! traced.
+//! Embree calls the functions that are registered here with a pointer to the user
+//! data: [`bounds`] while a scene is built, those of [`callback`](super::callback)
+//! while a ray or a packet of rays is traced.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::abort::AbortOnPanic;
+use super::callback::Callbacks;
 use super::device::Device;
 use super::error::Error;
 use super::float_mode::with_default_float_mode;
+use super::query::Query;
 use super::ray::Box32;
+use super::ray_set::{GREATEST_PACKET, RaySet};
 use super::scene::GeometryHandle;
-use super::sys::{self, word};
+use super::sys;
 
 /// Primitives that Rust code bounds and intersects.
 ///
 /// All methods may be called on any thread and at the same time. A panic in
 /// one of them ends the process with a message that names it.
+///
+/// The four methods that answer rays are called from code that is compiled for
+/// the processor's instruction set. What they do becomes part of it as far as it
+/// is `#[inline(always)]`, and not in a closure.
 pub trait UserGeometry: Send + Sync + 'static {
     /// The state of a query, which callbacks read and write: the ray in full
     /// precision, and the best hit so far.
-    type Query: 'static;
+    type Query: Query;
 
     /// How many primitives there are. Asked once.
     fn primitive_count(&self) -> u32;
@@ -41,6 +47,33 @@ pub trait UserGeometry: Send + Sync + 'static {
 
     /// Whether a primitive ends the query, in [`Scene::any`](super::Scene::any).
     fn occluded(&self, primitive: u32, query: &mut Self::Query) -> bool;
+
+    /// Intersects rays of a packet with a primitive, each as
+    /// [`intersect`](Self::intersect) does. `t_far` holds where Embree's rays
+    /// end, by their numbers; a hit is accepted for the rays that are in the
+    /// answer, which end at what `t_far` then holds for them.
+    ///
+    /// `rays` may be any part of the packet. It need not hold all rays that may
+    /// meet the box: for the others this is called again. And it may hold rays
+    /// that do not meet the box, or end before it: Embree asks for all when one
+    /// does.
+    fn intersect_packet(
+        &self,
+        primitive: u32,
+        rays: RaySet,
+        t_far: &mut [f32; GREATEST_PACKET],
+        packet: &mut <Self::Query as Query>::Packet,
+    ) -> RaySet;
+
+    /// For which of `rays` a primitive ends the query, in
+    /// [`Scene::any_packet`](super::Scene::any_packet). Here `rays` commonly
+    /// holds all rays of the packet that have not ended yet, wherever they go.
+    fn occluded_packet(
+        &self,
+        primitive: u32,
+        rays: RaySet,
+        packet: &mut <Self::Query as Query>::Packet,
+    ) -> RaySet;
 }
 
 /// What a scene holds of a user geometry, whatever its type.
@@ -50,8 +83,8 @@ pub(super) trait UserData: Send + Sync {
 }
 
 /// What the data pointer of a geometry points to.
-struct Registered<G> {
-    geometry: G,
+pub(super) struct Registered<G> {
+    pub geometry: G,
     /// The least refused primitive; `u32::MAX`, which is none, if there is none.
     refused: AtomicU32,
 }
@@ -75,14 +108,15 @@ pub(super) fn new_user_geometry<G: UserGeometry>(
     });
     let handle = GeometryHandle::new(device, sys::RTC_GEOMETRY_TYPE_USER)?;
     let raw = handle.raw();
-    // SAFETY: invariants 1, 3 and 5: the pointer and the callbacks are set for
+    let callbacks = Callbacks::of::<G>(device.isa_in_use());
+    // SAFETY: invariants 1, 3, 5 and 9: the pointer and the callbacks are set for
     // the same `G`.
     unsafe {
         sys::rtcSetGeometryUserPrimitiveCount(raw, primitives);
         sys::rtcSetGeometryUserData(raw, Arc::as_ptr(&data).cast_mut().cast());
         sys::rtcSetGeometryBoundsFunction(raw, Some(bounds::<G>), std::ptr::null_mut());
-        sys::rtcSetGeometryIntersectFunction(raw, Some(intersect::<G>));
-        sys::rtcSetGeometryOccludedFunction(raw, Some(occluded::<G>));
+        sys::rtcSetGeometryIntersectFunction(raw, Some(callbacks.intersect));
+        sys::rtcSetGeometryOccludedFunction(raw, Some(callbacks.occluded));
     }
     device.check("set up a user geometry")?;
     Ok((data, handle))
@@ -106,72 +140,5 @@ unsafe extern "C" fn bounds<G: UserGeometry>(args: *const sys::RTCBoundsFunction
         }
         // SAFETY: invariant 7: Embree waits for the box there.
         unsafe { *args.bounds_o = bounds.to_embree() };
-    });
-}
-
-unsafe extern "C" fn intersect<G: UserGeometry>(args: *const sys::RTCIntersectFunctionNArguments) {
-    AbortOnPanic::run("intersect", || {
-        // SAFETY: invariant 7.
-        let args = unsafe { &*args };
-        let lanes = args.N as usize;
-        assert_eq!(lanes, 1, "only single rays are traced");
-        // SAFETY: invariants 2 and 3.
-        let data = unsafe { &*args.geometryUserPtr.cast::<Registered<G>>() };
-        // SAFETY: invariant 4: the shim put this context there; Embree does not
-        // write to it while the callback runs.
-        let context = unsafe { &*args.context.cast::<sys::cyltrace_context>() };
-        // SAFETY: invariant 4: behind Embree's part of the context is the query.
-        let query = unsafe { &mut *context.query.cast() };
-        let hit = data.geometry.intersect(args.primID, query);
-
-        let lane = 0;
-        // SAFETY: invariant 7: one mask a lane.
-        unsafe { *args.valid.add(lane) = if hit.is_some() { -1 } else { 0 } };
-        let Some(t_far) = hit else { return };
-        let words = args.rayhit.cast::<u32>();
-        let slot = |component: usize| {
-            // SAFETY: invariant 7: the components stand where `sys::word` says,
-            // which is asserted there for one lane.
-            unsafe { words.add(component * lanes + lane) }
-        };
-        // SAFETY: invariant 7; every component is a 32-bit word, all bits of
-        // which are allowed in f32 as in u32.
-        unsafe {
-            let end = slot(word::RAY_T_FAR).cast::<f32>();
-            *end = (*end).min(t_far);
-            for component in word::HIT_NORMAL_X..=word::HIT_V {
-                *slot(component) = 0;
-            }
-            *slot(word::HIT_PRIMITIVE) = args.primID;
-            *slot(word::HIT_GEOMETRY) = args.geomID;
-            // A hit in an instance may have been there before.
-            for (level, &instance) in context.embree.instID.iter().enumerate() {
-                *slot(word::HIT_INSTANCE + level) = instance;
-            }
-        }
-    });
-}
-
-unsafe extern "C" fn occluded<G: UserGeometry>(args: *const sys::RTCOccludedFunctionNArguments) {
-    AbortOnPanic::run("occluded", || {
-        // SAFETY: invariant 7.
-        let args = unsafe { &*args };
-        let lanes = args.N as usize;
-        assert_eq!(lanes, 1, "only single rays are traced");
-        // SAFETY: invariants 2 and 3.
-        let data = unsafe { &*args.geometryUserPtr.cast::<Registered<G>>() };
-        // SAFETY: invariant 4, as in `intersect`.
-        let query = unsafe { &mut *(*args.context.cast::<sys::cyltrace_context>()).query.cast() };
-        let hit = data.geometry.occluded(args.primID, query);
-
-        let lane = 0;
-        // SAFETY: invariant 7: one mask a lane.
-        unsafe { *args.valid.add(lane) = if hit { -1 } else { 0 } };
-        if hit {
-            let words = args.ray.cast::<f32>();
-            // SAFETY: invariant 7, as in `intersect`; minus infinity is how
-            // Embree marks a ray that is blocked.
-            unsafe { *words.add(word::RAY_T_FAR * lanes + lane) = f32::NEG_INFINITY };
-        }
     });
 }

@@ -1,8 +1,64 @@
 //! A user geometry simple enough to check by brute force: balls, in f64.
 
-use cyltrace::embree::{Box32, Ray32, UserGeometry};
+use std::array;
+
+use cyltrace::embree::{Box32, GREATEST_PACKET, Query, Ray32, RaySet, Rays32, UserGeometry};
 use cyltrace::math::Random;
 use glam::DVec3;
+
+/// The methods for packets of a geometry that answers for each ray by itself.
+macro_rules! one_by_one {
+    () => {
+        fn intersect_packet(
+            &self,
+            primitive: u32,
+            rays: cyltrace::embree::RaySet,
+            t_far: &mut [f32; cyltrace::embree::GREATEST_PACKET],
+            packet: &mut crate::balls::BallPacket,
+        ) -> cyltrace::embree::RaySet {
+            crate::balls::intersect_each(rays, t_far, |ray| {
+                self.intersect(primitive, &mut packet[ray])
+            })
+        }
+
+        fn occluded_packet(
+            &self,
+            primitive: u32,
+            rays: cyltrace::embree::RaySet,
+            packet: &mut crate::balls::BallPacket,
+        ) -> cyltrace::embree::RaySet {
+            rays.into_iter()
+                .filter(|&ray| self.occluded(primitive, &mut packet[ray]))
+                .collect()
+        }
+    };
+}
+
+/// The methods for packets of a geometry that never sees one.
+macro_rules! no_packets {
+    () => {
+        fn intersect_packet(
+            &self,
+            _primitive: u32,
+            _rays: cyltrace::embree::RaySet,
+            _t_far: &mut [f32; cyltrace::embree::GREATEST_PACKET],
+            packet: &mut cyltrace::embree::NoPackets,
+        ) -> cyltrace::embree::RaySet {
+            match *packet {}
+        }
+
+        fn occluded_packet(
+            &self,
+            _primitive: u32,
+            _rays: cyltrace::embree::RaySet,
+            packet: &mut cyltrace::embree::NoPackets,
+        ) -> cyltrace::embree::RaySet {
+            match *packet {}
+        }
+    };
+}
+
+pub(crate) use {no_packets, one_by_one};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Ball {
@@ -15,9 +71,18 @@ pub struct Ball {
 pub struct BallQuery {
     pub origin: DVec3,
     pub direction: DVec3,
+    /// Where the ray ends.
+    pub t_max: f64,
     /// The least `t`, then the least number of a ball.
     pub best: Option<(f64, u32)>,
     pub visits: u32,
+}
+
+/// Sixteen of them, by the numbers of the rays.
+pub type BallPacket = [BallQuery; GREATEST_PACKET];
+
+impl Query for BallQuery {
+    type Packet = BallPacket;
 }
 
 pub struct Balls(pub Vec<Ball>);
@@ -30,7 +95,7 @@ impl Ball {
         let b = to_centre.dot(query.direction);
         let discriminant = b * b - a * (to_centre.length_squared() - self.radius * self.radius);
         let t = (b - discriminant.sqrt()) / a;
-        (t >= 0.0).then_some(t)
+        (0.0..=query.t_max).contains(&t).then_some(t)
     }
 
     /// A box with room for the rounding of f32 rays of this test.
@@ -68,6 +133,34 @@ impl UserGeometry for Balls {
         query.visits += 1;
         self.0[primitive as usize].enter(query).is_some()
     }
+
+    one_by_one!();
+}
+
+/// Answers for a packet with the answers for its rays.
+pub fn intersect_each(
+    rays: RaySet,
+    t_far: &mut [f32; GREATEST_PACKET],
+    mut intersect: impl FnMut(usize) -> Option<f32>,
+) -> RaySet {
+    let mut hits = RaySet::EMPTY;
+    for ray in rays {
+        if let Some(end) = intersect(ray) {
+            t_far[ray] = end;
+            hits.insert(ray);
+        }
+    }
+    hits
+}
+
+/// The rays of a packet as Embree gets them.
+pub fn rays_of(packet: &BallPacket) -> Rays32 {
+    let rays: [Ray32; GREATEST_PACKET] = array::from_fn(|number| packet[number].ray());
+    Rays32 {
+        origin: array::from_fn(|axis| rays.map(|ray| ray.origin[axis])),
+        direction: array::from_fn(|axis| rays.map(|ray| ray.direction[axis])),
+        t_far: rays.map(|ray| ray.t_far),
+    }
 }
 
 impl BallQuery {
@@ -75,6 +168,7 @@ impl BallQuery {
         Self {
             origin,
             direction,
+            t_max: f64::INFINITY,
             best: None,
             visits: 0,
         }
@@ -85,7 +179,7 @@ impl BallQuery {
             origin: self.origin.as_vec3().to_array(),
             direction: self.direction.as_vec3().to_array(),
             t_near: 0.0,
-            t_far: f32::INFINITY,
+            t_far: self.t_max as f32,
         }
     }
 

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use cyltrace::embree::{
-    Box32, Device, DeviceOptions, Error, GeometryId, NativeHit, Ray32, Scene, SceneBuilder,
-    UserGeometry,
+    Box32, Coherence, Device, DeviceOptions, Error, GREATEST_PACKET, GeometryId, NativeHit,
+    PacketWidth, Ray32, RaySet, Rays32, Scene, SceneBuilder, UserGeometry,
 };
 
 const IDENTITY: [[f32; 4]; 3] = [
@@ -105,6 +105,42 @@ impl UserGeometry for Slab {
 
     fn occluded(&self, _primitive: u32, (): &mut ()) -> bool {
         true
+    }
+
+    fn intersect_packet(
+        &self,
+        _primitive: u32,
+        rays: RaySet,
+        t_far: &mut [f32; GREATEST_PACKET],
+        (): &mut (),
+    ) -> RaySet {
+        *t_far = [self.0; _];
+        rays
+    }
+
+    fn occluded_packet(&self, _primitive: u32, rays: RaySet, (): &mut ()) -> RaySet {
+        rays
+    }
+}
+
+#[test]
+fn instance_with_user_geometry_in_it_blocks_a_packet() {
+    let device = device();
+    let mut child = builder(&device);
+    child.attach_user(Slab(2.0)).unwrap();
+    let child = Arc::new(child.commit().unwrap());
+    let mut parent = builder(&device);
+    parent.attach_instance(&child, &IDENTITY).unwrap();
+    let scene = parent.commit().unwrap();
+    let rays = Rays32 {
+        origin: [[0.0; _]; 3],
+        direction: [[0.0; _], [0.0; _], [1.0; _]],
+        t_far: [f32::INFINITY; _],
+    };
+    let active = RaySet::from_bits(0x7BDF);
+    for width in PacketWidth::ALL {
+        let any = scene.any_packet(&rays, active, width, Coherence::Incoherent, &mut ());
+        assert_eq!(any, active, "{width:?}");
     }
 }
 

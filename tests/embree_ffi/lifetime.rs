@@ -4,9 +4,18 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
-use cyltrace::embree::{Box32, Device, DeviceOptions, Ray32, Scene, SceneBuilder, UserGeometry};
+use cyltrace::embree::{
+    Box32, Device, DeviceOptions, NoPackets, Query, Ray32, Scene, SceneBuilder, UserGeometry,
+};
 
-use crate::balls::{Balls, random_balls};
+use crate::balls::{Balls, no_packets, random_balls};
+
+/// A query that must stay on its thread.
+struct Local(#[expect(dead_code, reason = "its type counts")] std::rc::Rc<()>);
+
+impl Query for Local {
+    type Packet = std::rc::Rc<()>;
+}
 
 // Devices and scenes are for any thread, whatever the query is; builders may
 // move. That they can't be shared is a doctest of `SceneBuilder`.
@@ -14,9 +23,16 @@ const _: fn() = || {
     fn any_thread<T: Send + Sync>() {}
     fn may_move<T: Send>() {}
     any_thread::<Device>();
-    any_thread::<Scene<std::rc::Rc<()>>>();
-    may_move::<SceneBuilder<std::rc::Rc<()>>>();
+    any_thread::<Scene<Local>>();
+    may_move::<SceneBuilder<Local>>();
 };
+
+/// How many primitives were visited.
+struct Visits(u32);
+
+impl Query for Visits {
+    type Packet = NoPackets;
+}
 
 /// Tells when it is dropped, and what Embree holds at that time.
 struct Witness {
@@ -35,7 +51,7 @@ impl Drop for Witness {
 }
 
 impl UserGeometry for Witness {
-    type Query = u32;
+    type Query = Visits;
 
     fn primitive_count(&self) -> u32 {
         self.primitives
@@ -50,14 +66,16 @@ impl UserGeometry for Witness {
         }
     }
 
-    fn intersect(&self, _primitive: u32, query: &mut u32) -> Option<f32> {
-        *query += 1;
+    fn intersect(&self, _primitive: u32, query: &mut Visits) -> Option<f32> {
+        query.0 += 1;
         None
     }
 
-    fn occluded(&self, _primitive: u32, _query: &mut u32) -> bool {
+    fn occluded(&self, _primitive: u32, _query: &mut Visits) -> bool {
         true
     }
+
+    no_packets!();
 }
 
 struct Bench {
@@ -101,7 +119,7 @@ fn user_data_of_committed_scene_is_dropped_once_after_the_scene() {
     assert!(bench.device.memory_bytes() > 100_000);
     assert!(bench.drops().is_empty(), "{:?}", bench.drops());
 
-    let mut visits = 0;
+    let mut visits = Visits(0);
     let ray = Ray32 {
         origin: [7.5, 0.5, -1.0],
         direction: [0.0, 0.0, 1.0],
@@ -109,7 +127,7 @@ fn user_data_of_committed_scene_is_dropped_once_after_the_scene() {
         t_far: 10.0,
     };
     scene.closest(&ray, &mut visits);
-    assert!(visits >= 2);
+    assert!(visits.0 >= 2);
     assert!(scene.any(&ray, &mut visits));
 
     drop(scene);
@@ -145,7 +163,7 @@ fn scene_outlives_the_device_value_it_was_built_on() {
     builder.attach_user(bench.witness(false)).unwrap();
     drop(device);
     let scene = builder.commit().unwrap();
-    let mut visits = 0;
+    let mut visits = Visits(0);
     let ray = Ray32 {
         origin: [7.5, 0.5, -1.0],
         direction: [0.0, 0.0, 1.0],
@@ -153,7 +171,7 @@ fn scene_outlives_the_device_value_it_was_built_on() {
         t_far: 10.0,
     };
     scene.closest(&ray, &mut visits);
-    assert!(visits >= 1);
+    assert!(visits.0 >= 1);
     drop(scene);
     assert_eq!(bench.drops().len(), 1);
 }

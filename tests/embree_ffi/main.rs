@@ -5,8 +5,10 @@
 mod balls;
 mod collect;
 mod instance;
+mod joint;
 mod lifetime;
 mod locate;
 mod native;
+mod packets;
 mod panics;
 mod queries;

@@ -6,7 +6,10 @@
 use std::env;
 use std::process::Command;
 
-use cyltrace::embree::{Box32, Device, DeviceOptions, Ray32, SceneBuilder, UserGeometry};
+use cyltrace::embree::{
+    Box32, Coherence, Device, DeviceOptions, GREATEST_PACKET, PacketWidth, Ray32, RaySet, Rays32,
+    SceneBuilder, UserGeometry,
+};
 
 const VARIABLE: &str = "CYLTRACE_TEST_PANICKING_CALLBACK";
 const CHILD: &str = "panics::child_runs_the_callback_that_panics";
@@ -47,6 +50,22 @@ impl UserGeometry for Panicking {
         self.reach("occluded");
         false
     }
+
+    fn intersect_packet(
+        &self,
+        _primitive: u32,
+        _rays: RaySet,
+        _t_far: &mut [f32; GREATEST_PACKET],
+        _packet: &mut (),
+    ) -> RaySet {
+        self.reach("intersect_packet");
+        RaySet::EMPTY
+    }
+
+    fn occluded_packet(&self, _primitive: u32, _rays: RaySet, _packet: &mut ()) -> RaySet {
+        self.reach("occluded_packet");
+        RaySet::EMPTY
+    }
 }
 
 /// The child's part; passes at once in a normal test run.
@@ -67,6 +86,14 @@ fn child_runs_the_callback_that_panics() {
     };
     scene.closest(&ray, &mut ());
     scene.any(&ray, &mut ());
+    let rays = Rays32 {
+        origin: ray.origin.map(|x| [x; _]),
+        direction: ray.direction.map(|x| [x; _]),
+        t_far: [ray.t_far; _],
+    };
+    let (width, coherence) = (PacketWidth::Eight, Coherence::Incoherent);
+    scene.closest_packet(&rays, RaySet::ALL, width, coherence, &mut ());
+    scene.any_packet(&rays, RaySet::ALL, width, coherence, &mut ());
 }
 
 fn run_child(callback: &str) -> (bool, String) {
@@ -90,7 +117,13 @@ fn run_child(callback: &str) -> (bool, String) {
 
 #[test]
 fn panic_in_each_callback_aborts_and_names_it() {
-    for callback in ["bounds", "intersect", "occluded"] {
+    for callback in [
+        "bounds",
+        "intersect",
+        "occluded",
+        "intersect_packet",
+        "occluded_packet",
+    ] {
         let (success, stderr) = run_child(callback);
         assert!(!success, "{callback}: the child went on");
         assert!(

@@ -12,7 +12,7 @@ use cyltrace::embree::{
 };
 use glam::DVec3;
 
-use crate::balls::{Ball, BallQuery, Balls, random_balls, random_query};
+use crate::balls::{Ball, BallQuery, Balls, no_packets, one_by_one, random_balls, random_query};
 
 const SEED: u64 = 0xE3B;
 
@@ -20,14 +20,14 @@ fn device() -> Device {
     Device::new(&DeviceOptions::default()).unwrap()
 }
 
-fn scene_of(device: &Device, balls: &[Ball]) -> Scene<BallQuery> {
+pub fn scene_of(device: &Device, balls: &[Ball]) -> Scene<BallQuery> {
     let mut builder = SceneBuilder::new(device).unwrap();
     builder.attach_user(Balls(balls.to_vec())).unwrap();
     builder.commit().unwrap()
 }
 
 /// Compares `closest` and `any` with brute force for the rays `numbers`.
-fn check_against_brute_force(
+pub fn check_against_brute_force(
     scene: &Scene<BallQuery>,
     balls: &[Ball],
     numbers: impl Iterator<Item = u64>,
@@ -226,6 +226,8 @@ impl UserGeometry for Level {
             None => self.ball.enter(query).is_some(),
         }
     }
+
+    one_by_one!();
 }
 
 #[test]
@@ -291,6 +293,8 @@ impl UserGeometry for Lazy {
     fn occluded(&self, _primitive: u32, query: &mut BallQuery) -> bool {
         self.scene().any(&query.ray(), query)
     }
+
+    one_by_one!();
 }
 
 #[test]
@@ -319,7 +323,7 @@ fn scene_built_within_a_query_from_eight_threads_is_built_once_and_right() {
 }
 
 /// Whether denormal results, and denormal operands, are taken for zero.
-fn flushes_denormals() -> (bool, bool) {
+pub fn flushes_denormals() -> (bool, bool) {
     (
         black_box(f32::MIN_POSITIVE) * black_box(0.5) == 0.0,
         black_box(f32::MIN_POSITIVE * 0.5) * black_box(2.0) == 0.0,
@@ -354,6 +358,8 @@ impl UserGeometry for ModeWitness {
         query.push(flushes_denormals());
         false
     }
+
+    no_packets!();
 }
 
 #[test]

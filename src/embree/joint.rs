@@ -1,0 +1,116 @@
+//! A scene that several threads build together.
+//!
+//! `rtcJoinCommitScene` lets a thread help with a build that another one has
+//! begun. What it does not say is when nobody works on the scene any more, and
+//! which thread learns of an error; so threads are counted in and out here, and
+//! the last one out makes the scene or the error that all of them get.
+
+use std::sync::{Condvar, Mutex, OnceLock, PoisonError};
+
+use super::error::Error;
+use super::float_mode::with_default_float_mode;
+use super::query::Query;
+use super::scene::{Parts, Scene};
+use super::sys;
+
+/// A scene to be built by whoever [joins](Self::join); from
+/// [`SceneBuilder::into_joint`](super::SceneBuilder::into_joint).
+///
+/// It is for scenes that are built when a ray first needs them: threads that get
+/// there while the build goes on join it rather than wait for it.
+pub struct JointCommit<Q: Query> {
+    built: OnceLock<Result<Scene<Q>, Error>>,
+    work: Mutex<Work>,
+    /// Told when `built` is.
+    finished: Condvar,
+    /// Whether Embree lets a second thread join.
+    may_join: bool,
+}
+
+/// Who works on the scene.
+struct Work {
+    /// The scene's, until it is built.
+    parts: Option<Parts>,
+    /// Threads that have come to build and not left yet.
+    builders: u32,
+    /// Whether a thread has left, which Embree lets happen when the build is
+    /// over: who comes now has nothing to do.
+    is_over: bool,
+    /// The first error that a thread learned of.
+    error: Option<Error>,
+}
+
+impl<Q: Query> JointCommit<Q> {
+    pub(super) fn new(parts: Parts) -> Self {
+        let property = sys::RTC_DEVICE_PROPERTY_JOIN_COMMIT_SUPPORTED;
+        Self {
+            may_join: parts.device().property(property) != 0,
+            built: OnceLock::new(),
+            work: Mutex::new(Work {
+                parts: Some(parts),
+                builders: 0,
+                is_over: false,
+                error: None,
+            }),
+            finished: Condvar::new(),
+        }
+    }
+
+    /// The scene, when it is built: the first thread begins, others take part
+    /// until it is done. If Embree was built without joining, they wait. May be
+    /// called within a callback of a query, but not while this very scene calls
+    /// [`bounds`](super::UserGeometry::bounds).
+    ///
+    /// # Errors
+    /// Those of [`SceneBuilder::commit`](super::SceneBuilder::commit), the same for
+    /// every thread.
+    pub fn join(&self) -> Result<&Scene<Q>, Error> {
+        if self.built.get().is_none() {
+            self.build();
+        }
+        let built = self.built.get().expect("a build ends with an answer");
+        built.as_ref().map_err(Clone::clone)
+    }
+
+    #[cold]
+    fn build(&self) {
+        let mut work = self.work.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_needed = work.builders == 0 || self.may_join;
+        if let Some(parts) = work.parts.as_ref().filter(|_| is_needed && !work.is_over) {
+            let (scene, device) = (parts.raw(), parts.device().clone());
+            work.builders += 1;
+            drop(work);
+            // Embree flushes denormal numbers while it builds; this thread gets
+            // its own mode back whatever it does.
+            with_default_float_mode(|| {
+                // SAFETY: invariants 1 and 5: the parts are kept until every
+                // builder has left, and nobody else has the scene.
+                unsafe {
+                    if self.may_join {
+                        sys::rtcJoinCommitScene(scene);
+                    } else {
+                        sys::rtcCommitScene(scene);
+                    }
+                }
+            });
+            let answer = device.check("commit a scene");
+            work = self.work.lock().unwrap_or_else(PoisonError::into_inner);
+            work.is_over = true;
+            work.builders -= 1;
+            work.error = work.error.take().or(answer.err());
+            if work.builders == 0 {
+                self.finish(&mut work);
+            }
+        }
+        let is_unfinished = |_: &mut Work| self.built.get().is_none();
+        let _finished = self.finished.wait_while(work, is_unfinished);
+    }
+
+    /// Makes the scene or the error for all.
+    fn finish(&self, work: &mut Work) {
+        let parts = work.parts.take().expect("one builder is the last");
+        let built = work.error.take().map_or_else(|| parts.into_scene(), Err);
+        assert!(self.built.set(built).is_ok(), "one builder is the last");
+        self.finished.notify_all();
+    }
+}
