@@ -1,15 +1,18 @@
-//! Time per ray of every formulation, by criterion: hits and misses apart.
+//! Time per ray of every formulation, by criterion: hits and misses apart; and
+//! time per pair of eight lanes, under the target features of the build.
 //!
 //! `cargo bench --bench solvers`; a name as argument picks formulations. The
 //! cases are ordinary ones, so this says what a formulation costs and nothing
 //! of what it gets wrong: that is `cyltrace bench accuracy`.
 
+use std::array::from_fn;
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use cyltrace::math::{Random, Ray};
+use cyltrace::math::{LANES, LaneMask, LaneVectors, Lanes, Random, Ray};
 use cyltrace::oracle;
 use cyltrace::solid::formulations::{self, Problem};
+use cyltrace::solid::lanes::{self, AllCapped, CylinderLanes, RayLanes};
 use cyltrace::solid::{Caps, Cylinder};
 use glam::DVec3;
 
@@ -64,5 +67,47 @@ fn solvers(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, solvers);
+/// The problems by eights. Whether the ray or the cylinder is the same in all
+/// lanes makes no difference to what is computed.
+fn groups(problems: &[Problem]) -> Vec<(CylinderLanes<AllCapped>, RayLanes)> {
+    let group = |chunk: &[Problem]| {
+        let each = |of: fn(&Problem) -> DVec3| LaneVectors::of(&from_fn(|lane| of(&chunk[lane])));
+        let number = |of: fn(&Problem) -> f64| Lanes(from_fn(|lane| of(&chunk[lane])));
+        let p0 = each(|problem| problem.cylinder.p0());
+        let cylinders = CylinderLanes {
+            axis: each(|problem| problem.cylinder.p1()) - p0,
+            radius: number(|problem| problem.cylinder.radius()),
+            caps: AllCapped,
+        };
+        let rays = RayLanes {
+            from_p0: each(|problem| problem.ray.origin) - p0,
+            direction: each(|problem| problem.ray.direction),
+            shift: Lanes::splat(0.0),
+            t_min: number(|problem| problem.ray.t_min),
+            t_max: number(|problem| problem.ray.t_max),
+        };
+        (cylinders, rays)
+    };
+    problems.chunks_exact(LANES).map(group).collect()
+}
+
+fn eight_lanes(criterion: &mut Criterion) {
+    for (name, are_hits) in [("hits", true), ("misses", false)] {
+        let problems = problems(are_hits);
+        let mut benchmarks = criterion.benchmark_group(name);
+        benchmarks.throughput(Throughput::Elements(PROBLEMS as u64));
+        let groups = groups(&problems);
+        let active = LaneMask::splat(true);
+        benchmarks.bench_function("triple-product/8 lanes", |bencher| {
+            bencher.iter(|| {
+                for (cylinders, rays) in black_box(&groups) {
+                    black_box(lanes::first(cylinders, rays, &active));
+                }
+            });
+        });
+        benchmarks.finish();
+    }
+}
+
+criterion_group!(benches, solvers, eight_lanes);
 criterion_main!(benches);

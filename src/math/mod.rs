@@ -2,10 +2,12 @@
 //!
 //! This layer knows nothing of the rest of the crate. Everything here is f64;
 //! f32 appears where a value is handed to Embree, and is then rounded in a
-//! stated direction, and in [`Real`], for solvers that exist in both.
+//! stated direction, and in [`Real`], for solvers that exist in both. [`Lanes`]
+//! are eight f64 that the same sources compute at once.
 
 mod bounds;
 mod double_double;
+mod lanes;
 mod placement;
 mod random;
 mod ray;
@@ -14,6 +16,7 @@ mod rounding;
 
 pub use bounds::Bounds;
 pub use double_double::DoubleDouble;
+pub use lanes::{LANES, LaneMask, LaneVectors, Lanes};
 pub use placement::{ChildFromParent, PlacementErrors, frobenius_norm};
 pub use random::Random;
 pub use ray::{Ray, RayOf};

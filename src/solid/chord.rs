@@ -119,13 +119,24 @@ impl<S: Real> ChordEnd<S> {
         t_max: S,
     ) -> Option<Meeting<S>> {
         let part = self.present(caps)?;
-        let t = self.t + shift;
-        (t_min <= t && t <= t_max).then_some(Meeting {
-            t,
+        self.is_in_range(shift, t_min, t_max).then_some(Meeting {
+            t: self.t + shift,
             t_local: self.t,
             part,
             crossing,
         })
+    }
+
+    /// Whether [`ChordEnd::meeting`] is one.
+    #[inline(always)]
+    pub(super) fn is_met(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> bool {
+        (exists(self.part, caps) | self.on_rim) & self.is_in_range(shift, t_min, t_max)
+    }
+
+    #[inline(always)]
+    fn is_in_range(&self, shift: S, t_min: S, t_max: S) -> bool {
+        let t = self.t + shift;
+        (t_min <= t) & (t <= t_max)
     }
 
     /// The part of the surface this end lies on, if the surface has one there.
@@ -142,11 +153,9 @@ impl<S: Real> ChordEnd<S> {
 /// Whether a surface with these caps has this part.
 #[inline]
 fn exists(part: Part, caps: Caps) -> bool {
-    match part {
-        Part::Side => true,
-        Part::Cap0 => caps.at_p0(),
-        Part::Cap1 => caps.at_p1(),
-    }
+    (part == Part::Side)
+        | ((part == Part::Cap0) & caps.at_p0())
+        | ((part == Part::Cap1) & caps.at_p1())
 }
 
 #[cfg(test)]

@@ -19,6 +19,17 @@ pub enum Caps {
 }
 
 impl Caps {
+    /// The caps of which it is known at which ends they are.
+    #[must_use]
+    pub fn at(p0: bool, p1: bool) -> Self {
+        match (p0, p1) {
+            (false, false) => Self::None,
+            (true, false) => Self::P0,
+            (false, true) => Self::P1,
+            (true, true) => Self::Both,
+        }
+    }
+
     /// Whether there is a disc at `p0`.
     #[must_use]
     pub fn at_p0(self) -> bool {
@@ -120,6 +131,12 @@ impl Cylinder {
             radius,
             caps,
         }
+    }
+
+    /// The same cylinder with other caps.
+    #[inline]
+    pub(crate) fn with_caps(self, caps: Caps) -> Self {
+        Self { caps, ..self }
     }
 
     /// The first endpoint.

@@ -4,6 +4,7 @@ mod chord;
 mod cylinder;
 pub mod exact;
 pub mod formulations;
+pub mod lanes;
 mod slab;
 mod spawn;
 mod surface;

@@ -69,18 +69,11 @@ impl<S: Real> Question<S> for FirstMeeting<S> {
 
     #[inline(always)]
     fn of_overlap(self, overlap: &Overlap<S, impl Wall<S>>) -> Option<Meeting<S>> {
-        if overlap.slab.slope == S::ZERO {
+        if overlap.is_across() {
             return self.of_chord(overlap.across()?);
         }
         let discs = Discs::of(&overlap.slab);
-        let meeting = |end: ChordEnd<S>, crossing| {
-            end.meeting(crossing, self.caps, self.shift, self.t_min, self.t_max)
-        };
-        let enter = overlap.enter(&discs)?;
-        if let Some(entry) = meeting(enter, Crossing::Enter) {
-            return Some(entry);
-        }
-        meeting(overlap.leave(&discs, enter.t), Crossing::Leave)
+        overlap.first(&discs, self.caps, self.shift, self.t_min, self.t_max)
     }
 }
 
@@ -97,12 +90,12 @@ impl<S: Real> Question<S> for WholeChord {
 
     #[inline(always)]
     fn of_overlap(self, overlap: &Overlap<S, impl Wall<S>>) -> Option<Chord<S>> {
-        if overlap.slab.slope == S::ZERO {
+        if overlap.is_across() {
             return overlap.across();
         }
         let discs = Discs::of(&overlap.slab);
-        let enter = overlap.enter(&discs)?;
-        Some(Chord {
+        let (exists, enter) = overlap.enter(&discs);
+        exists.then(|| Chord {
             enter,
             leave: overlap.leave(&discs, enter.t),
             lies_on: None,
@@ -116,7 +109,7 @@ impl<S: Real> Question<S> for WholeChord {
 /// Which comes first depends on the sign of the slope, which no processor
 /// predicts. So nothing branches on it: the planes are numbers that are
 /// computed from the sign.
-struct Discs<S> {
+pub(super) struct Discs<S> {
     sign: S,
     near: S,
     far: S,
@@ -124,7 +117,7 @@ struct Discs<S> {
 
 impl<S: Real> Discs<S> {
     #[inline(always)]
-    fn of(slab: &Slab<S>) -> Self {
+    pub fn of(slab: &Slab<S>) -> Self {
         // The planes are at 0 and at `height`, or the other way round, exactly.
         let sign = S::from_f64(1.0).copysign(slab.slope);
         let half = S::from_f64(-0.5) * slab.height;
@@ -161,43 +154,63 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
         self.slab.across(self.wall.enter(), self.wall.leave())
     }
 
-    /// Where the line enters the solid, if it does.
+    /// The slab.
     #[inline(always)]
-    fn enter(&self, discs: &Discs<S>) -> Option<ChordEnd<S>> {
+    pub fn slab(&self) -> &Slab<S> {
+        &self.slab
+    }
+
+    /// Whether the line is across the axis.
+    #[inline(always)]
+    pub fn is_across(&self) -> bool {
+        self.slab.slope == S::ZERO
+    }
+
+    /// Asks for the end at which the line leaves only if the other is no hit.
+    #[inline(always)]
+    pub fn first(
+        &self,
+        discs: &Discs<S>,
+        caps: Caps,
+        shift: S,
+        t_min: S,
+        t_max: S,
+    ) -> Option<Meeting<S>> {
+        let meeting = |end: ChordEnd<S>, crossing| end.meeting(crossing, caps, shift, t_min, t_max);
+        let (exists, enter) = self.enter(discs);
+        if !exists {
+            return None;
+        }
+        if let Some(entry) = meeting(enter, Crossing::Enter) {
+            return Some(entry);
+        }
+        meeting(self.leave(discs, enter.t), Crossing::Leave)
+    }
+
+    /// Whether the line enters the solid, and where.
+    #[inline(always)]
+    pub fn enter(&self, discs: &Discs<S>) -> (bool, ChordEnd<S>) {
         let slab = &self.slab;
         let t = self.wall.enter();
         let height = slab.beyond_near(discs, t);
         if height > S::ZERO {
-            return if height < slab.height {
-                Some(ChordEnd {
-                    t,
-                    part: Part::Side,
-                    on_rim: false,
-                })
-            } else if height == slab.height {
-                // A single point, where the wall ends.
-                Some(ChordEnd {
-                    t,
-                    part: discs.far_part(),
-                    on_rim: true,
-                })
-            } else {
-                None
+            // At the far disc's height it is a single point, where the wall ends.
+            let on_rim = height == slab.height;
+            let part = if on_rim { discs.far_part() } else { Part::Side };
+            (height <= slab.height, ChordEnd { t, part, on_rim })
+        } else {
+            let end = ChordEnd {
+                t: slab.at(discs.near),
+                part: discs.near_part(),
+                on_rim: height == S::ZERO,
             };
+            (slab.beyond_near(discs, self.wall.leave()) >= S::ZERO, end)
         }
-        if !(slab.beyond_near(discs, self.wall.leave()) >= S::ZERO) {
-            return None;
-        }
-        Some(ChordEnd {
-            t: slab.at(discs.near),
-            part: discs.near_part(),
-            on_rim: height == S::ZERO,
-        })
     }
 
     /// Where the line that enters at `enter` leaves the solid.
     #[inline(always)]
-    fn leave(&self, discs: &Discs<S>, enter: S) -> ChordEnd<S> {
+    pub fn leave(&self, discs: &Discs<S>, enter: S) -> ChordEnd<S> {
         let slab = &self.slab;
         let t = self.wall.leave();
         let height = slab.beyond_near(discs, t);

@@ -83,6 +83,13 @@ pub(super) trait Axis<S: Real>: Copy {
     fn length(&self) -> S;
     /// `radius² |a|²`.
     fn rr_aa(&self) -> S;
+
+    /// The constant term of (1) from exact products.
+    #[inline(always)]
+    fn exact_constant_term(&self, x: S::Vector) -> S {
+        let ([ax, ay, az], [xx, xy, xz]) = (self.a().components(), x.components());
+        exact_constant_term(ax, ay, az, xx, xy, xz, self.radius())
+    }
 }
 
 /// An axis of which nothing is kept that can be computed.
@@ -206,13 +213,22 @@ pub(super) struct Line<S: Real> {
 impl<S: Real> Line<S> {
     #[inline(always)]
     pub fn new(axis: &impl Axis<S>, x: S::Vector, d: S::Vector) -> Self {
-        let a = axis.a();
-        let mut n = a.cross(d);
-        let mut nn = n.dot(n);
-        if nn < S::from_f64(LEAST_SQUARED_SINE) * (axis.aa() * d.dot(d)) {
-            n = exact_normal::<S>(a, d);
-            nn = n.dot(n);
+        let line = Self::rounded(axis, x, d);
+        if line.is_near_axis(axis, d) {
+            return Self::of_normal(axis, x, exact_normal::<S>(axis.a(), d));
         }
+        line
+    }
+
+    /// By rounded products.
+    #[inline(always)]
+    pub fn rounded(axis: &impl Axis<S>, x: S::Vector, d: S::Vector) -> Self {
+        Self::of_normal(axis, x, axis.a().cross(d))
+    }
+
+    #[inline(always)]
+    fn of_normal(axis: &impl Axis<S>, x: S::Vector, n: S::Vector) -> Self {
+        let nn = n.dot(n);
         let w = x.dot(n);
         Self {
             n,
@@ -220,6 +236,12 @@ impl<S: Real> Line<S> {
             w,
             discriminant: axis.radius() * axis.radius() * nn - w * w,
         }
+    }
+
+    /// Whether rounded products do not do.
+    #[inline(always)]
+    pub fn is_near_axis(&self, axis: &impl Axis<S>, d: S::Vector) -> bool {
+        self.nn < S::from_f64(LEAST_SQUARED_SINE) * (axis.aa() * d.dot(d))
     }
 
     /// Whether the line is taken as parallel to the axis.
@@ -263,14 +285,20 @@ pub(super) struct Quotient<S> {
 impl<S: Real, A: Axis<S>> Roots<S, A> {
     #[inline(always)]
     pub fn new(axis: &A, x: S::Vector, line: &Line<S>) -> Self {
+        Self::of(axis, x, line.n, line.nn, line.discriminant)
+    }
+
+    /// Of what is read of a line.
+    #[inline(always)]
+    pub fn of(axis: &A, x: S::Vector, n: S::Vector, nn: S, discriminant: S) -> Self {
         let m = axis.a().cross(x);
         Self {
             axis: *axis,
             m,
             x,
-            nn: line.nn,
-            mn: m.dot(line.n),
-            s: axis.length() * line.discriminant.sqrt(),
+            nn,
+            mn: m.dot(n),
+            s: axis.length() * discriminant.sqrt(),
         }
     }
 
@@ -303,8 +331,7 @@ fn constant_term<S: Real>(axis: &impl Axis<S>, x: S::Vector, m: S::Vector) -> S 
     let least = axis.rr_aa();
     let c = m.dot(m) - least;
     if c.abs() < S::from_f64(LEAST_CONSTANT_TERM) * least {
-        let ([ax, ay, az], [xx, xy, xz]) = (axis.a().components(), x.components());
-        return exact_constant_term(ax, ay, az, xx, xy, xz, axis.radius());
+        return axis.exact_constant_term(x);
     }
     c
 }

@@ -2,15 +2,24 @@
 //! line.
 #![allow(dead_code, reason = "each test uses some of it")]
 
+pub mod aim;
+
 use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
 use assert_cmd::Command;
+use cyltrace::embree::MaxIsa;
 use cyltrace::math::{Random, Ray};
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Prototype, Scene};
+use cyltrace::scene::{CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene};
 use cyltrace::solid::{Caps, Cylinder};
-use glam::{DMat3, DVec3};
+use cyltrace::tracer::{BuildTime, Layout, Options};
+use glam::{DAffine3, DMat3, DVec3};
+
+/// How many rays a test of very many traces.
+pub fn ray_count() -> u64 {
+    std::env::var("CYLTRACE_RAYS").map_or(100_000, |count| count.parse().expect("a number"))
+}
 
 /// A row of the output of `cyltrace trace`.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,6 +131,34 @@ pub fn cylinders_in_a_box(seed: u64, count: u32) -> Vec<CylinderRecord> {
     records
 }
 
+/// The instruction sets of this machine; `None`, which is whatever Embree uses,
+/// where they go by no names.
+pub fn instruction_sets() -> Vec<Option<MaxIsa>> {
+    let available = MaxIsa::available();
+    if available.is_empty() {
+        return vec![None];
+    }
+    available.into_iter().map(Some).collect()
+}
+
+/// Every instruction set with each layout and time of building.
+pub fn ways_to_trace() -> Vec<Options> {
+    let mut ways = Vec::new();
+    for max_isa in instruction_sets() {
+        for layout in [Layout::Single, Layout::Block] {
+            for build in [BuildTime::WhenReached, BuildTime::AtOnce] {
+                ways.push(Options {
+                    max_isa,
+                    layout,
+                    build,
+                    ..Default::default()
+                });
+            }
+        }
+    }
+    ways
+}
+
 /// A rotation, any as likely as any other axis and angle.
 pub fn random_rotation(random: &mut Random) -> DMat3 {
     let axis = random.direction();
@@ -129,4 +166,85 @@ pub fn random_rotation(random: &mut Random) -> DMat3 {
     let (sin, cos) = libm::sincos(random.uniform(0.0, std::f64::consts::TAU));
     let turned = across * cos + axis.cross(across) * sin;
     DMat3::from_cols(axis, turned, axis.cross(turned))
+}
+
+/// Prototypes placed in each other, small against their distances.
+pub struct Nested {
+    pub scene: Arc<Scene>,
+    /// How far the outermost is moved, in its own extents.
+    pub translation: f64,
+    /// The placements of the last prototype, which holds all cylinders, in the
+    /// root.
+    images: Vec<DAffine3>,
+}
+
+impl Nested {
+    /// The cylinders that are placed.
+    pub fn cylinders(&self) -> Vec<CylinderRecord> {
+        self.scene.prototypes[3].cylinders.iter().collect()
+    }
+
+    /// Where they are placed.
+    pub fn any_image(&self, random: &mut Random) -> DAffine3 {
+        self.images[random.below(self.images.len() as u64) as usize]
+    }
+}
+
+/// Three levels of placements with translations up to 1e7 extents and scales
+/// from 1e-4 to 1e4, some of them different for each axis.
+pub fn nested_placements(seed: u64) -> Vec<Nested> {
+    let mut random = Random::new(seed, 2);
+    let mut place = |of: u32, translation: f64| {
+        let scale = random.log_uniform(1e-4, 1e4);
+        let stretch = match random.below(2) {
+            0 => DVec3::ONE,
+            _ => DVec3::new(1.0, random.uniform(0.2, 1.0), random.uniform(1.0, 5.0)),
+        };
+        let matrix = random_rotation(&mut random)
+            * DMat3::from_diagonal(stretch * scale)
+            * random_rotation(&mut random);
+        let offset = random.direction() * (scale * translation);
+        placed(of, DAffine3::from_mat3_translation(matrix, offset))
+    };
+    let leaf = Prototype {
+        cylinders: cylinders_in_a_box(seed, 100).into(),
+        ..Default::default()
+    };
+    let middle = placing((0..5).map(|_| place(3, 3.0)).collect());
+    let outer = placing(vec![place(2, 1e3), place(3, 1e5)]);
+    let scenes = [1.0, 1e3, 1e7].map(|translation| {
+        let root = placing(vec![place(1, translation)]);
+        let root_from_outer = root.placements[0].parent_from_child;
+        let [through_middle, leaf_in_outer] = [0, 1].map(|place| {
+            let placement: &Placement = &outer.placements[place];
+            root_from_outer * placement.parent_from_child
+        });
+        let in_middle = middle.placements.iter();
+        let images = in_middle
+            .map(|inner| through_middle * inner.parent_from_child)
+            .chain([leaf_in_outer])
+            .collect();
+        Nested {
+            scene: scene_of(vec![root, outer.clone(), middle.clone(), leaf.clone()]),
+            translation,
+            images,
+        }
+    });
+    scenes.into()
+}
+
+/// A placement of a prototype.
+pub fn placed(of: u32, parent_from_child: DAffine3) -> Placement {
+    Placement {
+        of: PrototypeIndex(of),
+        parent_from_child,
+    }
+}
+
+/// A prototype of placements alone.
+pub fn placing(placements: Vec<Placement>) -> Prototype {
+    Prototype {
+        placements,
+        ..Default::default()
+    }
 }

@@ -1,0 +1,318 @@
+//! Eight rays against a cylinder, or a ray against eight cylinders.
+//!
+//! A lane is solved by the very code of `triple_product.rs` and `slab.rs`, so it
+//! holds the bits of [`triple_product::first`](super::triple_product::first). What
+//! is here is the order: a loop over the lanes for the lines, one for the ends at
+//! which they enter if any reaches its wall, one for the ends at which they leave
+//! if any is inside and not settled. The bodies are calls that are inlined, with
+//! no way out and no result that is there only sometimes (an `Option`), so that
+//! the compiler can compute both sides of each branch and make vector
+//! instructions of the loops. What it could not inline is left to the scalar
+//! solver, lane by lane: exact products, and lines along or across the axis.
+//!
+//! # What spares exact products
+//!
+//! Where the sine between ray and axis is below 1/4 the products of
+//! `n = a × d` have to be exact, which takes longer than all else. Of eight random
+//! directions one is such a ray in 22 of 100 cases; but most of those rays pass
+//! the cylinder by far more than the roundings in question, and then exact
+//! products would say so too. Let `n'` and `w'` be from rounded products and
+//! `n` and `w` from exact ones, u = 2^-53, and `X = |a| |d|`. A component of
+//! `n'` is off by at most 2u of the sum of the sizes of its two products, so
+//! that `|n' - n| <= 4u X`; and `x·n` is rounded with `3u |x| |n|`. Hence
+//!
+//! ```text
+//! |w' - w| <= 12u |x| X,    r |n| <= r |n'| + 4u r X
+//! ```
+//!
+//! and the computed `D` is below zero if `|w| > r |n| (1 + 8u)`, certainly where
+//!
+//! ```text
+//! |w'| > 2 r |n'| + 2^-48 (|x| + r) X                                      (1)
+//! ```
+//!
+//! with 2^-48 = 32u, more than the 16u needed. A line that counts as parallel
+//! is never among them: its `|n'|` is below `5u X`, so `|w'|` is below `6u |x| X`.
+//! Squared, by `(p + q)² <= 2 p² + 2 q²`, without a root:
+//!
+//! ```text
+//! w'² > 8 r² |n'|² + 2^-93 (|x|² + r²) |a|² |d|²                           (2)
+//! ```
+//!
+//! `(|x| + r)²` is at most `2 (|x|² + r²)`, which makes the last factor
+//! `2 · 2 · 2^-96` = 2^-94, doubled for the roundings of (2) itself.
+
+use std::cell::Cell;
+
+use glam::DVec3;
+
+use super::slab::{Discs, FirstMeeting, Overlap};
+use super::triple_product::{Axis, Line, Roots, StatedAxis, answer, slab};
+use super::{Caps, ChordEnd};
+use crate::math::{LANES, LaneMask, LaneVectors, Lanes, power_of_two};
+
+/// The factor of the second term of (2).
+const ROUNDINGS: f64 = power_of_two(-93);
+
+/// Eight cylinders, or the same one eight times.
+#[derive(Clone, Copy, Debug)]
+pub struct CylinderLanes<C> {
+    /// `p1 - p0`, rounded as f64 rounds it.
+    pub axis: LaneVectors,
+    /// The radii.
+    pub radius: Lanes,
+    /// Which ends are closed.
+    pub caps: C,
+}
+
+/// Which ends of eight cylinders are closed. A type for each way, so that
+/// cylinders that are alike need not be asked.
+pub trait LaneCaps: Copy {
+    /// The caps of a lane.
+    fn lane(&self, lane: usize) -> Caps;
+}
+
+/// Tubes, open at both ends.
+#[derive(Clone, Copy, Debug)]
+pub struct AllOpen;
+
+/// Discs at both ends.
+#[derive(Clone, Copy, Debug)]
+pub struct AllCapped;
+
+/// Each as it is.
+#[derive(Clone, Copy, Debug)]
+pub struct MixedCaps(pub [Caps; LANES]);
+
+impl LaneCaps for AllOpen {
+    #[inline(always)]
+    fn lane(&self, _lane: usize) -> Caps {
+        Caps::None
+    }
+}
+
+impl LaneCaps for AllCapped {
+    #[inline(always)]
+    fn lane(&self, _lane: usize) -> Caps {
+        Caps::Both
+    }
+}
+
+impl LaneCaps for MixedCaps {
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> Caps {
+        self.0[lane]
+    }
+}
+
+/// Eight rays as seen from the `p0` of their cylinders, and what is asked of
+/// them.
+#[derive(Clone, Copy, Debug)]
+pub struct RayLanes {
+    /// The origins, from `p0`.
+    pub from_p0: LaneVectors,
+    /// The directions.
+    pub direction: LaneVectors,
+    /// Where the origins are on the whole rays.
+    pub shift: Lanes,
+    /// The least parameter of the whole ray.
+    pub t_min: Lanes,
+    /// The greatest.
+    pub t_max: Lanes,
+}
+
+/// [`triple_product::first`](super::triple_product::first) in every lane that is
+/// `active`: where there is a first meeting, and its parameter on the whole
+/// ray, which has no meaning elsewhere.
+#[inline(always)]
+#[must_use]
+pub fn first<C: LaneCaps>(
+    cylinders: &CylinderLanes<C>,
+    rays: &RayLanes,
+    active: &LaneMask,
+) -> (LaneMask, Lanes) {
+    let mut lines = LineLanes::nowhere();
+    let (mut apart, mut wanted) = (LaneMask::splat(false), LaneMask::splat(false));
+    for lane in 0..LANES {
+        let axis = cylinders.axis(lane);
+        let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
+        let line = Line::rounded(&axis, x, d);
+        let is_near_axis = line.is_near_axis(&axis, d);
+        let is_apart = active.0[lane] & is_near_axis & !certainly_misses(&axis, x, d, &line);
+        let is_wanted = active.0[lane] & !is_near_axis & (line.discriminant >= 0.0);
+        lines.set(lane, &line);
+        apart.0[lane] = is_apart;
+        wanted.0[lane] = is_wanted;
+    }
+    let (mut hits, mut t) = (LaneMask::splat(false), Lanes::splat(0.0));
+    if wanted.any() {
+        let mut enter = Lanes::splat(0.0);
+        let mut rest = LaneMask::splat(false);
+        for lane in 0..LANES {
+            let is_unsettled = Cell::new(false);
+            let overlap = overlap(cylinders, rays, &lines, lane, &is_unsettled);
+            let (is_inside, end) = overlap.enter(&Discs::of(overlap.slab()));
+            let is_met = cylinders.is_met(rays, lane, &end);
+            let is_inside = wanted.0[lane] & is_inside;
+            enter.0[lane] = end.t;
+            t.0[lane] = end.t + rays.shift.0[lane];
+            hits.0[lane] = is_inside & is_met;
+            rest.0[lane] = is_inside & !is_met;
+            apart.0[lane] |= wanted.0[lane] & (overlap.is_across() | is_unsettled.get());
+        }
+        if rest.any() {
+            for lane in 0..LANES {
+                let is_unsettled = Cell::new(false);
+                let overlap = overlap(cylinders, rays, &lines, lane, &is_unsettled);
+                let end = overlap.leave(&Discs::of(overlap.slab()), enter.0[lane]);
+                let is_met = rest.0[lane] & cylinders.is_met(rays, lane, &end);
+                let exit = end.t + rays.shift.0[lane];
+                t.0[lane] = if is_met { exit } else { t.0[lane] };
+                hits.0[lane] |= is_met;
+                apart.0[lane] |= rest.0[lane] & is_unsettled.get();
+            }
+        }
+    }
+    if apart.any() {
+        return one_by_one(apart, *cylinders, *rays, (hits, t));
+    }
+    (hits, t)
+}
+
+/// What is kept of eight lines.
+struct LineLanes {
+    n: LaneVectors,
+    nn: Lanes,
+    discriminant: Lanes,
+}
+
+impl LineLanes {
+    #[inline(always)]
+    fn nowhere() -> Self {
+        Self {
+            n: LaneVectors::splat(DVec3::ZERO),
+            nn: Lanes::splat(0.0),
+            discriminant: Lanes::splat(0.0),
+        }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, line: &Line<f64>) {
+        self.n.set(lane, line.n);
+        self.nn.0[lane] = line.nn;
+        self.discriminant.0[lane] = line.discriminant;
+    }
+}
+
+/// Wall and slab of a lane.
+#[inline(always)]
+fn overlap<'a, C: LaneCaps>(
+    cylinders: &CylinderLanes<C>,
+    rays: &RayLanes,
+    lines: &LineLanes,
+    lane: usize,
+    is_unsettled: &'a Cell<bool>,
+) -> Overlap<f64, Roots<f64, LaneAxis<'a>>> {
+    let axis = LaneAxis {
+        stated: cylinders.axis(lane),
+        is_unsettled,
+    };
+    let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
+    let (nn, discriminant) = (lines.nn.0[lane], lines.discriminant.0[lane]);
+    let roots = Roots::of(&axis, x, lines.n.lane(lane), nn, discriminant);
+    slab(&axis, x, d).overlap(roots)
+}
+
+impl<C: LaneCaps> CylinderLanes<C> {
+    #[inline(always)]
+    fn is_met(&self, rays: &RayLanes, lane: usize, end: &ChordEnd) -> bool {
+        end.is_met(
+            self.caps.lane(lane),
+            rays.shift.0[lane],
+            rays.t_min.0[lane],
+            rays.t_max.0[lane],
+        )
+    }
+    #[inline(always)]
+    fn axis(&self, lane: usize) -> StatedAxis<f64> {
+        StatedAxis {
+            a: self.axis.lane(lane),
+            radius: self.radius.0[lane],
+        }
+    }
+}
+
+/// An axis that, asked for exact products, notes that it was.
+#[derive(Clone, Copy)]
+struct LaneAxis<'a> {
+    stated: StatedAxis<f64>,
+    is_unsettled: &'a Cell<bool>,
+}
+
+impl Axis<f64> for LaneAxis<'_> {
+    #[inline(always)]
+    fn a(&self) -> DVec3 {
+        self.stated.a
+    }
+
+    #[inline(always)]
+    fn radius(&self) -> f64 {
+        self.stated.radius
+    }
+
+    #[inline(always)]
+    fn aa(&self) -> f64 {
+        self.stated.aa()
+    }
+
+    #[inline(always)]
+    fn length(&self) -> f64 {
+        self.stated.length()
+    }
+
+    #[inline(always)]
+    fn rr_aa(&self) -> f64 {
+        self.stated.rr_aa()
+    }
+
+    #[inline(always)]
+    fn exact_constant_term(&self, _x: DVec3) -> f64 {
+        self.is_unsettled.set(true);
+        f64::NAN
+    }
+}
+
+/// (2) of this file.
+#[inline(always)]
+fn certainly_misses(axis: &StatedAxis<f64>, x: DVec3, d: DVec3, line: &Line<f64>) -> bool {
+    let rr = axis.radius * axis.radius;
+    let roundings = ROUNDINGS * (x.dot(x) + rr) * (axis.aa() * d.dot(d));
+    line.w * line.w > 8.0 * rr * line.nn + roundings
+}
+
+/// `answers` with those of the scalar solver where `mask` holds.
+#[cold]
+#[inline(never)]
+fn one_by_one<C: LaneCaps>(
+    mask: LaneMask,
+    cylinders: CylinderLanes<C>,
+    rays: RayLanes,
+    answers: (LaneMask, Lanes),
+) -> (LaneMask, Lanes) {
+    let (mut hits, mut ts) = answers;
+    for lane in (0..LANES).filter(|&lane| mask.0[lane]) {
+        let question = FirstMeeting {
+            caps: cylinders.caps.lane(lane),
+            shift: rays.shift.0[lane],
+            t_min: rays.t_min.0[lane],
+            t_max: rays.t_max.0[lane],
+        };
+        let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
+        let meeting = answer(&cylinders.axis(lane), x, d, question);
+        hits.0[lane] = meeting.is_some();
+        if let Some(meeting) = meeting {
+            ts.0[lane] = meeting.t;
+        }
+    }
+    (hits, ts)
+}
