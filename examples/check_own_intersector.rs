@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 use cyltrace::check::{Finding, Intersector, Settings, compare};
 use cyltrace::math::Ray;
-use cyltrace::scene::{self, CylinderRecord};
+use cyltrace::scene;
 use cyltrace::solid::Cylinder;
 use glam::Vec3;
 
@@ -23,7 +23,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     let own = Own(scene.prototypes[0]
         .cylinders
         .iter()
-        .map(CylinderRecord::cylinder)
+        .map(|record| record.cylinder())
         .collect());
     let outcome = compare(&scene, &own, &Settings::default())?;
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use cyltrace::tracer::{Options, Tracer};
+use cyltrace::tracer::{BuildTime, Options, Tracer};
 
 /// Loads and builds a scene; answers with the cylinders stored, those in the
 /// scene, and its placements.
@@ -13,8 +13,12 @@ fn counts(name: &str) -> (u64, u128, u128) {
         .join(name);
     let scene = cyltrace::scene::load(&path).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(scene.skipped_rows, 0, "{name} skips rows");
-    let tracer = Tracer::new(Arc::new(scene), &Options::default())
-        .unwrap_or_else(|error| panic!("{name}: {error}"));
+    let options = Options {
+        build: BuildTime::AtOnce,
+        ..Options::default()
+    };
+    let tracer =
+        Tracer::new(Arc::new(scene), &options).unwrap_or_else(|error| panic!("{name}: {error}"));
     let statistics = tracer.statistics();
     assert!(
         statistics.skipped.is_empty(),
@@ -31,6 +35,17 @@ fn counts(name: &str) -> (u64, u128, u128) {
 #[test]
 fn forest_counted_holds_ten_thousand_trees() {
     assert_eq!(counts("forest.toml"), (59_355, 129_004_045, 10_000));
+}
+
+#[test]
+fn forest_huge_loaded_holds_ten_thousand_million_cylinders() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/forest_huge.toml");
+    let scene = cyltrace::scene::load(&path).unwrap_or_else(|error| panic!("{error}"));
+    let census = scene.census();
+    assert_eq!(scene.prototypes[1].cylinders.len(), 10_000);
+    assert_eq!(census.placements, 1_000_000);
+    assert_eq!(census.cylinders_unique, 10_005);
+    assert_eq!(census.cylinders_instanced, 10_000_000_005);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use cyltrace::scene::{
-    Frame, Integrator, MaterialIndex, Placement, Projection, Prototype, Scene, load,
+    Frame, Integrator, MaterialIndex, Placement, Projection, Prototype, Records, Scene, load,
 };
 use cyltrace::solid::Caps;
 use glam::{DAffine3, DMat3, DVec3};
@@ -54,7 +54,7 @@ fn scene_stated_by_its_solids_alone_is_a_new_scene_of_them() {
 
 /// Primitive number, ends and radius of every cylinder.
 fn cylinders(prototype: &Prototype) -> Vec<(u32, [f64; 3], [f64; 3], f64)> {
-    let record = |record: &cyltrace::scene::CylinderRecord| {
+    let record = |record: cyltrace::scene::CylinderRecord| {
         let cylinder = record.cylinder();
         (
             record.primitive(),
@@ -91,9 +91,34 @@ fn least_scene_has_the_documented_defaults() {
     assert_eq!(scene.prototypes.len(), 1);
     assert_eq!(scene.prototypes[0].name, "");
     assert_eq!(scene.skipped_rows, 0);
-    let record = scene.prototypes[0].cylinders[0];
+    let record = scene.prototypes[0].cylinders.get(0);
     assert_eq!(record.cylinder().caps(), Caps::Both);
     assert_eq!(record.material(), MaterialIndex(0));
+}
+
+#[test]
+fn records_in_f32_are_the_rounded_numbers_and_say_so() {
+    let table = "[[cylinder_table]]\nfile = \"tree.csv\"\ndegenerate = \"skip\"\ncolumns = { p0 = [\"startX\", \"startY\", \"startZ\"], p1 = [\"endX\", \"endY\", \"endZ\"], radius = \"radius\" }\n";
+    let thin = "[[cylinder]]\np0 = [0.1, 0, 0]\np1 = [0, 0, 1]\nradius = 0.3\n";
+    let stated = scene(&format!("{thin}{table}{table}"));
+    let rounded = scene(&format!("records = \"f32\"\n{thin}{table}{table}"));
+    assert_eq!(
+        scene(&format!("records = \"f64\"\n{thin}")).records(),
+        Records::F64
+    );
+    assert_eq!((stated.records(), stated.rounding()), (Records::F64, 0.0));
+    assert_eq!(rounded.records(), Records::F32);
+    let off = |x: f64| (f64::from(x as f32) - x).abs();
+    assert_eq!(rounded.rounding(), off(0.3).max(off(0.1)));
+    let to_f32 = |point: [f64; 3]| point.map(|x| f64::from(x as f32));
+    let expected: Vec<_> = cylinders(&stated.prototypes[0])
+        .into_iter()
+        .map(|(number, p0, p1, radius)| (number, to_f32(p0), to_f32(p1), f64::from(radius as f32)))
+        .collect();
+    assert_eq!(cylinders(&rounded.prototypes[0]), expected);
+    // Each table has a row without length, which keeps its number.
+    let numbers: Vec<u32> = expected.iter().map(|cylinder| cylinder.0).collect();
+    assert_eq!(numbers, [0, 1, 3]);
 }
 
 #[test]
@@ -209,7 +234,7 @@ fn cylinder_table_layouts_give_the_same_cylinder() {
             [(0, [1.0, 2.0, 3.0], [1.0, 2.0, 7.0], 0.5)],
             "{columns}"
         );
-        let record = scene.prototypes[0].cylinders[0];
+        let record = scene.prototypes[0].cylinders.get(0);
         assert_eq!(record.cylinder().caps(), Caps::None);
         assert_eq!(record.material(), MaterialIndex(1));
         assert_eq!(scene.skipped_rows, 1);

@@ -9,6 +9,7 @@ use glam::{DVec2, DVec3};
 
 use crate::math::{Bounds, Ray};
 
+use super::ViewVolume;
 use super::description::{Camera, Film, Frame, Projection};
 
 /// The part of the picture that an automatic frame leaves free on each side:
@@ -86,6 +87,40 @@ impl AimedCamera {
             }
         }
         camera
+    }
+
+    /// As [`AimedCamera::new`], where the description says by itself what is in
+    /// the picture.
+    #[must_use]
+    pub fn stated(description: &Camera, film: Film) -> Option<Self> {
+        let is_stated = match (description.frame, description.projection) {
+            (Frame::Auto, _) => false,
+            (Frame::LookAt { .. }, Projection::Orthographic { height }) => height.is_some(),
+            (Frame::LookAt { .. }, Projection::Perspective { .. }) => true,
+        };
+        is_stated.then(|| Self::new(description, &Bounds::at(DVec3::ZERO), film))
+    }
+
+    /// What the camera's rays go through.
+    #[must_use]
+    pub fn view_volume(&self) -> ViewVolume {
+        let side = |across: DVec3, half: f64| {
+            if self.perspective {
+                (self.forward * half - across, 0.0)
+            } else {
+                (-across, half)
+            }
+        };
+        let (right, up) = (self.right, self.up);
+        ViewVolume::new(
+            self.eye,
+            [
+                side(right, self.half.x),
+                side(-right, self.half.x),
+                side(up, self.half.y),
+                side(-up, self.half.y),
+            ],
+        )
     }
 
     /// The ray through a film position.

@@ -1,6 +1,8 @@
 //! What a scene holds, counted without tracing it.
 
-use super::{PrototypeIndex, Scene};
+use rayon::prelude::*;
+
+use super::{Placement, PrototypeIndex, Scene};
 use crate::math::Bounds;
 
 /// The counts of a scene. Prototypes that nobody places are left out, but for
@@ -35,9 +37,31 @@ struct Whole {
     bounds: Bounds,
 }
 
+/// Fewer cylinders or placements than these are not worth a thread's while.
+const LEAST_SHARE: usize = 4096;
+
+impl Whole {
+    const NOTHING: Self = Self {
+        instances: 0,
+        cylinders: 0,
+        depth: 0,
+        bounds: Bounds::EMPTY,
+    };
+
+    /// Both together; the order and the grouping of many do not show.
+    fn and(self, other: Self) -> Self {
+        Self {
+            instances: self.instances.saturating_add(other.instances),
+            cylinders: self.cylinders.saturating_add(other.cylinders),
+            depth: self.depth.max(other.depth),
+            bounds: self.bounds.union(&other.bounds),
+        }
+    }
+}
+
 impl Scene {
     /// Counts what the scene holds. Time and memory grow with what is stored,
-    /// not with what is placed.
+    /// not with what is placed. Runs on the rayon pool that this is called in.
     #[must_use]
     pub fn census(&self) -> Census {
         let mut wholes = vec![None; self.prototypes.len()];
@@ -63,26 +87,32 @@ impl Scene {
             return whole;
         }
         let prototype = &self.prototypes[index.0 as usize];
-        let cylinders = prototype.cylinders.iter();
-        let mut whole = Whole {
-            instances: 0,
-            cylinders: prototype.cylinders.len() as u128,
-            depth: 0,
-            bounds: cylinders.fold(Bounds::EMPTY, |bounds, record| {
-                bounds.union(&record.cylinder().bounds())
-            }),
-        };
         for placement in &prototype.placements {
-            let placed = self.whole(placement.of, wholes);
-            whole.instances = whole
-                .instances
-                .saturating_add(placed.instances)
-                .saturating_add(1);
-            whole.cylinders = whole.cylinders.saturating_add(placed.cylinders);
-            whole.depth = whole.depth.max(placed.depth + 1);
-            let bounds = placed.bounds.transformed(&placement.parent_from_child);
-            whole.bounds = whole.bounds.union(&bounds);
+            self.whole(placement.of, wholes);
         }
+        let placed = |placement: &Placement| {
+            let whole = wholes[placement.of.0 as usize].unwrap_or(Whole::NOTHING);
+            Whole {
+                instances: whole.instances.saturating_add(1),
+                depth: whole.depth + 1,
+                bounds: whole.bounds.transformed(&placement.parent_from_child),
+                ..whole
+            }
+        };
+        let cylinders = Whole {
+            cylinders: prototype.cylinders.len() as u128,
+            bounds: (0..prototype.cylinders.len())
+                .into_par_iter()
+                .with_min_len(LEAST_SHARE)
+                .map(|position| prototype.cylinders.get(position).cylinder().bounds())
+                .reduce(|| Bounds::EMPTY, |sum, bounds| sum.union(&bounds)),
+            ..Whole::NOTHING
+        };
+        let placements = prototype.placements.par_iter().with_min_len(LEAST_SHARE);
+        let whole = placements
+            .map(placed)
+            .reduce(|| Whole::NOTHING, Whole::and)
+            .and(cylinders);
         wholes[index.0 as usize] = Some(whole);
         whole
     }

@@ -3,6 +3,7 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::cylinder_list::{CylinderList, Records};
 use crate::solid::{Caps, Cylinder};
 
 /// A whole scene. What it holds has been checked when it was loaded.
@@ -29,6 +30,26 @@ pub struct Scene {
     pub skipped_rows: u64,
 }
 
+impl Scene {
+    /// How cylinders are kept: in f32 where those of any prototype are.
+    #[must_use]
+    pub fn records(&self) -> Records {
+        let is_rounded = |prototype: &Prototype| prototype.cylinders.records() == Records::F32;
+        match self.prototypes.iter().any(is_rounded) {
+            true => Records::F32,
+            false => Records::F64,
+        }
+    }
+
+    /// The greatest difference of a kept number from the stated one.
+    #[must_use]
+    pub fn rounding(&self) -> f64 {
+        let lists = self.prototypes.iter();
+        let roundings = lists.map(|prototype| prototype.cylinders.rounding());
+        roundings.fold(0.0, f64::max)
+    }
+}
+
 /// The position of a prototype in [`Scene::prototypes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PrototypeIndex(pub u32);
@@ -48,7 +69,7 @@ pub struct Prototype {
     /// The name in the scene file; empty for the root.
     pub name: String,
     /// The cylinders, in the order of their primitive numbers.
-    pub cylinders: Vec<CylinderRecord>,
+    pub cylinders: CylinderList,
     /// The placements, in the order of their instance numbers.
     pub placements: Vec<Placement>,
 }

@@ -17,6 +17,7 @@ pub(super) type ThreeNames = List<Spanned<String>, 3>;
 #[serde(deny_unknown_fields)]
 pub(super) struct Document {
     pub background: Option<Triple>,
+    pub records: Option<Spanned<String>>,
     pub camera: Option<Keys<CameraKeys>>,
     pub film: Option<Keys<FilmKeys>>,
     pub render: Option<Keys<RenderKeys>>,
@@ -41,13 +42,40 @@ pub(super) struct Document {
 }
 
 /// What the root and every prototype hold.
-pub(super) struct Body {
-    pub cylinder: Vec<Keys<CylinderKeys>>,
-    pub cylinder_table: Vec<Keys<CylinderTableKeys>>,
-    pub swc: Vec<Keys<SwcKeys>>,
-    pub instance: Vec<Keys<InstanceKeys>>,
-    pub instance_table: Vec<Keys<InstanceTableKeys>>,
-    pub scatter: Vec<Keys<ScatterKeys>>,
+#[derive(Clone, Copy)]
+pub(super) struct Body<'a> {
+    pub name: &'a str,
+    pub cylinder: &'a [Keys<CylinderKeys>],
+    pub cylinder_table: &'a [Keys<CylinderTableKeys>],
+    pub swc: &'a [Keys<SwcKeys>],
+    pub instance: &'a [Keys<InstanceKeys>],
+    pub instance_table: &'a [Keys<InstanceTableKeys>],
+    pub scatter: &'a [Keys<ScatterKeys>],
+}
+
+impl Document {
+    /// The root and the prototypes, in the order of their numbers.
+    pub fn bodies(&self) -> impl Iterator<Item = Body<'_>> {
+        let root = Body {
+            name: "",
+            cylinder: &self.cylinder,
+            cylinder_table: &self.cylinder_table,
+            swc: &self.swc,
+            instance: &self.instance,
+            instance_table: &self.instance_table,
+            scatter: &self.scatter,
+        };
+        let prototypes = self.prototype.iter().map(|Keys(keys)| Body {
+            name: keys.name.get_ref(),
+            cylinder: &keys.cylinder,
+            cylinder_table: &keys.cylinder_table,
+            swc: &keys.swc,
+            instance: &keys.instance,
+            instance_table: &keys.instance_table,
+            scatter: &keys.scatter,
+        });
+        std::iter::once(root).chain(prototypes)
+    }
 }
 
 /// `[[prototype]]`. Its lists repeat those of [`Document`] because serde

@@ -3,8 +3,9 @@
 
 use crate::math::power_of_two;
 
-/// Most placements inside each other. A level takes some 11 kB of a thread's
-/// stack while a ray passes it.
+/// Most placements inside each other. A level takes up to 12 kB of a thread's
+/// stack while a ray passes it, and up to 65 kB while a packet of rays does; deep
+/// down the tracer gives packets up.
 pub const GREATEST_DEPTH: usize = 64;
 
 /// The greatest `‖L‖ ‖L⁻¹‖` of a placement (Frobenius norms), 2^27: flattening

@@ -1,20 +1,20 @@
 //! From a scene file to a checked description.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use toml::Spanned;
 
 use super::camera::camera;
+use super::cylinder_list::Records;
 use super::description::{Prototype, PrototypeIndex, Scene};
-use super::document::{
-    Body, CylinderTableKeys, Document, InstanceTableKeys, PrototypeKeys, ScatterKeys, SwcKeys,
-};
+use super::document::{Body, Document, PrototypeKeys, ScatterKeys};
 use super::error::SceneError;
 use super::graph::{self, Node};
 use super::names::{quoted, suggestion};
 use super::placing::{Edge, Placements};
 use super::scatter::{Pattern, Scatter};
+use super::scene_file::SceneFile;
 use super::settings::{Materials, check_names, film, lights, render};
 use super::solids::{Degenerate, Look, Solids};
 use super::source::Source;
@@ -22,103 +22,6 @@ use super::swc::add_swc;
 use super::transform::GREATEST_ENTRY;
 use super::values::{Keys, NumberOrList};
 use crate::solid::Caps;
-
-/// A scene file that has been read; the files that it names have not.
-pub struct SceneFile {
-    source: Source,
-    document: Document,
-}
-
-impl SceneFile {
-    /// Reads a scene file.
-    ///
-    /// # Errors
-    /// When the file cannot be read, is no TOML, or has keys or types other
-    /// than those of `docs/scene-file.md`.
-    pub fn read(path: &Path) -> Result<Self, SceneError> {
-        Self::read_toml(path).map_err(|error| match error {
-            SceneError::Unreadable { .. } => error,
-            other => other_kind(path).unwrap_or(other),
-        })
-    }
-
-    fn read_toml(path: &Path) -> Result<Self, SceneError> {
-        let source = Source::read(path)?;
-        let document = toml::from_str(source.text()).map_err(|error| source.toml_error(&error))?;
-        Ok(Self { source, document })
-    }
-
-    /// The files that the scene names, whether they exist or not.
-    #[must_use]
-    pub fn files(&self) -> Vec<PathBuf> {
-        let document = &self.document;
-        let mut names = Vec::new();
-        let mut add = |tables: &[Keys<CylinderTableKeys>],
-                       neurons: &[Keys<SwcKeys>],
-                       placements: &[Keys<InstanceTableKeys>]| {
-            names.extend(tables.iter().map(|Keys(keys)| keys.file.get_ref().clone()));
-            names.extend(neurons.iter().map(|Keys(keys)| keys.file.get_ref().clone()));
-            names.extend(
-                placements
-                    .iter()
-                    .map(|Keys(keys)| keys.file.get_ref().clone()),
-            );
-        };
-        add(
-            &document.cylinder_table,
-            &document.swc,
-            &document.instance_table,
-        );
-        for Keys(keys) in &document.prototype {
-            add(&keys.cylinder_table, &keys.swc, &keys.instance_table);
-        }
-        let paths = names.iter().map(|name| self.source.resolve(name));
-        paths.collect()
-    }
-
-    /// Reads the files that the scene names, and checks everything.
-    ///
-    /// # Errors
-    /// Those of [`load`].
-    pub fn load(self) -> Result<Scene, SceneError> {
-        lower(&self.source, self.document)
-    }
-}
-
-/// That a file which is no scene is data or a picture, as its name says.
-fn other_kind(path: &Path) -> Option<SceneError> {
-    const TO_READ: &str = " that names it";
-    let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-    let file = |fallback: &str| {
-        let name = path.file_name().and_then(|name| name.to_str());
-        toml::Value::from(name.unwrap_or(fallback)).to_string()
-    };
-    let columns = r#"columns = { p0 = ["startX", "startY", "startZ"], p1 = ["endX", "endY", "endZ"], radius = "radius" }"#;
-    let (what, purpose, example) = match extension.as_str() {
-        "csv" | "tsv" => (
-            "a table",
-            TO_READ,
-            format!("[[cylinder_table]]\nfile = {}\n{columns}", file("tree.csv")),
-        ),
-        "swc" => (
-            "a neuron in SWC",
-            TO_READ,
-            format!("[[swc]]\nfile = {}", file("neuron.swc")),
-        ),
-        "png" | "exr" | "jpg" | "jpeg" => (
-            "a picture",
-            "",
-            format!("[[cylinder_table]]\nfile = \"tree.csv\"\n{columns}"),
-        ),
-        _ => return None,
-    };
-    Some(SceneError::NotAScene {
-        path: path.to_owned(),
-        what,
-        purpose,
-        example,
-    })
-}
 
 /// Reads a scene file and the tables it names, and checks everything.
 ///
@@ -133,26 +36,18 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
     SceneFile::read(path)?.load()
 }
 
-fn lower(source: &Source, document: Document) -> Result<Scene, SceneError> {
+/// From the keys of a scene file to the scene.
+pub(super) fn lower(source: &Source, document: Document) -> Result<Scene, SceneError> {
     let materials = Materials::new(source, &document.material)?;
     let index = prototype_index(source, &document.prototype)?;
     let loader = Loader {
         source,
+        records: records(source, document.records.as_ref())?,
         materials: &materials,
         prototypes: &index,
     };
-    let root = Body {
-        cylinder: document.cylinder,
-        cylinder_table: document.cylinder_table,
-        swc: document.swc,
-        instance: document.instance,
-        instance_table: document.instance_table,
-        scatter: document.scatter,
-    };
-    let mut bodies = vec![loader.body("", root)?];
-    for Keys(keys) in document.prototype {
-        bodies.push(loader.prototype(keys)?);
-    }
+    let bodies = document.bodies().map(|body| loader.body(&body));
+    let bodies = bodies.collect::<Result<Vec<_>, _>>()?;
     let nodes: Vec<Node> = bodies.iter().map(Lowered::node).collect();
     graph::check(source, &nodes)?;
 
@@ -182,6 +77,17 @@ fn keys<T: Default>(table: Option<Keys<T>>) -> T {
     table.map_or_else(T::default, |Keys(keys)| keys)
 }
 
+/// How cylinders are kept.
+pub(super) fn records(
+    source: &Source,
+    word: Option<&Spanned<String>>,
+) -> Result<Records, SceneError> {
+    let choices = [Records::F64, Records::F32].map(|records| (records.name(), records));
+    word.map_or(Ok(Records::default()), |word| {
+        source.choose("records", word, &choices)
+    })
+}
+
 /// The numbers of the prototypes; the root has none of their names.
 fn prototype_index(
     source: &Source,
@@ -201,6 +107,7 @@ fn prototype_index(
 /// What every entry of a prototype may refer to.
 struct Loader<'a> {
     source: &'a Source,
+    records: Records,
     materials: &'a Materials,
     prototypes: &'a HashMap<String, PrototypeIndex>,
 }
@@ -225,55 +132,43 @@ impl Lowered {
 }
 
 impl Loader<'_> {
-    fn prototype(&self, keys: PrototypeKeys) -> Result<Lowered, SceneError> {
-        let body = Body {
-            cylinder: keys.cylinder,
-            cylinder_table: keys.cylinder_table,
-            swc: keys.swc,
-            instance: keys.instance,
-            instance_table: keys.instance_table,
-            scatter: keys.scatter,
-        };
-        self.body(keys.name.get_ref(), body)
-    }
-
     /// The solids and placements, in the order of their numbers.
-    fn body(&self, name: &str, body: Body) -> Result<Lowered, SceneError> {
+    fn body(&self, body: &Body) -> Result<Lowered, SceneError> {
         let source = self.source;
-        let mut solids = Solids::default();
-        for Keys(keys) in &body.cylinder {
+        let mut solids = Solids::new(self.records);
+        for Keys(keys) in body.cylinder {
             let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
             solids.add_cylinder(source, keys, look)?;
         }
-        for Keys(keys) in &body.cylinder_table {
+        for Keys(keys) in body.cylinder_table {
             let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
             let degenerate = self.degenerate(keys.degenerate.as_ref())?;
             solids.add_table(source, keys, look, degenerate)?;
         }
-        for Keys(keys) in &body.swc {
+        for Keys(keys) in body.swc {
             let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
             let degenerate = self.degenerate(keys.degenerate.as_ref())?;
             add_swc(&mut solids, source, keys, look, degenerate)?;
         }
 
         let mut placements = Placements::default();
-        for Keys(keys) in &body.instance {
+        for Keys(keys) in body.instance {
             placements.add_instance(source, keys, self.placed(&keys.of)?)?;
         }
-        for Keys(keys) in &body.instance_table {
+        for Keys(keys) in body.instance_table {
             placements.add_table(source, keys, self.placed(&keys.of)?)?;
         }
-        for Keys(keys) in &body.scatter {
+        let scatters = body.scatter.iter().map(|Keys(keys)| {
             let of = self.placed(&keys.of)?;
-            let scatter = self.scatter(keys)?;
-            placements.add_scatter(source, &keys.of, of, &scatter)?;
-        }
+            Ok((&keys.of, of, self.scatter(keys)?))
+        });
+        placements.add_scatters(source, &scatters.collect::<Result<Vec<_>, _>>()?)?;
 
-        solids.records.shrink_to_fit();
+        solids.records.trim();
         placements.list.shrink_to_fit();
         Ok(Lowered {
             prototype: Prototype {
-                name: name.to_owned(),
+                name: body.name.to_owned(),
                 cylinders: solids.records,
                 placements: placements.list,
             },

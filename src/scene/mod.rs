@@ -4,22 +4,29 @@
 //! `document` holds the keys as they stand there, with their places; the
 //! entries are lowered one kind a file (`solids`, `swc`, `placing`, `scatter`,
 //! `camera`, `settings`), streaming the rows of `table`s; `graph` checks
-//! how prototypes place each other. `aimed_camera` aims the camera. The result is a [`Scene`] that needs no
+//! how prototypes place each other. `scene_file` knows the file between the two
+//! first steps, and `contents` what it will hold, so that a scene which is too
+//! large is refused early. `cylinder_list` keeps cylinders in f64 or f32;
+//! `aimed_camera` aims the camera. The result is a [`Scene`] that needs no
 //! further checks and knows nothing of files.
 
 mod aimed_camera;
 mod camera;
 mod census;
+mod contents;
+mod cylinder_list;
 mod defaults;
 mod description;
 mod document;
 mod error;
 mod graph;
 mod limits;
+mod lines;
 mod load;
 mod names;
 mod placing;
 mod scatter;
+mod scene_file;
 mod settings;
 mod solids;
 mod source;
@@ -28,13 +35,18 @@ mod table;
 mod toml_message;
 mod transform;
 mod values;
+mod view_volume;
 
 pub use aimed_camera::AimedCamera;
 pub use census::Census;
+pub use contents::{Contents, PlacedCount};
+pub use cylinder_list::{CylinderList, CylinderRecord32, Iter as CylinderIter, Records};
 pub use description::{
     Camera, CylinderRecord, Film, Frame, Integrator, Material, MaterialIndex, Placement,
     Projection, Prototype, PrototypeIndex, RenderSettings, Scene, Sky, Sun,
 };
 pub use error::{SceneError, Statement};
 pub use limits::{GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_PIXELS, GREATEST_STRETCH};
-pub use load::{SceneFile, load};
+pub use load::load;
+pub use scene_file::SceneFile;
+pub use view_volume::ViewVolume;

@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use glam::{DAffine3, DMat3, DVec3};
+use rayon::prelude::*;
 use toml::Spanned;
 
 use super::description::{Placement, PrototypeIndex};
@@ -71,6 +72,8 @@ impl Placements {
         let layout = Layout::new(source, &table, &keys.columns)?;
         let mut reach = Reach::default();
         let before = self.list.len();
+        // What cannot be had is asked for again, row by row.
+        let _ = self.list.try_reserve_exact(table.most_rows());
         while table.next_row()? {
             let parent_from_child = layout.placement(&table)?;
             let row_reach = checked(&parent_from_child)
@@ -89,21 +92,27 @@ impl Placements {
         Ok(())
     }
 
-    /// Adds the items of a `[[scatter]]`.
-    pub fn add_scatter(
+    /// Adds the items of all `[[scatter]]` entries. Nothing is made before all
+    /// of them have numbers and memory.
+    pub fn add_scatters(
         &mut self,
         source: &Source,
-        of_name: &Spanned<String>,
-        of: PrototypeIndex,
-        scatter: &Scatter,
+        scatters: &[(&Spanned<String>, PrototypeIndex, Scatter)],
     ) -> Result<(), SceneError> {
-        self.make_room(source, of_name, scatter.count as usize)?;
-        self.list
-            .extend(scatter.items().map(|parent_from_child| Placement {
+        let mut more = 0;
+        for (of_name, _, scatter) in scatters {
+            more += scatter.count as usize;
+            self.make_room(source, of_name, more)?;
+        }
+        for (of_name, of, scatter) in scatters {
+            let of = *of;
+            let items = scatter.items().map(|parent_from_child| Placement {
                 of,
                 parent_from_child,
-            }));
-        self.placed(of, of_name.span(), scatter.reach());
+            });
+            self.list.par_extend(items);
+            self.placed(of, of_name.span(), scatter.reach());
+        }
         Ok(())
     }
 

@@ -7,6 +7,7 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine3, DMat3, DVec3};
+use rayon::prelude::*;
 
 use super::transform::{Reach, rotation};
 use crate::math::Random;
@@ -55,11 +56,13 @@ impl Scatter {
         }
     }
 
-    /// The items' placements, in the order of their numbers.
-    pub fn items(&self) -> impl ExactSizeIterator<Item = DAffine3> {
+    /// The items' placements, in the order of their numbers, on the rayon pool
+    /// that this is called in.
+    pub fn items(&self) -> impl IndexedParallelIterator<Item = DAffine3> {
         let scatter = *self;
         let columns = columns(scatter.count);
-        (0..scatter.count).map(move |item| scatter.item(item, columns))
+        let items = (0..scatter.count).into_par_iter();
+        items.map(move |item| scatter.item(item, columns))
     }
 
     fn item(&self, item: u32, columns: u32) -> DAffine3 {
@@ -182,7 +185,8 @@ mod tests {
         };
         let reach = scatter.reach();
         let mut mean_heading = DVec3::ZERO;
-        for (first, second) in scatter.items().zip(longer.items()) {
+        let pairs: Vec<_> = scatter.items().zip(longer.items()).collect();
+        for (first, second) in pairs {
             assert_eq!(first.matrix3, second.matrix3);
             let scale = first.matrix3.z_axis.z;
             assert!((0.5..=2.0).contains(&scale), "{scale}");

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use toml::Spanned;
 
+use super::cylinder_list::{CylinderList, Records};
 use super::description::{CylinderRecord, MaterialIndex};
 use super::document::{CylinderColumns, CylinderKeys, CylinderTableKeys, ThreeNames};
 use super::error::SceneError;
@@ -17,10 +18,13 @@ use crate::solid::{Caps, Cylinder, CylinderError};
 pub(super) const SKIP_HELP: &str =
     "degenerate = \"skip\" in the scene file leaves such rows out and counts them";
 
+/// What to say about a cylinder that f32 does not hold.
+const F64_HELP: &str = "records = \"f64\", the default, keeps every number as it is stated";
+
 /// The cylinders of one prototype.
 #[derive(Default)]
 pub(super) struct Solids {
-    pub records: Vec<CylinderRecord>,
+    pub records: CylinderList,
     /// How many primitive numbers are given away.
     numbers: u32,
     /// Rows that were left out, though they have a number.
@@ -36,6 +40,45 @@ pub(super) struct Look {
     pub material: MaterialIndex,
 }
 
+/// Why a cylinder is not added.
+#[derive(Debug, PartialEq)]
+pub(super) enum Refusal {
+    /// No primitive number is left.
+    Numbers,
+    /// Rounded to f32 it is no cylinder.
+    Rounded(CylinderError),
+}
+
+impl Refusal {
+    /// What to say, and what to do about it.
+    pub fn told(&self) -> (String, Option<&'static str>) {
+        match self {
+            Self::Numbers => {
+                let most = u32::MAX;
+                (format!("a prototype holds at most {most} primitives"), None)
+            }
+            Self::Rounded(error) => (
+                format!("rounded to f32 this is no cylinder: {error}"),
+                Some(F64_HELP),
+            ),
+        }
+    }
+
+    /// That a row of a table which the scene file names is refused.
+    pub fn in_row(
+        &self,
+        source: &Source,
+        file: &Spanned<String>,
+        row: impl FnOnce(String, Option<&str>) -> SceneError,
+    ) -> SceneError {
+        let (message, help) = self.told();
+        match self {
+            Self::Numbers => source.error(file.span(), message),
+            Self::Rounded(_) => row(message, help),
+        }
+    }
+}
+
 /// What happens to rows that are no solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Degenerate {
@@ -44,28 +87,36 @@ pub(super) enum Degenerate {
 }
 
 impl Solids {
-    /// The next primitive number; the error is a message.
-    fn number(&mut self) -> Result<u32, String> {
+    /// No cylinders, to be kept so.
+    pub fn new(records: Records) -> Self {
+        Self {
+            records: CylinderList::new(records),
+            ..Self::default()
+        }
+    }
+
+    /// The next primitive number.
+    fn number(&mut self) -> Result<u32, Refusal> {
         let number = self.numbers;
         // The greatest u32 is left out: Embree's mark for "no primitive".
-        self.numbers = number
-            .checked_add(1)
-            .ok_or_else(|| format!("a prototype holds at most {} primitives", u32::MAX))?;
+        self.numbers = number.checked_add(1).ok_or(Refusal::Numbers)?;
         Ok(number)
     }
 
-    /// Adds a cylinder; the error is a message.
-    pub fn push(&mut self, cylinder: &Cylinder, material: MaterialIndex) -> Result<(), String> {
+    /// Adds a cylinder.
+    pub fn push(&mut self, cylinder: &Cylinder, material: MaterialIndex) -> Result<(), Refusal> {
         let number = self.number()?;
-        let farthest = cylinder.p0().abs().max(cylinder.p1().abs()).max_element();
-        self.reach = self.reach.max(farthest + cylinder.radius());
         self.records
-            .push(CylinderRecord::new(cylinder, number, material));
+            .push(CylinderRecord::new(cylinder, number, material))
+            .map_err(Refusal::Rounded)?;
+        let kept = self.records.get(self.records.len() - 1).cylinder();
+        let farthest = kept.p0().abs().max(kept.p1().abs()).max_element();
+        self.reach = self.reach.max(farthest + kept.radius());
         Ok(())
     }
 
-    /// Leaves a row out; it keeps its primitive number. The error is a message.
-    pub fn skip(&mut self) -> Result<(), String> {
+    /// Leaves a row out; it keeps its primitive number.
+    pub fn skip(&mut self) -> Result<(), Refusal> {
         self.skipped += 1;
         self.number().map(drop)
     }
@@ -87,8 +138,13 @@ impl Solids {
                 };
                 source.error(place, error.to_string())
             })?;
-        self.push(&cylinder, look.material)
-            .map_err(|message| source.error(keys.p0.span(), message))
+        self.push(&cylinder, look.material).map_err(|refusal| {
+            let (message, help) = refusal.told();
+            match help {
+                Some(help) => source.error_with_help(keys.p0.span(), message, help),
+                None => source.error(keys.p0.span(), message),
+            }
+        })
     }
 
     /// Adds the rows of a `[[cylinder_table]]`.
@@ -102,6 +158,7 @@ impl Solids {
         let mut table = Table::open(source, &keys.file)?;
         let layout = Layout::new(source, &table, &keys.columns)?;
         let before = self.numbers;
+        self.records.reserve(table.most_rows());
         while table.next_row()? {
             match layout.cylinder(&table, look.caps)? {
                 Ok(cylinder) => self.push(&cylinder, look.material),
@@ -114,7 +171,11 @@ impl Solids {
                 }
                 Err(_) => self.skip(),
             }
-            .map_err(|message| source.error(keys.file.span(), message))?;
+            .map_err(|refusal| {
+                refusal.in_row(source, &keys.file, |message, help| {
+                    table.row_error_with_help(None, message, help)
+                })
+            })?;
         }
         if self.numbers == before {
             return Err(source.error(keys.file.span(), "the table has a header but no rows"));
@@ -256,8 +317,10 @@ mod tests {
         };
         let cylinder = Cylinder::new(DVec3::ZERO, DVec3::X, 1.0, Caps::Both).expect("valid");
         assert_eq!(solids.push(&cylinder, MaterialIndex(0)), Ok(()));
-        assert_eq!(solids.records[0].primitive(), u32::MAX - 1);
-        let message = solids.skip().expect_err("no number is left");
+        assert_eq!(solids.records.primitive(0), u32::MAX - 1);
+        let refusal = solids.skip().expect_err("no number is left");
+        assert_eq!(refusal, Refusal::Numbers);
+        let (message, _) = refusal.told();
         assert!(
             message.contains("at most 4294967295 primitives"),
             "{message}"

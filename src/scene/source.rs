@@ -48,6 +48,11 @@ impl Source {
         })
     }
 
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// The text, without a byte order mark.
     pub fn text(&self) -> &str {
         &self.text

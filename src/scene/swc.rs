@@ -63,7 +63,11 @@ pub(super) fn add_swc(
                 return Err(file.error(sample.line, column, error.to_string(), help));
             }
         }
-        .map_err(|message| source.error(keys.file.span(), message))?;
+        .map_err(|refusal| {
+            refusal.in_row(source, &keys.file, |message, help| {
+                file.error(sample.line, None, message, help)
+            })
+        })?;
     }
     Ok(())
 }

@@ -12,6 +12,7 @@ use csv::{ErrorKind, Reader, ReaderBuilder, StringRecord, Trim};
 use toml::Spanned;
 
 use super::error::SceneError;
+use super::lines::lines;
 use super::names::{quoted, suggestion};
 use super::source::Source;
 
@@ -115,6 +116,12 @@ impl Table {
             return "its first line holds numbers: a header with the names of the columns is needed, and not behind a #".to_owned();
         }
         suggestion(name, self.header.iter().map(String::as_str), "columns")
+    }
+
+    /// At least as many rows as there are: the lines of a file, 0 of a pipe,
+    /// which can be read once only.
+    pub fn most_rows(&self) -> usize {
+        lines(&self.path).map_or(0, |lines| usize::try_from(lines).unwrap_or(0))
     }
 
     /// Goes to the next row; false at the end.

@@ -31,6 +31,16 @@ pub fn cases() -> Vec<Case> {
             "[[cylinder_table]]\nfile = \"t.csv\"\ncolumns = { p0 = [\"a\", \"b\", \"c\"], end = [\"a\", \"b\", \"c\"] }\n",
             &["scene.toml:7:35", "unknown key \"end\"", "\"p1\""],
         ),
+        with_solid(
+            "records_of_unknown_numbers",
+            "",
+            &[
+                "scene.toml:1:11",
+                "\"f16\" is not a value of records",
+                "\"f32\"",
+            ],
+        )
+        .preceded_by("records = \"f16\"\n"),
         Case::new(
             "key_missing_in_a_cylinder",
             "[[cylinder]]\np0 = [0, 0, 0]\np1 = [0, 0, 1]\n",

@@ -65,6 +65,35 @@ pub fn cases() -> Vec<Case> {
         )
         .with("tree.csv", "a,b,c,d,e,f,Radius\n0,0,0,0,0,1,1\n"),
         Case::new(
+            "row_that_is_no_cylinder_in_f32",
+            format!("records = \"f32\"\n{POINTS}"),
+            &[
+                "tree.csv:3:",
+                "rounded to f32 this is no cylinder",
+                "0.0 apart",
+                "records = \"f64\"",
+            ],
+        )
+        .with(
+            "tree.csv",
+            "a,b,c,d,e,f,radius\n0,0,0,0,0,1,1\n0,0,1e6,0,0,1000000.001,1\n",
+        ),
+        Case::new(
+            "cylinder_that_is_none_in_f32",
+            "records = \"f32\"\n[[cylinder]]\np0 = [0, 0, 0]\np1 = [0, 0, 1e40]\nradius = 1\n",
+            &[
+                "scene.toml:3:6",
+                "rounded to f32 this is no cylinder",
+                "records = \"f64\"",
+            ],
+        ),
+        Case::new(
+            "sample_that_is_no_cylinder_in_f32",
+            format!("records = \"f32\"\n{SWC}"),
+            &["neuron.swc:2:", "rounded to f32 this is no cylinder"],
+        )
+        .with("neuron.swc", "1 1 0 0 0 1 -1\n2 1 0 0 1 1e39 1\n"),
+        Case::new(
             "column_stated_twice",
             POINTS,
             &["more than one column \"b\"", "scene.toml:4:24"],

@@ -20,7 +20,11 @@ const LONGEST: f64 = 3.1;
 /// Radius of the thinnest twigs, in metres.
 const TIP: f64 = 0.0045;
 
-/// The wood and the needles.
+/// Cylinders of the spruce that the largest scene places a million times.
+const ROUND_NUMBER: usize = 10_000;
+
+/// The wood and the needles, and as many of the needles as make a round number
+/// with the wood.
 pub fn tables() -> Vec<Table> {
     let mut skeleton = Skeleton::new();
     let mut needles = Table::new("conifer_needles.csv", "x0,y0,z0,x1,y1,z1,radius");
@@ -39,7 +43,24 @@ pub fn tables() -> Vec<Table> {
     let top = skeleton.nodes()[tip].position;
     shoot(&mut needles, top, top + DVec3::Z * 0.45, 0.02);
     let radii = skeleton.radii(TIP);
-    vec![skeleton.wood("conifer_wood.csv", &radii), needles]
+    let wood = skeleton.wood("conifer_wood.csv", &radii);
+    let fewer = thinned("conifer_thinned.csv", &needles, ROUND_NUMBER - wood.rows);
+    vec![wood, needles, fewer]
+}
+
+/// `rows` rows of a table, evenly spread over it.
+fn thinned(file: &'static str, table: &Table, rows: usize) -> Table {
+    let mut lines = table.text.lines();
+    let mut thinned = Table::new(file, lines.next().unwrap_or_default());
+    for (index, line) in lines.enumerate() {
+        let kept_before = |index: usize| index * rows / table.rows;
+        if kept_before(index + 1) > kept_before(index) {
+            thinned.text += line;
+            thinned.text.push('\n');
+            thinned.rows += 1;
+        }
+    }
+    thinned
 }
 
 /// One whorl: longer branches below, and steeper ones above.

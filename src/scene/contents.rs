@@ -1,0 +1,141 @@
+//! What prototypes hold, counted: before the files that a scene names are
+//! read, or after.
+
+use std::collections::HashMap;
+
+use rayon::prelude::*;
+
+use super::cylinder_list::Records;
+use super::description::{Placement, PrototypeIndex, Scene};
+
+/// What a prototype holds, counted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Contents {
+    /// The name in the scene file; empty for the root.
+    pub name: String,
+    /// Its own cylinders.
+    pub cylinders: u64,
+    /// How they are kept.
+    pub records: Records,
+    /// Its own placements, by what is placed.
+    pub placed: Vec<PlacedCount>,
+    /// Whether the root places it, itself or through others, or is it.
+    pub is_used: bool,
+}
+
+/// How often a prototype is placed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlacedCount {
+    /// What is placed.
+    pub of: PrototypeIndex,
+    /// How often.
+    pub count: u64,
+}
+
+impl Contents {
+    /// What a prototype with these placements holds; equal `of` are joined.
+    pub(super) fn new(
+        name: &str,
+        cylinders: u64,
+        records: Records,
+        placed: impl IntoIterator<Item = (PrototypeIndex, u64)>,
+    ) -> Self {
+        let mut counts: HashMap<PrototypeIndex, u64> = HashMap::new();
+        for (of, count) in placed {
+            let sum = counts.entry(of).or_default();
+            *sum = sum.saturating_add(count);
+        }
+        let mut placed: Vec<_> = counts
+            .into_iter()
+            .map(|(of, count)| PlacedCount { of, count })
+            .collect();
+        placed.sort_unstable_by_key(|placed| placed.of);
+        Self {
+            name: name.to_owned(),
+            cylinders,
+            records,
+            placed,
+            is_used: false,
+        }
+    }
+
+    /// Its own placements.
+    #[must_use]
+    pub fn placements(&self) -> u64 {
+        self.placed
+            .iter()
+            .fold(0, |sum, placed| sum.saturating_add(placed.count))
+    }
+}
+
+/// Marks what the root, the first, needs; cycles do no harm.
+pub(super) fn mark_used(contents: &mut [Contents]) {
+    let mut open = vec![PrototypeIndex::ROOT];
+    while let Some(index) = open.pop() {
+        let prototype = &mut contents[index.0 as usize];
+        if !prototype.is_used {
+            prototype.is_used = true;
+            open.extend(prototype.placed.iter().map(|placed| placed.of));
+        }
+    }
+}
+
+impl Scene {
+    /// What the prototypes hold, in their order. Runs on the rayon pool that
+    /// this is called in.
+    #[must_use]
+    pub fn contents(&self) -> Vec<Contents> {
+        let mut contents: Vec<_> = self
+            .prototypes
+            .iter()
+            .map(|prototype| {
+                Contents::new(
+                    &prototype.name,
+                    prototype.cylinders.len() as u64,
+                    prototype.cylinders.records(),
+                    counted(&prototype.placements),
+                )
+            })
+            .collect();
+        mark_used(&mut contents);
+        contents
+    }
+}
+
+/// How often each prototype is placed, in parts.
+fn counted(placements: &[Placement]) -> Vec<(PrototypeIndex, u64)> {
+    /// Placements that a thread counts at a time.
+    const SHARE: usize = 1 << 16;
+    let shares = placements.par_chunks(SHARE).flat_map_iter(|share| {
+        share
+            .chunk_by(|one, next| one.of == next.of)
+            .map(|alike| (alike[0].of, alike.len() as u64))
+    });
+    shares.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contents_joined_and_marked_from_the_root() {
+        let at = PrototypeIndex;
+        let mut contents = [
+            Contents::new("", 0, Records::F64, [(at(2), 3), (at(1), 5), (at(2), 4)]),
+            Contents::new("a", 1, Records::F64, []),
+            Contents::new("b", 1, Records::F64, [(at(2), 1)]),
+            Contents::new("c", 1, Records::F64, [(at(1), u64::MAX), (at(2), 1)]),
+        ];
+        mark_used(&mut contents);
+        assert_eq!(contents[0].placements(), 12);
+        let counts: Vec<_> = contents[0]
+            .placed
+            .iter()
+            .map(|p| (p.of.0, p.count))
+            .collect();
+        assert_eq!(counts, [(1, 5), (2, 7)]);
+        assert_eq!(contents[3].placements(), u64::MAX);
+        assert_eq!(contents.map(|c| c.is_used), [true, true, true, false]);
+    }
+}

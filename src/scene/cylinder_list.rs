@@ -1,0 +1,383 @@
+//! The cylinders of a prototype, kept in f64 or rounded to f32.
+//!
+//! In f64 a record is a cache line, number and all. In f32 it is half of one: the numbers of
+//! primitives are kept apart, as runs of consecutive ones, of which there is one
+//! unless rows were skipped.
+//!
+//! **Rounding.** A number is rounded to the nearest f32 once, when it is added.
+//! From then on the rounded cylinder *is* the cylinder: widened to f64 it is
+//! exact, and the true surface that every error bound speaks of is its surface,
+//! whoever asks. Against what was stated a number is off by at most
+//!
+//! ```text
+//! |f32(x) - x| <= 2^-24 |x|     where |x| >= 2^-126,
+//!                 2^-150        below, where f32 is denormal
+//! ```
+//!
+//! and [`CylinderList::rounding`] is the greatest difference there was. Ends that
+//! become the same point, a radius that becomes zero and a number beyond f32 make
+//! no cylinder, and are refused.
+
+use std::ops::Range;
+
+use glam::{DVec3, Vec3};
+
+use super::description::{CylinderRecord, MaterialIndex};
+use crate::solid::{Caps, Cylinder, CylinderError};
+
+/// The numbers in which cylinders are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Records {
+    /// As stated, 64 bytes a cylinder.
+    #[default]
+    F64,
+    /// Rounded to f32, 32 bytes a cylinder.
+    F32,
+}
+
+impl Records {
+    /// The name in scene files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F64 => "f64",
+            Self::F32 => "f32",
+        }
+    }
+
+    /// The bytes of one record.
+    #[must_use]
+    pub fn record_bytes(self) -> usize {
+        match self {
+            Self::F64 => size_of::<CylinderRecord>(),
+            Self::F32 => size_of::<CylinderRecord32>(),
+        }
+    }
+}
+
+/// A cylinder of f32 numbers and its material, in half a cache line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(32))]
+pub struct CylinderRecord32 {
+    p0: [f32; 3],
+    p1: [f32; 3],
+    radius: f32,
+    material: MaterialIndex,
+    caps: Caps,
+}
+
+const _: () = assert!(size_of::<CylinderRecord32>() == 32);
+
+impl CylinderRecord32 {
+    /// The record of a rounded cylinder.
+    fn new(cylinder: &Cylinder, material: MaterialIndex) -> Result<Self, CylinderError> {
+        let record = Self {
+            p0: cylinder.p0().as_vec3().to_array(),
+            p1: cylinder.p1().as_vec3().to_array(),
+            radius: cylinder.radius() as f32,
+            material,
+            caps: cylinder.caps(),
+        };
+        let rounded = record.cylinder();
+        Cylinder::new(rounded.p0(), rounded.p1(), rounded.radius(), rounded.caps())?;
+        Ok(record)
+    }
+
+    /// The cylinder of these very numbers.
+    #[inline]
+    #[must_use]
+    pub fn cylinder(&self) -> Cylinder {
+        let widened = |point: [f32; 3]| Vec3::from_array(point).as_dvec3();
+        let radius = f64::from(self.radius);
+        Cylinder::from_valid(widened(self.p0), widened(self.p1), radius, self.caps)
+    }
+
+    /// The material.
+    #[must_use]
+    pub fn material(&self) -> MaterialIndex {
+        self.material
+    }
+}
+
+/// The cylinders of a prototype, in the order of their primitive numbers.
+#[derive(Clone, Debug)]
+pub struct CylinderList {
+    kept: Kept,
+}
+
+#[derive(Clone, Debug)]
+enum Kept {
+    F64(Vec<CylinderRecord>),
+    F32(Rounded),
+}
+
+/// Cylinders in f32.
+#[derive(Clone, Debug, Default)]
+struct Rounded {
+    records: Vec<CylinderRecord32>,
+    /// Where consecutive primitive numbers begin: a position and its number.
+    runs: Vec<(u32, u32)>,
+    /// The greatest difference of a number from what was stated.
+    rounding: f64,
+}
+
+impl Rounded {
+    fn push(&mut self, record: &CylinderRecord) -> Result<(), CylinderError> {
+        let cylinder = record.cylinder();
+        let rounded = CylinderRecord32::new(&cylinder, record.material())?;
+        let kept = rounded.cylinder();
+        let off = |kept: DVec3, stated: DVec3| (kept - stated).abs().max_element();
+        self.rounding = self
+            .rounding
+            .max(off(kept.p0(), cylinder.p0()))
+            .max(off(kept.p1(), cylinder.p1()))
+            .max((kept.radius() - cylinder.radius()).abs());
+        let position = self.records.len() as u32;
+        let follows = self.runs.last().is_some_and(|&(first, number)| {
+            number.checked_add(position - first) == Some(record.primitive())
+        });
+        if !follows {
+            self.runs.push((position, record.primitive()));
+        }
+        self.records.push(rounded);
+        Ok(())
+    }
+
+    fn primitive(&self, position: usize) -> u32 {
+        let after = self
+            .runs
+            .partition_point(|&(first, _)| first as usize <= position);
+        let (first, number) = self.runs[after - 1];
+        number + (position as u32 - first)
+    }
+}
+
+impl CylinderList {
+    /// An empty list that keeps cylinders so.
+    #[must_use]
+    pub fn new(records: Records) -> Self {
+        let kept = match records {
+            Records::F64 => Kept::F64(Vec::new()),
+            Records::F32 => Kept::F32(Rounded::default()),
+        };
+        Self { kept }
+    }
+
+    /// Adds a cylinder at the end.
+    ///
+    /// # Errors
+    /// When the list is of f32 and the rounded cylinder is none.
+    pub fn push(&mut self, record: CylinderRecord) -> Result<(), CylinderError> {
+        match &mut self.kept {
+            Kept::F64(records) => records.push(record),
+            Kept::F32(rounded) => rounded.push(&record)?,
+        }
+        Ok(())
+    }
+
+    /// Makes room for exactly so many more, where memory allows it.
+    pub(super) fn reserve(&mut self, more: usize) {
+        // What cannot be had now is asked for again by `push`.
+        let _ = match &mut self.kept {
+            Kept::F64(records) => records.try_reserve_exact(more),
+            Kept::F32(rounded) => rounded.records.try_reserve_exact(more),
+        };
+    }
+
+    /// Gives back the memory that no cylinder uses, if it is more than an
+    /// eighth: records are aligned, so that giving back is to copy them, with
+    /// both there for a while.
+    pub(super) fn trim(&mut self) {
+        let is_loose = |capacity: usize, len: usize| capacity - len > capacity / 8;
+        match &mut self.kept {
+            Kept::F64(records) if is_loose(records.capacity(), records.len()) => {
+                records.shrink_to_fit();
+            }
+            Kept::F32(rounded) if is_loose(rounded.records.capacity(), rounded.records.len()) => {
+                rounded.records.shrink_to_fit();
+            }
+            _ => {}
+        }
+    }
+
+    /// How many there are.
+    #[inline]
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match &self.kept {
+            Kept::F64(records) => records.len(),
+            Kept::F32(rounded) => rounded.records.len(),
+        }
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The cylinder at a position.
+    ///
+    /// # Panics
+    /// When there is none.
+    #[inline]
+    #[must_use]
+    pub fn get(&self, position: usize) -> CylinderRecord {
+        match &self.kept {
+            Kept::F64(records) => records[position],
+            Kept::F32(rounded) => {
+                let record = &rounded.records[position];
+                let number = rounded.primitive(position);
+                CylinderRecord::new(&record.cylinder(), number, record.material)
+            }
+        }
+    }
+
+    /// The primitive number at a position.
+    ///
+    /// # Panics
+    /// When there is no cylinder.
+    #[must_use]
+    pub fn primitive(&self, position: usize) -> u32 {
+        match &self.kept {
+            Kept::F64(records) => records[position].primitive(),
+            Kept::F32(rounded) => {
+                assert!(
+                    position < rounded.records.len(),
+                    "no cylinder at {position}"
+                );
+                rounded.primitive(position)
+            }
+        }
+    }
+
+    /// The position of a primitive number in a list whose numbers ascend, as
+    /// those of scene files do.
+    #[must_use]
+    pub fn position(&self, primitive: u32) -> Option<usize> {
+        let (mut low, mut high) = (0, self.len());
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if self.primitive(middle) < primitive {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        (low < self.len() && self.primitive(low) == primitive).then_some(low)
+    }
+
+    /// All of them in order.
+    #[must_use]
+    pub fn iter(&self) -> Iter<'_> {
+        Iter {
+            list: self,
+            positions: 0..self.len(),
+        }
+    }
+
+    /// The records, where they are of f64.
+    #[inline]
+    #[must_use]
+    pub fn as_f64(&self) -> Option<&[CylinderRecord]> {
+        match &self.kept {
+            Kept::F64(records) => Some(records),
+            Kept::F32(_) => None,
+        }
+    }
+
+    /// The records, where they are of f32.
+    #[inline]
+    #[must_use]
+    pub fn as_f32(&self) -> Option<&[CylinderRecord32]> {
+        match &self.kept {
+            Kept::F64(_) => None,
+            Kept::F32(rounded) => Some(&rounded.records),
+        }
+    }
+
+    /// How they are kept.
+    #[must_use]
+    pub fn records(&self) -> Records {
+        match &self.kept {
+            Kept::F64(_) => Records::F64,
+            Kept::F32(_) => Records::F32,
+        }
+    }
+
+    /// The bytes of the records, and of the numbers that are kept apart.
+    #[must_use]
+    pub fn records_bytes(&self) -> usize {
+        let apart = match &self.kept {
+            Kept::F64(_) => 0,
+            Kept::F32(rounded) => size_of_val(rounded.runs.as_slice()),
+        };
+        self.len() * self.records().record_bytes() + apart
+    }
+
+    /// The greatest difference of a coordinate or radius from what was stated:
+    /// 0 in f64.
+    #[must_use]
+    pub fn rounding(&self) -> f64 {
+        match &self.kept {
+            Kept::F64(_) => 0.0,
+            Kept::F32(rounded) => rounded.rounding,
+        }
+    }
+}
+
+impl Default for CylinderList {
+    fn default() -> Self {
+        Self::new(Records::default())
+    }
+}
+
+impl From<Vec<CylinderRecord>> for CylinderList {
+    fn from(records: Vec<CylinderRecord>) -> Self {
+        Self {
+            kept: Kept::F64(records),
+        }
+    }
+}
+
+impl FromIterator<CylinderRecord> for CylinderList {
+    fn from_iter<I: IntoIterator<Item = CylinderRecord>>(records: I) -> Self {
+        Self::from(Vec::from_iter(records))
+    }
+}
+
+impl<'a> IntoIterator for &'a CylinderList {
+    type Item = CylinderRecord;
+    type IntoIter = Iter<'a>;
+
+    fn into_iter(self) -> Iter<'a> {
+        self.iter()
+    }
+}
+
+/// The cylinders of a list in order.
+#[derive(Clone, Debug)]
+pub struct Iter<'a> {
+    list: &'a CylinderList,
+    positions: Range<usize>,
+}
+
+impl Iterator for Iter<'_> {
+    type Item = CylinderRecord;
+
+    #[inline]
+    fn next(&mut self) -> Option<CylinderRecord> {
+        self.positions
+            .next()
+            .map(|position| self.list.get(position))
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.positions.size_hint()
+    }
+}
+
+impl ExactSizeIterator for Iter<'_> {}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,83 @@
+//! Lists of cylinders give back what they keep.
+
+use super::*;
+use crate::math::{Random, power_of_two};
+
+fn record(random: &mut Random, primitive: u32) -> CylinderRecord {
+    let p0 = random.direction() * random.log_uniform(1e-3, 1e3);
+    let p1 = p0 + random.direction();
+    let radius = random.log_uniform(1e-3, 1.0);
+    let cylinder = Cylinder::new(p0, p1, radius, Caps::P1).expect("a cylinder");
+    CylinderRecord::new(&cylinder, primitive, MaterialIndex(primitive as u16 % 7))
+}
+
+#[test]
+fn f32_list_keeps_any_numbers_and_rounds_each_coordinate_once() {
+    let mut random = Random::new(61, 0);
+    let numbers: Vec<u32> = (5..40).chain(3..5).chain([90, 92, u32::MAX - 1]).collect();
+    let stated: Vec<_> = numbers.iter().map(|&n| record(&mut random, n)).collect();
+    let mut list = CylinderList::new(Records::F32);
+    for &record in &stated {
+        list.push(record).expect("f32 holds it");
+    }
+    assert_eq!(list.iter().len(), stated.len());
+    let mut greatest = 0.0_f64;
+    for (position, (kept, stated)) in list.iter().zip(&stated).enumerate() {
+        assert_eq!(list.primitive(position), numbers[position]);
+        assert_eq!(kept.primitive(), stated.primitive());
+        assert_eq!(kept.material(), stated.material());
+        let (kept, stated) = (kept.cylinder(), stated.cylinder());
+        assert_eq!(kept.caps(), stated.caps());
+        assert_eq!(kept.radius(), f64::from(stated.radius() as f32));
+        for (kept, stated) in [(kept.p0(), stated.p0()), (kept.p1(), stated.p1())] {
+            let off = (kept - stated).abs();
+            assert!(off.cmple(stated.abs() * power_of_two(-24)).all());
+            greatest = greatest.max(off.max_element());
+        }
+        greatest = greatest.max((kept.radius() - stated.radius()).abs());
+    }
+    assert_eq!(list.rounding(), greatest);
+    assert!(greatest > 0.0);
+    // Five runs: 5.., 3.., 90, 92, the last.
+    assert_eq!(list.records_bytes(), 32 * stated.len() + 5 * 8);
+    assert!(list.as_f64().is_none());
+    assert_eq!(list.as_f32().map(<[_]>::len), Some(stated.len()));
+}
+
+#[test]
+fn f64_list_gives_back_what_it_was_given() {
+    let mut random = Random::new(62, 0);
+    let stated: Vec<_> = (0..9).map(|n| record(&mut random, 2 * n)).collect();
+    let list: CylinderList = stated.iter().copied().collect();
+    assert_eq!(list.as_f64(), Some(stated.as_slice()));
+    assert!(list.iter().eq(stated.iter().copied()));
+    assert_eq!((list.rounding(), list.records_bytes()), (0.0, 9 * 64));
+    assert_eq!(list.primitive(4), 8);
+    assert_eq!((list.position(8), list.position(7)), (Some(4), None));
+}
+
+#[test]
+fn cylinders_that_f32_does_not_hold_are_refused() {
+    let refused = |p0: DVec3, p1: DVec3, radius: f64| {
+        let cylinder = Cylinder::new(p0, p1, radius, Caps::Both).expect("an f64 cylinder");
+        let mut list = CylinderList::new(Records::F32);
+        let record = CylinderRecord::new(&cylinder, 0, MaterialIndex(0));
+        let error = list.push(record).expect_err("f32 does not hold it");
+        assert!(list.is_empty());
+        error
+    };
+    let far = DVec3::splat(1e6);
+    let error = refused(far, far + DVec3::X * 1e-3, 1.0);
+    assert_eq!(error, CylinderError::Length { length: 0.0 });
+    let error = refused(DVec3::ZERO, DVec3::X, Cylinder::LEAST);
+    assert_eq!(error, CylinderError::Radius { radius: 0.0 });
+    let error = refused(DVec3::ZERO, DVec3::X * 1e40, 1.0);
+    assert!(matches!(error, CylinderError::Endpoint { which: "p1", .. }));
+    let error = refused(DVec3::ZERO, DVec3::X, 1e39);
+    assert_eq!(
+        error,
+        CylinderError::Radius {
+            radius: f64::INFINITY
+        }
+    );
+}

@@ -1,0 +1,150 @@
+//! A scene file that has been read, before the files that it names are.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use toml::Spanned;
+
+use super::contents::{Contents, mark_used};
+use super::description::{PrototypeIndex, Scene};
+use super::document::{Body, Document};
+use super::error::SceneError;
+use super::lines::lines;
+use super::load::{lower, records};
+use super::source::Source;
+use super::values::Keys;
+
+/// A scene file that has been read; the files that it names have not.
+pub struct SceneFile {
+    source: Source,
+    document: Document,
+}
+
+impl SceneFile {
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    /// When the file cannot be read, is no TOML, or has keys or types other
+    /// than those of `docs/scene-file.md`.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        Self::read_toml(path).map_err(|error| match error {
+            SceneError::Unreadable { .. } => error,
+            other => other_kind(path).unwrap_or(other),
+        })
+    }
+
+    fn read_toml(path: &Path) -> Result<Self, SceneError> {
+        let source = Source::read(path)?;
+        let document = toml::from_str(source.text()).map_err(|error| source.toml_error(&error))?;
+        Ok(Self { source, document })
+    }
+
+    /// The file itself.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.source.path()
+    }
+
+    /// The files that the scene names, whether they exist or not.
+    #[must_use]
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut names = Vec::new();
+        for body in self.document.bodies() {
+            names.extend(body.cylinder_table.iter().map(|Keys(keys)| &keys.file));
+            names.extend(body.swc.iter().map(|Keys(keys)| &keys.file));
+            names.extend(body.instance_table.iter().map(|Keys(keys)| &keys.file));
+        }
+        let paths = names.iter().map(|name| self.source.resolve(name.get_ref()));
+        paths.collect()
+    }
+
+    /// At least what the prototypes will hold, in their order: tables are
+    /// counted by their lines, and what cannot be read holds nothing. No
+    /// record is made, so that a scene which is too large can be refused.
+    #[must_use]
+    pub fn contents(&self) -> Vec<Contents> {
+        let records = records(&self.source, self.document.records.as_ref()).unwrap_or_default();
+        let rows = |file: &Spanned<String>| {
+            let lines = lines(&self.source.resolve(file.get_ref()));
+            // The first line is the header, or a comment.
+            lines.map_or(0, |lines| lines.saturating_sub(1))
+        };
+        let index: HashMap<&str, PrototypeIndex> = (0..)
+            .zip(self.document.bodies())
+            .map(|(number, body)| (body.name, PrototypeIndex(number)))
+            .collect();
+        let of = |name: &Spanned<String>| index.get(name.get_ref().as_str()).copied();
+        let count = |body: Body| {
+            let tables = body.cylinder_table.iter().map(|Keys(keys)| &keys.file);
+            let neurons = body.swc.iter().map(|Keys(keys)| &keys.file);
+            let cylinders = body.cylinder.len() as u64;
+            let cylinders = tables
+                .chain(neurons)
+                .fold(cylinders, |sum, file| sum.saturating_add(rows(file)));
+            let single = body.instance.iter();
+            let single = single.map(|Keys(keys)| (of(&keys.of), 1));
+            let tables = body.instance_table.iter();
+            let tables = tables.map(|Keys(keys)| (of(&keys.of), rows(&keys.file)));
+            let mut placed: Vec<_> = single.chain(tables).collect();
+            // Where loading refuses to count on, it makes nothing.
+            let mut total: u64 = placed.iter().map(|(_, count)| count).sum();
+            for Keys(keys) in body.scatter {
+                let count = keys.count.get_ref().0;
+                total = total.saturating_add(count);
+                if total <= u64::from(u32::MAX) {
+                    placed.push((of(&keys.of), count));
+                }
+            }
+            let placed = placed
+                .into_iter()
+                .filter_map(|(of, count)| Some((of?, count)));
+            Contents::new(body.name, cylinders, records, placed)
+        };
+        let mut contents: Vec<_> = self.document.bodies().map(count).collect();
+        mark_used(&mut contents);
+        contents
+    }
+
+    /// Reads the files that the scene names, and checks everything.
+    ///
+    /// # Errors
+    /// Those of [`load`](super::load()).
+    pub fn load(self) -> Result<Scene, SceneError> {
+        lower(&self.source, self.document)
+    }
+}
+
+/// That a file which is no scene is data or a picture, as its name says.
+fn other_kind(path: &Path) -> Option<SceneError> {
+    const TO_READ: &str = " that names it";
+    let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+    let file = |fallback: &str| {
+        let name = path.file_name().and_then(|name| name.to_str());
+        toml::Value::from(name.unwrap_or(fallback)).to_string()
+    };
+    let columns = r#"columns = { p0 = ["startX", "startY", "startZ"], p1 = ["endX", "endY", "endZ"], radius = "radius" }"#;
+    let (what, purpose, example) = match extension.as_str() {
+        "csv" | "tsv" => (
+            "a table",
+            TO_READ,
+            format!("[[cylinder_table]]\nfile = {}\n{columns}", file("tree.csv")),
+        ),
+        "swc" => (
+            "a neuron in SWC",
+            TO_READ,
+            format!("[[swc]]\nfile = {}", file("neuron.swc")),
+        ),
+        "png" | "exr" | "jpg" | "jpeg" => (
+            "a picture",
+            "",
+            format!("[[cylinder_table]]\nfile = \"tree.csv\"\n{columns}"),
+        ),
+        _ => return None,
+    };
+    Some(SceneError::NotAScene {
+        path: path.to_owned(),
+        what,
+        purpose,
+        example,
+    })
+}
