@@ -97,7 +97,7 @@ fn true_hits(cylinders: &[CylinderRecord], ray: &Ray) -> Vec<(f64, u32, Part, Cr
 fn hits_are_those_of_exact_arithmetic() {
     let cylinders = crowd(SEED, 60, None);
     let root = Prototype {
-        cylinders: cylinders.clone(),
+        cylinders: cylinders.clone().into(),
         ..Default::default()
     };
     let tracer = tracer_of(vec![root]);
@@ -145,14 +145,14 @@ fn hits_are_ordered_and_the_same_for_every_batch() {
         ),
     };
     let leaf = Prototype {
-        cylinders: crowd(SEED, 100, None),
+        cylinders: crowd(SEED, 100, None).into(),
         ..Default::default()
     };
     let same = place(1);
     let root = Prototype {
         // The last two are the same placement: every hit of theirs is a tie.
         placements: vec![place(1), place(1), same, same],
-        cylinders: crowd(SEED + 1, 100, None),
+        cylinders: crowd(SEED + 1, 100, None).into(),
         ..Default::default()
     };
     let tracer = tracer_of(vec![root, leaf]);
@@ -184,7 +184,7 @@ fn capped_solids_are_entered_and_left_in_turn() {
     let cylinders = crowd(SEED, 200, Some(Caps::Both));
     let count = cylinders.len();
     let tracer = tracer_of(vec![Prototype {
-        cylinders,
+        cylinders: cylinders.into(),
         ..Default::default()
     }]);
     for number in 0..5_000 {
@@ -266,5 +266,26 @@ fn thousands_of_ties_are_all_found() {
             .map(|i| (if i < 3_000 { 1.0 } else { 3.0 }, i % 3_000))
             .collect();
         assert_eq!(hits, expected, "batch {batch}");
+    }
+}
+
+/// A ray within a disc meets it where it gets onto it, or where its range
+/// begins, and where it leaves it: not where a batch begins.
+#[test]
+fn ray_within_coinciding_discs_meets_each_twice_in_any_batch() {
+    let one = Cylinder::new(DVec3::ZERO, DVec3::Z, 1.0, Caps::Both).unwrap();
+    let aside = Cylinder::new(DVec3::X * 0.5, DVec3::new(0.5, 0.0, 1.0), 1.0, Caps::Both);
+    let tracer = tracer_of(vec![root_of(&[one, aside.unwrap(), one, one])]);
+    let along = Ray::new(DVec3::new(-3.0, 0.25, 1.0), DVec3::X);
+    for t_min in [0.0, 3.0] {
+        let ray = Ray { t_min, ..along };
+        let hits = all_by(&tracer, &ray, 32);
+        assert_eq!(hits.len(), 8);
+        let least = hits.iter().map(|hit| hit.t).fold(f64::INFINITY, f64::min);
+        assert!(least > 2.0 && hits.iter().all(|hit| hit.part == Part::Cap1));
+        assert_eq!(least == t_min, t_min > 0.0);
+        for batch in 1..9 {
+            assert_eq!(all_by(&tracer, &ray, batch), hits, "batches of {batch}");
+        }
     }
 }

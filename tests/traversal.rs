@@ -13,68 +13,12 @@ use cyltrace::math::{Random, Ray};
 use cyltrace::scene::{CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene};
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{Options, Tracer};
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine3, DQuat, DVec3};
 use rayon::prelude::*;
+use support::aim::{self, farthest_point, ray_at};
+use support::ray_count;
 
 const SEED: u64 = 20_261_122;
-
-fn ray_count() -> u64 {
-    std::env::var("CYLTRACE_RAYS").map_or(100_000, |count| count.parse().expect("a number"))
-}
-
-/// A ray at a cylinder of the unit cube from up to `reach` away, with any
-/// length of direction and any kind of range.
-///
-/// Half of the rays graze: they pass just inside the wall where it comes
-/// nearest to a face of its box, which is where a box that is too small, or a
-/// rounding against it, loses them first.
-fn ray_at(random: &mut Random, cylinders: &[CylinderRecord], reach: f64) -> Ray {
-    let cylinder = cylinders[random.below(cylinders.len() as u64) as usize].cylinder();
-    let along = cylinder.p1() - cylinder.p0();
-    let axis = along.normalize();
-    let middle = cylinder.p0() + along * random.unit();
-    let coordinate = DVec3::AXES[random.below(3) as usize];
-    let towards_face = coordinate - axis * coordinate.dot(axis);
-    let grazes = random.below(2) == 0 && towards_face.length() > 1e-3;
-    let (target, heading) = if grazes {
-        let outward = towards_face.normalize();
-        let depth = 1.0 - random.log_uniform(1e-15, 1e-3);
-        let tangent = outward.cross(axis) + axis * random.uniform(-1.0, 1.0);
-        (middle + outward * (cylinder.radius() * depth), tangent)
-    } else {
-        (
-            middle + random.direction() * (cylinder.radius() * random.uniform(0.0, 1.2)),
-            random.direction(),
-        )
-    };
-    let heading = match random.below(8) {
-        0 => DVec3::AXES[random.below(3) as usize],
-        _ => heading.normalize(),
-    };
-    let distance = match random.below(4) {
-        0 => random.log_uniform(1e-3, 1.0),
-        1 => random.log_uniform(1.0, 10.0),
-        _ => random.log_uniform(1.0, reach),
-    };
-    let origin = target - heading * distance;
-    let scale = random.log_uniform(1e-30, 1e30);
-    let unit = distance / scale;
-    let (t_min, t_max) = match random.below(4) {
-        0 => (0.0, f64::INFINITY),
-        1 => (-2.0 * unit, f64::INFINITY),
-        2 => (0.0, unit * random.uniform(0.5, 1.5)),
-        _ => (
-            unit * random.uniform(-1.5, 1.0),
-            unit * random.uniform(1.0, 2.0),
-        ),
-    };
-    Ray {
-        origin,
-        direction: heading * scale,
-        t_min,
-        t_max,
-    }
-}
 
 /// Compares both kinds of query with the exhaustive one.
 fn assert_nothing_lost(
@@ -116,18 +60,14 @@ fn tracers(scene: &Arc<Scene>) -> Vec<(String, u64, Tracer)> {
         let rays = ray_count() / if max_isa == MaxIsa::best() { 1 } else { 5 };
         (isa, rays, tracer)
     };
-    let available = MaxIsa::available();
-    if available.is_empty() {
-        return vec![build(None)];
-    }
-    available.into_iter().map(|isa| build(Some(isa))).collect()
+    support::instruction_sets().into_iter().map(build).collect()
 }
 
 #[test]
 fn box_of_cylinders_loses_no_hit() {
     let cylinders = support::cylinders_in_a_box(SEED, 1000);
     let root = Prototype {
-        cylinders: cylinders.clone(),
+        cylinders: cylinders.clone().into(),
         ..Default::default()
     };
     for (isa, rays, tracer) in tracers(&support::scene_of(vec![root])) {
@@ -143,86 +83,17 @@ fn box_of_cylinders_loses_no_hit() {
 /// from 1e-4 to 1e4, some of them different for each axis.
 #[test]
 fn nested_placements_lose_no_hit() {
-    let mut random = Random::new(SEED, 2);
-    let mut place = |of: u32, translation: f64| {
-        let scale = random.log_uniform(1e-4, 1e4);
-        let stretch = match random.below(2) {
-            0 => DVec3::ONE,
-            _ => DVec3::new(1.0, random.uniform(0.2, 1.0), random.uniform(1.0, 5.0)),
-        };
-        let matrix = support::random_rotation(&mut random)
-            * DMat3::from_diagonal(stretch * scale)
-            * support::random_rotation(&mut random);
-        let offset = random.direction() * (scale * translation);
-        Placement {
-            of: PrototypeIndex(of),
-            parent_from_child: DAffine3::from_mat3_translation(matrix, offset),
-        }
-    };
-    let cylinders = support::cylinders_in_a_box(SEED, 100);
-    let leaf = Prototype {
-        cylinders: cylinders.clone(),
-        ..Default::default()
-    };
-    let middle = Prototype {
-        placements: (0..5).map(|_| place(3, 3.0)).collect(),
-        ..Default::default()
-    };
-    let outer = Prototype {
-        placements: vec![place(2, 1e3), place(3, 1e5)],
-        ..Default::default()
-    };
-    for translation in [1.0, 1e3, 1e7] {
-        let root = Prototype {
-            placements: vec![place(1, translation)],
-            ..Default::default()
-        };
-        let scene = support::scene_of(vec![root, outer.clone(), middle.clone(), leaf.clone()]);
-        // The placed prototypes are far apart and small against their distance:
-        // rays are aimed at their images.
-        let images: Vec<DAffine3> = scene.prototypes[1]
-            .placements
-            .iter()
-            .flat_map(|outer_one| {
-                let root_from_outer = scene.prototypes[0].placements[0].parent_from_child
-                    * outer_one.parent_from_child;
-                let below = &scene.prototypes[outer_one.of.0 as usize].placements;
-                if below.is_empty() {
-                    vec![root_from_outer]
-                } else {
-                    below
-                        .iter()
-                        .map(|inner| root_from_outer * inner.parent_from_child)
-                        .collect()
-                }
-            })
-            .collect();
-        for (isa, rays, tracer) in tracers(&scene) {
+    for nested in support::nested_placements(SEED) {
+        let cylinders = nested.cylinders();
+        for (isa, rays, tracer) in tracers(&nested.scene) {
+            let translation = nested.translation;
             let name = format!("{isa}, nested, translated by {translation:e}");
             assert_nothing_lost(&name, &tracer, rays, |random| {
-                let image = images[random.below(images.len() as u64) as usize];
-                let ray = ray_at(random, &cylinders, 1e6);
-                Ray {
-                    origin: image.transform_point3(ray.origin),
-                    direction: image.transform_vector3(ray.direction),
-                    ..ray
-                }
+                let image = nested.any_image(random);
+                aim::carried(&image, &ray_at(random, &cylinders, 1e6))
             });
         }
     }
-}
-
-/// The point of a cylinder that is farthest in a direction, one of them where
-/// there are many.
-fn farthest_point(cylinder: &Cylinder, outward: DVec3) -> DVec3 {
-    let along = cylinder.p1() - cylinder.p0();
-    let end = if along.dot(outward) > 0.0 {
-        cylinder.p1()
-    } else {
-        cylinder.p0()
-    };
-    let across = outward - along * (outward.dot(along) / along.length_squared());
-    end + across.normalize_or_zero() * cylinder.radius()
 }
 
 /// A ray that passes just inside what touches a face, or is farthest towards an
@@ -259,7 +130,7 @@ fn box_of_cylinders_loses_no_hit_in_its_outermost_layer() {
     let records = support::cylinders_in_a_box(SEED, 1000);
     let cylinders: Vec<Cylinder> = records.iter().map(CylinderRecord::cylinder).collect();
     let root = Prototype {
-        cylinders: records,
+        cylinders: records.into(),
         ..Default::default()
     };
     for (isa, rays, tracer) in tracers(&support::scene_of(vec![root])) {

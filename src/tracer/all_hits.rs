@@ -4,9 +4,9 @@
 //! Hits have a total order, so that the next traversal goes on exactly there:
 //! none is missed or doubled, also among many at the same `t`.
 
-use super::found::{Found, Keep};
 use super::frame::LocalRay;
-use super::query::Query;
+use super::query::{Found, Keep, Query};
+use super::resolve::Which;
 use super::{Hit, Tracer, with_usual_length};
 use crate::math::Ray;
 
@@ -45,9 +45,10 @@ impl<'a> AllHits<'a> {
         let root = self.tracer.root.as_ref()?;
         let mut query = Query::next(&ray, self.last.take(), self.batch);
         root.search(&LocalRay::new(&ray), &mut query);
-        let Keep::Next { hits, .. } = query.keep else {
+        let Keep::Next(next) = query.keep else {
             unreachable!("the query keeps what it was told to keep");
         };
+        let hits = next.hits;
         self.is_complete = hits.len() < self.batch;
         self.last = hits.last().cloned();
         self.known = hits.into_iter();
@@ -65,6 +66,10 @@ impl Iterator for AllHits<'_> {
         let found = self.known.next()?;
         let (ray, factors) = self.ray?;
         let root = self.tracer.root.as_ref()?;
-        Some(self.tracer.resolved(root, &ray, factors, &found))
+        let which = Which::This(found.meeting);
+        Some(
+            self.tracer
+                .resolved(root, &ray, factors, &found.place, which),
+        )
     }
 }

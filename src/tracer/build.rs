@@ -1,11 +1,15 @@
-//! From a scene's description to built prototypes.
+//! From a scene's description to prototypes that are ready to be built.
 
 use std::sync::Arc;
 
-use super::prototype::Prototype;
-use crate::embree::{self, Device};
+use rayon::prelude::*;
+
+use super::prototype::{Prototype, Workshop};
+use crate::embree;
 use crate::math::{ChildFromParent, PlacementErrors};
-use crate::scene::{GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_STRETCH, PrototypeIndex, Scene};
+use crate::scene::{
+    GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_STRETCH, Placement, PrototypeIndex, Scene,
+};
 
 /// Why a scene cannot be traced.
 #[derive(Debug, thiserror::Error)]
@@ -97,65 +101,130 @@ impl Plan {
             return Ok(nesting);
         }
         let prototype = &scene.prototypes[index.0 as usize];
-        let mut nesting = Nesting {
-            depth: 0,
-            least: 1.0,
-            greatest: 1.0,
-        };
-        let mut cylinders = prototype.cylinders.len() as u128;
-        let mut instances = prototype.placements.len() as u128;
-        for (number, placement) in prototype.placements.iter().enumerate() {
-            let child = self.visit(scene, placement.of, level + 1, known)?;
-            let way = ChildFromParent::new(&placement.parent_from_child);
-            let errors = PlacementErrors::new(&placement.parent_from_child, &way);
-            let of = &scene.prototypes[placement.of.0 as usize].name;
-            if !(errors.condition <= GREATEST_CONDITION) {
-                return Err(TracerError::Condition {
-                    prototype: prototype.name.clone(),
-                    placement: number,
-                    of: of.clone(),
-                    condition: errors.condition,
-                });
+        // Scattered placements come in runs of the same prototype.
+        let mut last = None;
+        for placement in &prototype.placements {
+            if last.replace(placement.of) != Some(placement.of) {
+                self.visit(scene, placement.of, level + 1, known)?;
             }
-            let greatest = child.greatest * errors.stretch;
-            let least = child.least * errors.shrink;
-            for stretch in [least, greatest] {
-                if !(1.0 / GREATEST_STRETCH..=GREATEST_STRETCH).contains(&stretch) {
-                    return Err(TracerError::Stretch {
-                        prototype: of.clone(),
-                        stretch,
-                    });
-                }
-            }
-            nesting.depth = nesting.depth.max(child.depth + 1);
-            nesting.least = nesting.least.min(least);
-            nesting.greatest = nesting.greatest.max(greatest);
-            let of = placement.of.0 as usize;
-            cylinders = cylinders.saturating_add(self.instanced_cylinders[of]);
-            instances = instances.saturating_add(self.instances[of]);
         }
+        let total = prototype
+            .placements
+            .par_iter()
+            .with_min_len(1 << 10)
+            .enumerate()
+            .map(|(number, placement)| {
+                let of = placement.of.0 as usize;
+                let child = known[of].expect("what is placed was visited");
+                let errors = placement_errors(scene, prototype, number, placement)?;
+                Ok::<_, TracerError>(Total {
+                    nesting: child.placed(&errors, &scene.prototypes[of].name)?,
+                    cylinders: self.instanced_cylinders[of],
+                    instances: self.instances[of].saturating_add(1),
+                })
+            })
+            .try_reduce(Total::default, |one, other| Ok(one.with(&other)))?;
+        let nesting = total.nesting;
         if nesting.depth > GREATEST_DEPTH {
             return Err(TracerError::Depth {
                 depth: nesting.depth,
             });
         }
-        self.instanced_cylinders[index.0 as usize] = cylinders;
-        self.instances[index.0 as usize] = instances;
+        let cylinders = prototype.cylinders.len() as u128;
+        self.instanced_cylinders[index.0 as usize] = total.cylinders.saturating_add(cylinders);
+        self.instances[index.0 as usize] = total.instances;
         self.order.push(index);
         known[index.0 as usize] = Some(nesting);
         Ok(nesting)
     }
 }
 
-/// Builds the prototypes in the plan's order; those it leaves out stay `None`.
-pub(crate) fn build(
-    device: &Device,
+/// The roundings of a placement, if they can be borne.
+fn placement_errors(
+    scene: &Scene,
+    prototype: &crate::scene::Prototype,
+    number: usize,
+    placement: &Placement,
+) -> Result<PlacementErrors, TracerError> {
+    let way = ChildFromParent::new(&placement.parent_from_child);
+    let errors = PlacementErrors::new(&placement.parent_from_child, &way);
+    if errors.condition <= GREATEST_CONDITION {
+        return Ok(errors);
+    }
+    Err(TracerError::Condition {
+        prototype: prototype.name.clone(),
+        placement: number,
+        of: scene.prototypes[placement.of.0 as usize].name.clone(),
+        condition: errors.condition,
+    })
+}
+
+impl Nesting {
+    /// The nesting seen from where the prototype `name` is placed.
+    fn placed(&self, errors: &PlacementErrors, name: &str) -> Result<Self, TracerError> {
+        let (least, greatest) = (self.least * errors.shrink, self.greatest * errors.stretch);
+        for stretch in [least, greatest] {
+            if !(1.0 / GREATEST_STRETCH..=GREATEST_STRETCH).contains(&stretch) {
+                return Err(TracerError::Stretch {
+                    prototype: name.to_owned(),
+                    stretch,
+                });
+            }
+        }
+        Ok(Self {
+            depth: self.depth + 1,
+            least,
+            greatest,
+        })
+    }
+}
+
+/// What all placements of a prototype come to.
+#[derive(Clone, Copy)]
+struct Total {
+    nesting: Nesting,
+    cylinders: u128,
+    instances: u128,
+}
+
+impl Default for Total {
+    fn default() -> Self {
+        Self {
+            nesting: Nesting {
+                depth: 0,
+                least: 1.0,
+                greatest: 1.0,
+            },
+            cylinders: 0,
+            instances: 0,
+        }
+    }
+}
+
+impl Total {
+    fn with(&self, other: &Self) -> Self {
+        let (one, two) = (&self.nesting, &other.nesting);
+        Self {
+            nesting: Nesting {
+                depth: one.depth.max(two.depth),
+                least: one.least.min(two.least),
+                greatest: one.greatest.max(two.greatest),
+            },
+            cylinders: self.cylinders.saturating_add(other.cylinders),
+            instances: self.instances.saturating_add(other.instances),
+        }
+    }
+}
+
+/// Makes the prototypes in the plan's order; those it leaves out stay `None`.
+pub(crate) fn make(
+    workshop: &Workshop,
     scene: &Arc<Scene>,
     plan: &Plan,
-) -> Result<Vec<Option<Arc<Prototype>>>, TracerError> {
-    let mut built = vec![None; scene.prototypes.len()];
+) -> Vec<Option<Arc<Prototype>>> {
+    let mut made = vec![None; scene.prototypes.len()];
     for &index in &plan.order {
-        built[index.0 as usize] = Prototype::build(device, scene, index, &built)?;
+        made[index.0 as usize] = Prototype::new(workshop, scene, index, &made);
     }
-    Ok(built)
+    made
 }

@@ -1,82 +1,66 @@
-//! From a scene's description to committed Embree scenes, and hits in world
-//! space.
+//! From a scene's description to Embree scenes, and hits in world space.
 //!
-//! [`Tracer::new`] builds one Embree scene for each prototype that the root
-//! needs. A query walks them with an f64 ray: Embree's f32 ray only finds
-//! candidates (`frame`), the callbacks of a prototype solve or hand on to a
-//! placed prototype (`prototype`), the query keeps the best hit (`query`), and
-//! what the caller wants to know of it is worked out at the end (`resolve`).
+//! [`Tracer::new`] makes each prototype that the root needs ready; its Embree
+//! scene is built at once or when a ray first reaches it ([`BuildTime`]). A query
+//! walks them with an f64 ray, or with a packet of those that go the same way
+//! (`batch`): Embree's f32 rays only find candidates (`frame`), the callbacks of a
+//! prototype solve or hand on to a placed prototype (`prototype`), the query keeps
+//! the best hits (`query`), and what the caller wants to know of them is worked out
+//! at the end (`resolve`).
 
 mod all_hits;
+mod batch;
 mod build;
+pub mod counters;
 mod estimate;
-mod found;
+mod first_hit;
 mod frame;
 mod hit;
+mod options;
 mod prototype;
 mod query;
 mod resolve;
+mod statistics;
 mod workers;
 
-use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 pub use all_hits::{AllHits, DEFAULT_BATCH};
 pub use build::TracerError;
 pub use estimate::MemoryEstimate;
+pub use first_hit::FirstHit;
+pub(crate) use frame::{Frame, LocalRay};
 pub use hit::Hit;
+pub use options::{BuildTime, Layout, Options};
+pub use statistics::Statistics;
 pub use workers::workers;
 
 use crate::embree::{Device, DeviceOptions, MaxIsa};
 use crate::math::{Bounds, Ray, power_of_two, power_of_two_below};
-use crate::scene::{CylinderRecord, Placement, PrototypeIndex, Scene};
+use crate::scene::Scene;
 use build::Plan;
-use found::{Found, Keep};
-use frame::LocalRay;
-use prototype::Prototype;
-use query::Query;
-
-/// How a tracer is built.
-#[derive(Clone, Debug, Default)]
-pub struct Options {
-    /// Threads that Embree builds with; as many as there are cores if `None`.
-    pub threads: Option<NonZeroUsize>,
-    /// The widest instruction set that Embree may use; the machine's best if
-    /// `None`. It changes speed only.
-    pub max_isa: Option<MaxIsa>,
-}
-
-/// What was built, and what was not.
-#[derive(Clone, Debug)]
-pub struct Statistics {
-    /// Cylinders in the prototypes that were built.
-    pub cylinders_unique: u64,
-    /// Cylinders in the scene with every placement counted.
-    pub cylinders_instanced: u128,
-    /// Placements in the scene, those within placed prototypes counted each
-    /// time.
-    pub instances: u128,
-    /// Memory that Embree holds.
-    pub embree_bytes: usize,
-    /// Memory of the records of cylinders and placements.
-    pub records_bytes: usize,
-    /// What was left out because the scene does not need it.
-    pub skipped: Vec<String>,
-    /// The version of the Embree library.
-    pub embree_version: String,
-    /// The instruction set in use.
-    pub isa: String,
-}
+use prototype::{Prototype, Workshop};
+use query::{Keep, Place, Query};
+use resolve::Which;
+use statistics::Counted;
 
 /// A scene that rays can be traced through, from any number of threads.
 pub struct Tracer {
     scene: Arc<Scene>,
     root: Option<Arc<Prototype>>,
-    statistics: Statistics,
+    /// All that the root needs, by their indices.
+    prototypes: Vec<Option<Arc<Prototype>>>,
+    device: Device,
+    options: Options,
+    isa: &'static str,
+    /// Whether the installed Embree takes packets.
+    traces_packets: bool,
+    counted: Counted,
 }
 
 impl Tracer {
-    /// Builds what the root of `scene` needs.
+    /// Makes what the root of `scene` needs ready to be traced; what is built at
+    /// once, and what later, is a matter of `options`.
     ///
     /// # Errors
     /// When Embree refuses, or a placement cannot be traced accurately.
@@ -86,26 +70,32 @@ impl Tracer {
             threads: options.threads,
             max_isa: options.max_isa,
         })?;
-        let built = build::build(&device, &scene, &plan)?;
-        let statistics = Statistics {
-            cylinders_unique: plan
-                .order
-                .iter()
-                .map(|index| scene.prototypes[index.0 as usize].cylinders.len() as u64)
-                .sum(),
-            cylinders_instanced: plan.instanced_cylinders[0],
-            instances: plan.instances[0],
-            embree_bytes: device.memory_bytes(),
-            records_bytes: records_bytes(&scene, &built),
-            skipped: skipped(&scene, &plan),
-            embree_version: device.version().to_string(),
-            isa: MaxIsa::name_in_use(options.max_isa).to_owned(),
+        let workshop = Workshop {
+            device: device.clone(),
+            layout: options.layout,
+            view: options.view,
+            instructions: device.instructions(),
+            packet_width: device.packet_width(),
+            threads: options
+                .threads
+                .or_else(|| std::thread::available_parallelism().ok())
+                .map_or(1, usize::from),
         };
-        let root = built.into_iter().next().flatten();
+        let prototypes = build::make(&workshop, &scene, &plan);
+        if options.build == BuildTime::AtOnce {
+            for prototype in prototypes.iter().flatten() {
+                prototype.build()?;
+            }
+        }
         Ok(Self {
+            root: prototypes.first().cloned().flatten(),
+            prototypes,
+            traces_packets: device.packet_width().is_some(),
+            device,
+            options: options.clone(),
+            isa: MaxIsa::name_in_use(options.max_isa),
+            counted: Counted::new(&scene, &plan),
             scene,
-            root,
-            statistics,
         })
     }
 
@@ -116,7 +106,33 @@ impl Tracer {
     /// ([`Ray::is_valid`]).
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
+        let first = self.first_hit(ray)?;
+        Some(self.hit(ray, &first))
+    }
+
+    /// As [`Tracer::closest`], without working out anything but where on the ray
+    /// the hit is, and of which solid. [`Tracer::hit`] has the rest.
+    #[must_use]
+    pub fn first_hit(&self, ray: &Ray) -> Option<FirstHit> {
+        self.first_hit_and_callbacks(ray).0
+    }
+
+    /// [`Tracer::first_hit`], and what it cost.
+    fn first_hit_and_callbacks(&self, ray: &Ray) -> (Option<FirstHit>, u32) {
         self.answer(ray, Prototype::search)
+    }
+
+    /// What there is to know of a first hit.
+    ///
+    /// # Panics
+    /// When `first` is not of this ray and this tracer; it may then also answer
+    /// with something else.
+    #[must_use]
+    pub fn hit(&self, ray: &Ray, first: &FirstHit) -> Hit {
+        let root = self.root.as_ref().expect("a hit is in a scene with a root");
+        let (ray, factors) = with_usual_length(ray).expect("a ray that hits is valid");
+        let which = Which::FirstAt(first.nearest.t);
+        self.resolved(root, &ray, factors, &first.nearest.place, which)
     }
 
     /// As [`Tracer::closest`], without Embree: every placement and every solid
@@ -124,7 +140,8 @@ impl Tracer {
     /// same solver, and very slow.
     #[must_use]
     pub fn closest_exhaustive(&self, ray: &Ray) -> Option<Hit> {
-        self.answer(ray, Prototype::search_exhaustively)
+        let first = self.answer(ray, Prototype::search_exhaustively).0?;
+        Some(self.hit(ray, &first))
     }
 
     /// Every point of a surface that the ray meets, in order of `t`, then of
@@ -142,11 +159,17 @@ impl Tracer {
     /// Whether the ray meets any surface.
     #[must_use]
     pub fn occluded(&self, ray: &Ray) -> bool {
-        let Some(root) = &self.root else { return false };
-        let Some((ray, _)) = with_usual_length(ray) else {
-            return false;
+        self.occluded_and_callbacks(ray).0
+    }
+
+    /// [`Tracer::occluded`], and what it cost.
+    fn occluded_and_callbacks(&self, ray: &Ray) -> (bool, u32) {
+        let (Some(root), Some((ray, _))) = (&self.root, with_usual_length(ray)) else {
+            return (false, 0);
         };
-        root.occluded(&LocalRay::new(&ray), &mut Query::first(&ray))
+        let mut query = Query::first(&ray);
+        let is_blocked = root.occluded(&LocalRay::new(&ray), &mut query);
+        (is_blocked, query.callbacks)
     }
 
     /// The box around all surfaces, in world space; empty for an empty scene.
@@ -155,10 +178,23 @@ impl Tracer {
         self.root.as_ref().map_or(Bounds::EMPTY, |root| root.bounds)
     }
 
-    /// What was built.
+    /// What was built so far.
     #[must_use]
-    pub fn statistics(&self) -> &Statistics {
-        &self.statistics
+    pub fn statistics(&self) -> Statistics {
+        let prototypes = self.prototypes.iter().flatten();
+        let kept: usize = prototypes.map(|prototype| prototype.kept_bytes()).sum();
+        Statistics {
+            cylinders_unique: self.counted.cylinders_unique,
+            cylinders_instanced: self.counted.cylinders_instanced,
+            instances: self.counted.instances,
+            embree_bytes: self.device.memory_bytes(),
+            records_bytes: self.counted.described_bytes + kept,
+            skipped: self
+                .counted
+                .skipped(&self.scene, &self.prototypes, &self.options),
+            embree_version: self.device.version().to_string(),
+            isa: self.isa.to_owned(),
+        }
     }
 
     /// The scene that was built.
@@ -171,15 +207,17 @@ impl Tracer {
         &self,
         ray: &Ray,
         trace: impl FnOnce(&Prototype, &LocalRay, &mut Query),
-    ) -> Option<Hit> {
-        let root = self.root.as_ref()?;
-        let (ray, factors) = with_usual_length(ray)?;
+    ) -> (Option<FirstHit>, u32) {
+        let (Some(root), Some((ray, factors))) = (&self.root, with_usual_length(ray)) else {
+            return (None, 0);
+        };
         let mut query = Query::first(&ray);
         trace(root, &LocalRay::new(&ray), &mut query);
-        match query.keep {
-            Keep::First(Some(found)) => Some(self.resolved(root, &ray, factors, &found)),
-            _ => None,
-        }
+        let first = match query.keep {
+            Keep::First(nearest) => nearest.map(|nearest| FirstHit::new(nearest, factors)),
+            Keep::Next(_) => None,
+        };
+        (first, query.callbacks)
     }
 
     /// The answer for a hit of the ray in use.
@@ -188,9 +226,10 @@ impl Tracer {
         root: &Arc<Prototype>,
         ray: &Ray,
         [unit, lift]: [f64; 2],
-        found: &Found,
+        place: &Place,
+        which: Which,
     ) -> Hit {
-        let mut hit = resolve::resolve(&self.scene, root, ray, found);
+        let mut hit = resolve::resolve(&self.scene, root, ray, place, which);
         hit.t = hit.t * unit * lift;
         hit
     }
@@ -234,42 +273,4 @@ fn rescaled(ray: &Ray, length: f64) -> (Ray, [f64; 2]) {
         t_max: ray.t_max / lift / unit,
     };
     (rescaled, [unit, lift])
-}
-
-/// The memory of what is kept for solids and placements beside Embree's.
-fn records_bytes(scene: &Scene, built: &[Option<Arc<Prototype>>]) -> usize {
-    let described: usize = scene
-        .prototypes
-        .iter()
-        .map(|prototype| {
-            prototype.cylinders.len() * size_of::<CylinderRecord>()
-                + prototype.placements.len() * size_of::<Placement>()
-        })
-        .sum();
-    described
-        + built
-            .iter()
-            .flatten()
-            .map(|prototype| prototype.placement_bytes())
-            .sum::<usize>()
-}
-
-/// A sentence for each prototype that no placement needs, and one for rows
-/// that are no solid.
-fn skipped(scene: &Scene, plan: &Plan) -> Vec<String> {
-    let rows = (scene.skipped_rows > 0)
-        .then(|| format!("degenerate rows of tables: {}", scene.skipped_rows));
-    let is_needed = |index| plan.order.contains(&PrototypeIndex(index as u32));
-    let prototypes = scene
-        .prototypes
-        .iter()
-        .enumerate()
-        .filter(|(index, _)| !is_needed(*index))
-        .map(|(_, prototype)| {
-            format!(
-                "prototype \"{}\" is placed nowhere: not built",
-                prototype.name
-            )
-        });
-    rows.into_iter().chain(prototypes).collect()
 }

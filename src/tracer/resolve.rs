@@ -23,40 +23,64 @@
 use std::sync::Arc;
 
 use super::Hit;
-use super::found::Found;
 use super::frame::LocalRay;
 use super::prototype::Prototype;
-use crate::math::{PlacementErrors, Ray, UNIT_ROUNDOFF};
+use super::query::Place;
+use crate::math::{ChildFromParent, PlacementErrors, Ray, UNIT_ROUNDOFF};
 use crate::scene::Scene;
-use crate::solid::{SolidKind, SpawnMargin, surface_point};
+use crate::solid::{Meeting, SolidKind, SpawnMargin, surface_point, triple_product};
 
-/// The answer for the best hit of a query with `ray`.
-pub(crate) fn resolve(scene: &Scene, root: &Arc<Prototype>, ray: &Ray, found: &Found) -> Hit {
+/// What a query is to work out of a hit.
+#[derive(Clone, Copy)]
+pub(crate) enum Which {
+    /// The first meeting with the solid, which is at this `t`.
+    FirstAt(f64),
+    /// This one.
+    This(Meeting),
+}
+
+/// The answer for a hit of a query with `ray`.
+pub(crate) fn resolve(
+    scene: &Scene,
+    root: &Arc<Prototype>,
+    ray: &Ray,
+    place: &Place,
+    which: Which,
+) -> Hit {
     // Down to the prototype that was hit.
     let mut prototype = root;
-    let mut local = root.frame.approach(&LocalRay::new(ray)).0;
-    let mut placements = Vec::with_capacity(found.path.len());
+    let mut local = root.frame.approach(&LocalRay::new(ray));
+    let mut placements = Vec::with_capacity(place.path.len());
     let mut description = &scene.prototypes[0];
-    for &index in &found.path {
-        let (record, child) = prototype.placement(index);
-        let placement = &description.placements[index as usize];
-        placements.push((record, placement.parent_from_child));
-        local = child.frame.approach(&record.child_ray(&local)).0;
+    for &index in &place.path {
+        let (placement, child) = prototype.placement(index);
+        let way = ChildFromParent::new(&placement.parent_from_child);
+        placements.push((way, placement.parent_from_child));
+        local = child.frame.approach(&local.in_child(&way));
         prototype = child;
         description = &scene.prototypes[placement.of.0 as usize];
     }
 
     // The point on the solid.
-    let record = &description.cylinders[found.record as usize];
+    let record = description.cylinders.get(place.record as usize);
     let cylinder = record.cylinder();
-    let from_p0 = local.origin_from(cylinder.p0()) + local.direction * found.meeting.t_local;
-    let surface = surface_point(&cylinder, found.meeting.part, from_p0);
+    let from_p0 = local.origin_from(cylinder.p0());
+    let meeting = match which {
+        Which::This(meeting) => meeting,
+        // The query went through the same operations: it is the same meeting.
+        Which::FirstAt(t) => {
+            let (direction, shift) = (local.direction, local.shift);
+            triple_product::first(&cylinder, from_p0, direction, shift, ray.t_min, t)
+                .expect("a hit is found again")
+        }
+    };
+    let on_ray = from_p0 + local.direction * meeting.t_local;
+    let surface = surface_point(&cylinder, meeting.part, on_ray);
     let mut margin = SpawnMargin::new(&cylinder, &surface);
 
     // Up again to the world.
     let (mut point, mut normal, mut error) = (surface.point, surface.normal, surface.error);
-    for (record, parent_from_child) in placements.iter().rev() {
-        let way = &record.child_from_parent;
+    for (way, parent_from_child) in placements.iter().rev() {
         let errors = PlacementErrors::new(parent_from_child, way);
         let terms = (parent_from_child.matrix3.abs() * point.abs()).length();
         let moved = parent_from_child.matrix3 * point;
@@ -70,18 +94,18 @@ pub(crate) fn resolve(scene: &Scene, root: &Arc<Prototype>, ray: &Ray, found: &F
     }
 
     Hit {
-        t: found.meeting.t,
+        t: meeting.t,
         point,
         error,
         normal,
         u: surface.u,
         v: surface.v,
-        prototype: found.prototype,
+        prototype: place.prototype,
         solid: SolidKind::Cylinder,
-        primitive: found.primitive,
-        part: found.meeting.part,
-        crossing: found.meeting.crossing,
-        instance: found.path.to_vec(),
+        primitive: record.primitive(),
+        part: meeting.part,
+        crossing: meeting.crossing,
+        instance: place.path.to_vec(),
         material: record.material(),
         spawn_offset: margin.offset(point, error),
     }

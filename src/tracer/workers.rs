@@ -5,9 +5,9 @@ use std::num::NonZeroUsize;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 /// Stack of a worker. Nested placements trace recursively: 64 levels, the
-/// deepest scene that loads, at up to 54 kB a level take 3.4 MB; twice that is
-/// kept so that nothing else has to be counted. Pages never touched cost
-/// nothing.
+/// deepest scene that loads, take up to 1.2 MB (`prototype` says how). Several
+/// times that is kept so that nothing else has to be counted. Pages never
+/// touched cost nothing.
 const STACK_BYTES: usize = 8 << 20;
 
 /// A pool of as many threads as asked for, or as the machine has, whose

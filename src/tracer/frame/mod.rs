@@ -13,15 +13,20 @@
 //! the solvers and placements work near the solids, and the distance costs
 //! only what f64 cannot hold of `t`.
 
+mod packet;
+mod rays;
+
 use glam::DVec3;
 
+pub(crate) use packet::{Enter, IntoChild, PacketEntry, PacketLevel, PacketRays, ROWS, Rows};
+pub(crate) use rays::{Level, LocalRay, Window};
+
 use crate::embree::{Box32, Ray32};
-use crate::math::{
-    Bounds, DoubleDouble, Ray, UNIT_ROUNDOFF, f32_above, f32_below, power_of_two_below,
-};
+use crate::math::{Bounds, DoubleDouble, UNIT_ROUNDOFF, f32_above, f32_below, power_of_two_below};
 
 /// By how much boxes are grown on every side, in radii of the bounding sphere.
-/// The proof needs 18 · 2^-24 of it; the next power of two is 2^-19.
+/// The proof needs 18 · 2^-24 of it for single rays and 22 · 2^-24 for packets; the
+/// next power of two is 2^-19.
 pub(crate) const BOX_GROWTH: f64 = 1.0 / (1 << 19) as f64;
 
 /// Rays that start more than this many units of the frame (one to two such
@@ -30,82 +35,6 @@ pub(crate) const BOX_GROWTH: f64 = 1.0 / (1 << 19) as f64;
 /// inside the growth of the boxes; above it the double-double step, about as
 /// dear as one solve, is paid once a prototype.
 pub(crate) const FAR: f64 = (1 << 16) as f64;
-
-/// A ray in a prototype's own space.
-///
-/// Its points are `base + origin + (t - shift) * direction` for the `t` of the
-/// ray that was asked for.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LocalRay {
-    pub origin: DVec3,
-    pub direction: DVec3,
-    /// Zero, or the centre of the prototype for a ray that was moved.
-    pub base: DVec3,
-    pub shift: f64,
-}
-
-impl LocalRay {
-    pub fn new(ray: &Ray) -> Self {
-        Self {
-            origin: ray.origin,
-            direction: ray.direction,
-            base: DVec3::ZERO,
-            shift: 0.0,
-        }
-    }
-
-    /// The ray's origin as seen from a point of the prototype's space.
-    #[inline]
-    pub fn origin_from(&self, point: DVec3) -> DVec3 {
-        self.origin - (point - self.base)
-    }
-}
-
-/// How the `t` of a query becomes the `t_far` of the f32 ray in the frame.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Window {
-    /// The query's `t` at the point nearest to the centre is `shift + nearest`.
-    shift: f64,
-    nearest: f64,
-    /// Where the f32 ray starts, counted from the nearest point.
-    start: f64,
-    /// Units of the f32 ray's parameter in one unit of `t`.
-    rate: f64,
-}
-
-impl Window {
-    /// `t` counted from the nearest point, moved by `outward` times the
-    /// rounding of the differences.
-    fn past_nearest(&self, t: f64, outward: f64) -> f64 {
-        let slack = 4.0 * UNIT_ROUNDOFF * (t.abs() + self.shift.abs() + self.nearest.abs());
-        let difference = (t - self.shift) - self.nearest;
-        if difference.is_finite() {
-            difference + outward * slack
-        } else {
-            difference
-        }
-    }
-
-    /// The end of the f32 ray for hits up to `t`; never too small.
-    #[inline]
-    pub fn t_far(&self, t: f64) -> f32 {
-        self.length_to(self.past_nearest(t, 1.0))
-    }
-
-    /// The length of the f32 ray up to `end`, counted from the nearest point.
-    /// The 2^-30 stands for the roundings, which are below 2^-48 in the frame.
-    #[inline]
-    fn length_to(&self, end: f64) -> f32 {
-        f32_above((end - self.start) * self.rate + 1.0 / (1 << 30) as f64)
-    }
-}
-
-/// A ray on its way through one prototype.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Level {
-    pub ray: LocalRay,
-    pub window: Window,
-}
 
 /// The frame of a prototype's Embree scene.
 #[derive(Clone, Debug)]
@@ -155,25 +84,42 @@ impl Frame {
         }
     }
 
-    /// The ray as the solvers of this prototype get it, and its point nearest
-    /// to the centre, in the frame: the ray's parameter and the place. A ray
-    /// that comes to a prototype has not been moved in it: its base is zero.
-    pub fn approach(&self, ray: &LocalRay) -> (LocalRay, f64, DVec3) {
+    /// The ray as the solvers of this prototype get it. A ray that comes to a
+    /// prototype has not been moved in it: its base is zero.
+    pub fn approach(&self, ray: &LocalRay) -> LocalRay {
+        self.approached(ray).0
+    }
+
+    /// That ray, and its point nearest to the centre.
+    fn approached(&self, ray: &LocalRay) -> (LocalRay, Passing) {
         debug_assert_eq!(ray.base, DVec3::ZERO, "the ray was moved before");
+        let passing = self.passing(ray);
+        if passing.is_far {
+            self.approach_from_afar(ray, passing.nearest)
+        } else {
+            (*ray, passing)
+        }
+    }
+
+    /// How a ray passes the centre.
+    #[inline(always)]
+    fn passing(&self, ray: &LocalRay) -> Passing {
         let origin = ray.origin_from(self.centre) * self.scale;
         let direction = ray.direction * self.scale;
-        let squared = direction.length_squared();
-        let nearest = -origin.dot(direction) / squared;
-        if origin.abs().max_element() <= FAR {
-            return (*ray, nearest, origin + direction * nearest);
+        let inverse_square = 1.0 / direction.length_squared();
+        let nearest = -origin.dot(direction) * inverse_square;
+        Passing {
+            inverse_square,
+            nearest,
+            place: origin + direction * nearest,
+            is_far: !(origin.abs().max_element() <= FAR),
         }
-        self.approach_from_afar(ray, nearest)
     }
 
     /// As [`Frame::approach`], in double-double. The first guess of the nearest
     /// point is off by a few ulps of the distance, which a second step mends.
     #[cold]
-    fn approach_from_afar(&self, ray: &LocalRay, guess: f64) -> (LocalRay, f64, DVec3) {
+    fn approach_from_afar(&self, ray: &LocalRay, guess: f64) -> (LocalRay, Passing) {
         let direction = ray.direction * self.scale;
         let component = |i: usize| {
             let from_centre = DoubleDouble::sum(ray.origin[i], -self.centre[i]);
@@ -192,56 +138,105 @@ impl Frame {
             base: self.centre,
             shift: ray.shift + (guess + rest),
         };
-        (moved, 0.0, nearest)
+        let passing = Passing {
+            inverse_square: 1.0 / direction.length_squared(),
+            nearest: 0.0,
+            place: nearest,
+            is_far: true,
+        };
+        (moved, passing)
     }
 
     /// Enters the prototype: the ray for its solvers and the f32 ray for its
     /// Embree scene, or `None` where nothing in `[t_min, t_max]` can be hit.
     pub fn enter(&self, ray: &LocalRay, t_min: f64, t_max: f64) -> Option<(Level, Ray32)> {
-        let (ray, nearest, place) = self.approach(ray);
-        let direction = ray.direction * self.scale;
+        if let Some(entry) = self.entry_from_inside(ray, t_min, t_max) {
+            let (ray, window) = (*ray, entry.window);
+            return entry
+                .is_inside
+                .then_some((Level { ray, window }, entry.ray32));
+        }
+        let (ray, passing) = self.approached(ray);
+        let entry = self.entry(&ray, &passing, t_min, t_max);
+        let level = Level {
+            ray,
+            window: entry.window,
+        };
+        entry.is_inside.then_some((level, entry.ray32))
+    }
 
+    /// Where a ray enters that starts within the sphere, as most rays from
+    /// surfaces do: right there. It needs no root, and the end of the sphere does
+    /// not matter. `None` where the ray starts elsewhere or is far away.
+    #[inline(always)]
+    fn entry_from_inside(&self, ray: &LocalRay, t_min: f64, t_max: f64) -> Option<Entry> {
+        let origin = ray.origin_from(self.centre) * self.scale;
+        let direction = ray.direction * self.scale;
+        let mut window = Window {
+            shift: ray.shift,
+            nearest: 0.0,
+            start: 0.0,
+            rate: power_of_two_below(direction.abs().max_element()),
+        };
+        window.start = window.past_nearest(t_min, -1.0);
+        let start = origin + direction * window.start;
+        // Written so that NaN is elsewhere.
+        let is_inside = start.length_squared() <= self.radius * self.radius
+            && origin.abs().max_element() <= FAR;
+        let end = window.past_nearest(t_max, 1.0);
+        is_inside.then(|| self.entry_at(start, direction, window, end))
+    }
+
+    /// Where a ray enters, if it does. There is no branch in it: rows of lanes
+    /// go through it together.
+    #[inline(always)]
+    fn entry(&self, ray: &LocalRay, passing: &Passing, t_min: f64, t_max: f64) -> Entry {
+        let direction = ray.direction * self.scale;
         // The sphere, inflated beyond the grown boxes. NaN is a miss.
         let sphere = self.radius * (1.0 + 4.0 * BOX_GROWTH);
-        let outside = place.length_squared();
-        if !(outside <= sphere * sphere) {
-            return None;
-        }
-        let half_chord = ((sphere * sphere - outside) / direction.length_squared()).sqrt();
+        let outside = passing.place.length_squared();
+        let half_chord = ((sphere * sphere - outside) * passing.inverse_square).sqrt();
         let rate = power_of_two_below(direction.abs().max_element());
         let mut window = Window {
             shift: ray.shift,
-            nearest,
+            nearest: passing.nearest,
             start: 0.0,
             rate,
         };
         window.start = window.past_nearest(t_min, -1.0).max(-half_chord);
         let end = window.past_nearest(t_max, 1.0).min(half_chord);
-        if !(window.start <= end) {
-            return None;
-        }
 
-        let start = place + direction * window.start;
-        let direction = direction / rate;
-        if !self.meets_box(start, direction, (end - window.start) * rate) {
-            return None;
+        let start = passing.place + direction * window.start;
+        let mut entry = self.entry_at(start, direction, window, end);
+        entry.is_inside &= outside <= sphere * sphere;
+        entry
+    }
+
+    /// The entry of a ray whose window begins at `start`, in the frame.
+    #[inline(always)]
+    fn entry_at(&self, start: DVec3, direction: DVec3, window: Window, end: f64) -> Entry {
+        // A power of two has an exact inverse.
+        let direction = direction * (1.0 / window.rate);
+        let meets_box = self.meets_box(start, direction, (end - window.start) * window.rate);
+        Entry {
+            window,
+            ray32: Ray32 {
+                origin: [start.x as f32, start.y as f32, start.z as f32],
+                direction: [direction.x as f32, direction.y as f32, direction.z as f32],
+                t_near: 0.0,
+                t_far: window.length_to(end),
+            },
+            is_inside: (window.start <= end) & meets_box,
         }
-        let ray32 = Ray32 {
-            origin: start.as_vec3().to_array(),
-            direction: direction.as_vec3().to_array(),
-            t_near: 0.0,
-            t_far: window.length_to(end),
-        };
-        Some((Level { ray, window }, ray32))
     }
 
     /// Enters the prototype wherever the ray passes, for a query that does not
     /// ask Embree: the window is the whole line.
     pub fn enter_unseen(&self, ray: &LocalRay) -> Level {
-        let (ray, nearest, _) = self.approach(ray);
+        let (ray, passing) = self.approached(ray);
         let window = Window {
             shift: ray.shift,
-            nearest,
+            nearest: passing.nearest,
             start: f64::NEG_INFINITY,
             rate: 1.0,
         };
@@ -250,6 +245,7 @@ impl Frame {
 
     /// Whether the stretch of the ray meets the prototype's grown box. The
     /// growth dwarfs the roundings here.
+    #[inline(always)]
     fn meets_box(&self, start: DVec3, direction: DVec3, length: f64) -> bool {
         let inverse = direction.recip();
         let at_lower = (self.lower - start) * inverse;
@@ -262,4 +258,27 @@ impl Frame {
         let leave = leave.x.min(leave.y).min(leave.z).min(length);
         enter <= leave * (1.0 + 16.0 * UNIT_ROUNDOFF)
     }
+}
+
+/// How a ray passes the middle of a prototype.
+#[derive(Clone, Copy, Debug)]
+struct Passing {
+    /// One over the square of the direction's length in the frame.
+    inverse_square: f64,
+    /// The ray's parameter at the point nearest to the centre, or within some
+    /// roundings of it: what counts is where `place` is.
+    nearest: f64,
+    /// That point, in the frame.
+    place: DVec3,
+    /// Whether the ray starts so far away that it has to be moved nearer.
+    is_far: bool,
+}
+
+/// Where a ray enters a prototype.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    window: Window,
+    ray32: Ray32,
+    /// Whether anything can be hit; the rest has no meaning where not.
+    is_inside: bool,
 }

@@ -1,0 +1,50 @@
+//! The least that a query answers.
+
+use super::query::Nearest;
+use crate::scene::{PrototypeIndex, Scene};
+
+/// Where a ray first meets a surface, and which: what a query finds out before
+/// anything is worked out of it, as Embree's own queries do.
+/// [`Tracer::hit`](super::Tracer::hit) has the rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FirstHit {
+    /// The ray's parameter.
+    pub t: f64,
+    /// The hit of the ray in use, whose direction is of usual length.
+    pub(super) nearest: Nearest,
+}
+
+impl FirstHit {
+    /// The prototype that holds the solid.
+    #[must_use]
+    pub fn prototype(&self) -> PrototypeIndex {
+        self.nearest.place.prototype
+    }
+
+    /// The solid's number within its prototype, in the scene that was traced.
+    ///
+    /// # Panics
+    /// When the hit is of another scene.
+    #[must_use]
+    pub fn primitive(&self, scene: &Scene) -> u32 {
+        let prototype = &scene.prototypes[self.prototype().0 as usize];
+        prototype
+            .cylinders
+            .primitive(self.nearest.place.record as usize)
+    }
+
+    /// The placements from the root to the prototype, outermost first.
+    #[must_use]
+    pub fn instance(&self) -> &[u32] {
+        &self.nearest.place.path
+    }
+
+    /// A hit of the ray in use, with the factors that turn its `t` back.
+    #[inline]
+    pub(super) fn new(nearest: Nearest, [unit, lift]: [f64; 2]) -> Self {
+        Self {
+            t: nearest.t * unit * lift,
+            nearest,
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! Packets of rays on their way through prototypes: the steps of single rays,
+//! in rows of lanes.
+//!
+//! The loops are over functions that have no branch in them, and the compiler
+//! makes vector instructions of them: those of the instruction set for which
+//! they are [run](crate::embree::Instructions::run).
+
+use super::{Entry, Frame, Level, LocalRay, Window};
+use crate::embree::{GREATEST_PACKET, Kernel, RaySet, Rays32};
+use crate::math::{ChildFromParent, LANES, LaneVectors, Lanes};
+
+/// Rows of lanes that hold a packet.
+pub(crate) const ROWS: usize = GREATEST_PACKET / LANES;
+
+/// Something for every ray of a packet, in rows of lanes.
+pub(crate) type Rows<T> = [T; ROWS];
+
+/// The rays of a packet in a prototype's own space; see [`LocalRay`].
+#[derive(Clone)]
+pub(crate) struct PacketRays {
+    pub origin: Rows<LaneVectors>,
+    pub direction: Rows<LaneVectors>,
+    pub base: Rows<LaneVectors>,
+    pub shift: Rows<Lanes>,
+}
+
+/// The windows of the rays of a packet; see [`Window`].
+#[derive(Clone)]
+struct Windows {
+    shift: Rows<Lanes>,
+    nearest: Rows<Lanes>,
+    start: Rows<Lanes>,
+    rate: Rows<Lanes>,
+}
+
+/// A packet on its way through one prototype.
+#[derive(Clone)]
+pub(crate) struct PacketLevel {
+    /// The rays as the prototype's solvers get them.
+    pub rays: PacketRays,
+    windows: Windows,
+}
+
+/// A packet that has come to a prototype.
+pub(crate) struct PacketEntry {
+    pub level: PacketLevel,
+    /// The rays for its Embree scene.
+    pub rays32: Rays32,
+    /// Those that are inside.
+    pub entered: RaySet,
+}
+
+const ZEROS: Rows<Lanes> = [Lanes([0.0; LANES]); ROWS];
+const ORIGINS: Rows<LaneVectors> = [LaneVectors {
+    x: Lanes([0.0; LANES]),
+    y: Lanes([0.0; LANES]),
+    z: Lanes([0.0; LANES]),
+}; ROWS];
+
+impl PacketRays {
+    /// Sixteen times no ray.
+    pub const NOWHERE: Self = Self {
+        origin: ORIGINS,
+        direction: ORIGINS,
+        base: ORIGINS,
+        shift: ZEROS,
+    };
+
+    /// One of them.
+    #[inline(always)]
+    pub fn ray(&self, row: usize, lane: usize) -> LocalRay {
+        LocalRay {
+            origin: self.origin[row].lane(lane),
+            direction: self.direction[row].lane(lane),
+            base: self.base[row].lane(lane),
+            shift: self.shift[row].0[lane],
+        }
+    }
+
+    #[inline(always)]
+    pub fn set(&mut self, row: usize, lane: usize, ray: &LocalRay) {
+        self.origin[row].set(lane, ray.origin);
+        self.direction[row].set(lane, ray.direction);
+        self.base[row].set(lane, ray.base);
+        self.shift[row].0[lane] = ray.shift;
+    }
+}
+
+/// [`LocalRay::in_child`] of a packet.
+pub(crate) struct IntoChild<'a> {
+    pub rays: &'a PacketRays,
+    pub way: &'a ChildFromParent,
+}
+
+impl Kernel for IntoChild<'_> {
+    type Answer = PacketRays;
+
+    #[inline(always)]
+    fn run(self) -> PacketRays {
+        let mut in_child = PacketRays::NOWHERE;
+        for row in 0..ROWS {
+            for lane in 0..LANES {
+                let ray = self.rays.ray(row, lane).in_child(self.way);
+                in_child.set(row, lane, &ray);
+            }
+        }
+        in_child
+    }
+}
+
+/// [`Frame::enter`] of a packet.
+pub(crate) struct Enter<'a> {
+    pub frame: &'a Frame,
+    pub rays: &'a PacketRays,
+    /// Those that are to enter.
+    pub wanted: RaySet,
+    pub t_min: &'a Rows<Lanes>,
+    pub t_max: &'a Rows<Lanes>,
+}
+
+impl Kernel for Enter<'_> {
+    type Answer = PacketEntry;
+
+    #[inline(always)]
+    fn run(self) -> PacketEntry {
+        let mut entry = PacketEntry {
+            level: PacketLevel {
+                rays: self.rays.clone(),
+                windows: Windows {
+                    shift: ZEROS,
+                    nearest: ZEROS,
+                    start: ZEROS,
+                    rate: ZEROS,
+                },
+            },
+            rays32: Rays32 {
+                origin: [[0.0; GREATEST_PACKET]; 3],
+                direction: [[0.0; GREATEST_PACKET]; 3],
+                t_far: [0.0; GREATEST_PACKET],
+            },
+            entered: RaySet::EMPTY,
+        };
+        let (mut inside, mut far) = ([false; GREATEST_PACKET], [false; GREATEST_PACKET]);
+        for row in 0..ROWS {
+            for lane in 0..LANES {
+                let ray = self.rays.ray(row, lane);
+                let passing = self.frame.passing(&ray);
+                let (t_min, t_max) = (self.t_min[row].0[lane], self.t_max[row].0[lane]);
+                let one = self.frame.entry(&ray, &passing, t_min, t_max);
+                entry.set(row, lane, &one);
+                inside[row * LANES + lane] = one.is_inside;
+                far[row * LANES + lane] = passing.is_far;
+            }
+        }
+        let far = RaySet::of(&far) & self.wanted;
+        entry.entered = (RaySet::of(&inside) & self.wanted) - far;
+        if !far.is_empty() {
+            self.enter_from_afar(far, &mut entry);
+        }
+        entry
+    }
+}
+
+impl Enter<'_> {
+    /// Enters with rays that have to be moved nearer before.
+    #[cold]
+    #[inline(never)]
+    fn enter_from_afar(&self, far: RaySet, entry: &mut PacketEntry) {
+        for number in far {
+            let (row, lane) = (number / LANES, number % LANES);
+            let (ray, passing) = self.frame.approached(&self.rays.ray(row, lane));
+            let (t_min, t_max) = (self.t_min[row].0[lane], self.t_max[row].0[lane]);
+            let one = self.frame.entry(&ray, &passing, t_min, t_max);
+            entry.level.rays.set(row, lane, &ray);
+            entry.set(row, lane, &one);
+            if one.is_inside {
+                entry.entered.insert(number);
+            }
+        }
+    }
+}
+
+impl PacketEntry {
+    #[inline(always)]
+    fn set(&mut self, row: usize, lane: usize, entry: &Entry) {
+        let windows = &mut self.level.windows;
+        windows.shift[row].0[lane] = entry.window.shift;
+        windows.nearest[row].0[lane] = entry.window.nearest;
+        windows.start[row].0[lane] = entry.window.start;
+        windows.rate[row].0[lane] = entry.window.rate;
+        let number = row * LANES + lane;
+        for axis in 0..3 {
+            self.rays32.origin[axis][number] = entry.ray32.origin[axis];
+            self.rays32.direction[axis][number] = entry.ray32.direction[axis];
+        }
+        self.rays32.t_far[number] = entry.ray32.t_far;
+    }
+}
+
+impl PacketLevel {
+    /// The window of a ray.
+    #[inline(always)]
+    pub fn window(&self, ray: usize) -> Window {
+        let (row, lane) = (ray / LANES, ray % LANES);
+        Window {
+            shift: self.windows.shift[row].0[lane],
+            nearest: self.windows.nearest[row].0[lane],
+            start: self.windows.start[row].0[lane],
+            rate: self.windows.rate[row].0[lane],
+        }
+    }
+
+    /// A ray on its way alone.
+    pub fn of_ray(&self, ray: usize) -> Level {
+        Level {
+            ray: self.rays.ray(ray / LANES, ray % LANES),
+            window: self.window(ray),
+        }
+    }
+}

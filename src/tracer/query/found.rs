@@ -1,0 +1,141 @@
+//! The hits that a query keeps, and their order.
+
+use std::cmp::Ordering;
+
+use smallvec::SmallVec;
+
+use crate::scene::PrototypeIndex;
+use crate::solid::Meeting;
+
+/// The placements on the way from the root to a prototype, outermost first.
+/// Scenes are rarely nested deeper than what is kept without the heap.
+pub(crate) type InstancePath = SmallVec<[u32; 4]>;
+
+/// Which solid of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Place {
+    pub prototype: PrototypeIndex,
+    /// The position in the prototype's list of cylinders.
+    pub record: u32,
+    pub path: InstancePath,
+}
+
+/// The first hit of a ray, as far as a query works it out.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Nearest {
+    pub t: f64,
+    pub place: Place,
+}
+
+impl Nearest {
+    /// Whether a solid that is met at `t` comes before this one: by `t`, then by
+    /// the instance path, then by the primitive's number. `primitive` answers with
+    /// the number of a record of the solid's prototype, which for equal paths
+    /// is this one's too.
+    #[inline]
+    pub fn is_after(
+        &self,
+        t: f64,
+        path: &InstancePath,
+        record: u32,
+        primitive: impl Fn(u32) -> u32,
+    ) -> bool {
+        if t != self.t {
+            return t < self.t;
+        }
+        let by_path = path.cmp(&self.place.path);
+        let order = by_path.then_with(|| primitive(record).cmp(&primitive(self.place.record)));
+        order.is_lt()
+    }
+}
+
+/// One of all hits, as a query keeps it: what is needed to work it out
+/// afterwards.
+#[derive(Clone, Debug)]
+pub(crate) struct Found {
+    pub meeting: Meeting,
+    /// The number that the user knows the solid by.
+    pub primitive: u32,
+    pub place: Place,
+}
+
+impl Found {
+    /// How a hit that is not kept yet compares with this one: by `t`, then by
+    /// the instance path, the primitive, entry before exit, and the part. No
+    /// two hits of a ray are equal.
+    #[inline]
+    fn order(&self, meeting: &Meeting, path: &InstancePath, primitive: u32) -> Ordering {
+        let by_t = meeting.t.partial_cmp(&self.meeting.t);
+        by_t.expect("a hit's t is a number").then_with(|| {
+            (path, primitive, meeting.crossing, meeting.part).cmp(&(
+                &self.place.path,
+                self.primitive,
+                self.meeting.crossing,
+                self.meeting.part,
+            ))
+        })
+    }
+}
+
+/// What a query is after.
+#[derive(Debug)]
+pub(crate) enum Keep {
+    /// The first hit.
+    First(Option<Nearest>),
+    /// The next hits after one that is known.
+    Next(Next),
+}
+
+/// The next hits after one that is known, at most so many.
+#[derive(Debug)]
+pub(crate) struct Next {
+    pub after: Option<Found>,
+    pub most: usize,
+    /// In order.
+    pub hits: Vec<Found>,
+}
+
+impl Keep {
+    /// The greatest `t` of a hit that would be kept.
+    #[inline]
+    pub fn bound(&self, t_max: f64) -> f64 {
+        match self {
+            Self::First(first) => first.as_ref().map_or(t_max, |first| first.t),
+            Self::Next(next) if next.hits.len() == next.most => {
+                next.hits.last().map_or(t_max, |last| last.meeting.t)
+            }
+            Self::Next(_) => t_max,
+        }
+    }
+}
+
+impl Next {
+    /// Keeps a hit if it is wanted.
+    #[inline]
+    pub fn offer(
+        &mut self,
+        meeting: Meeting,
+        path: &InstancePath,
+        primitive: u32,
+        place: impl FnOnce() -> Place,
+    ) {
+        let order = |kept: &Found| kept.order(&meeting, path, primitive);
+        if self
+            .after
+            .as_ref()
+            .is_some_and(|after| order(after).is_le())
+        {
+            return;
+        }
+        let position = self.hits.partition_point(|kept| order(kept).is_gt());
+        if position < self.most {
+            self.hits.truncate(self.most - 1);
+            let found = Found {
+                meeting,
+                primitive,
+                place: place(),
+            };
+            self.hits.insert(position, found);
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! The state of queries: rays in f64, and the hits so far.
+//!
+//! It travels through Embree in the query context. Embree's own f32 rays only
+//! find candidates; what is a hit, and which is nearer, is decided here on
+//! f64 alone, for single rays ([`Query`]) as for packets of rays ([`Packet`]).
+
+mod found;
+mod packet;
+mod single;
+
+pub(crate) use found::{Found, Keep, Nearest, Place};
+pub(crate) use packet::Packet;
+pub(crate) use single::Query;

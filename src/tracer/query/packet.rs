@@ -1,0 +1,234 @@
+//! A query of up to sixteen rays that go through Embree together.
+//!
+//! The rays of one level stand side by side for the solver, eight to a row of
+//! lanes, in the order that the caller gave them; and one by one, for what is
+//! worked out ray by ray. The answers are those of sixteen single queries, bit
+//! for bit: the arithmetic is the same in every lane, and no ray's answer
+//! depends on another's.
+
+use super::found::{InstancePath, Keep, Nearest, Place};
+use super::single::Query;
+use crate::embree::{GREATEST_PACKET, Instructions, RaySet};
+use crate::math::{LANES, LaneMask, LaneVectors, Lanes};
+use crate::solid::Cylinder;
+use crate::solid::lanes::{self, CylinderLanes, RayLanes};
+use crate::tracer::counters;
+use crate::tracer::frame::{Enter, Frame, Level, PacketEntry, PacketLevel, PacketRays, ROWS, Rows};
+use crate::tracer::prototype::{Cylinders, Ends};
+
+/// A packet on its way.
+pub(crate) struct Packet {
+    t_min: Rows<Lanes>,
+    t_max: Rows<Lanes>,
+    /// The greatest `t` that can still be a first hit.
+    bound: Rows<Lanes>,
+    nearest: [Option<Nearest>; GREATEST_PACKET],
+    pub path: InstancePath,
+    /// The rays in the prototypes on the way, the one being traced last.
+    levels: Vec<PacketLevel>,
+    /// How often Embree has called back for it, which is what it costs.
+    pub callbacks: u32,
+}
+
+impl Packet {
+    /// A packet of no rays.
+    pub fn new() -> Self {
+        let nowhere = [Lanes::splat(0.0); ROWS];
+        Self {
+            t_min: nowhere,
+            t_max: nowhere,
+            bound: nowhere,
+            nearest: [const { None }; GREATEST_PACKET],
+            path: InstancePath::new(),
+            levels: Vec::new(),
+            callbacks: 0,
+        }
+    }
+
+    /// Begins anew with rays in these ranges, for their first hits or whether
+    /// there are any.
+    pub fn begin(&mut self, t_min: Rows<Lanes>, t_max: Rows<Lanes>) {
+        (self.t_min, self.t_max, self.bound) = (t_min, t_max, t_max);
+        self.nearest.fill(None);
+        self.callbacks = 0;
+    }
+
+    /// The first hit of a ray.
+    pub fn take_nearest(&mut self, ray: usize) -> Option<Nearest> {
+        self.nearest[ray].take()
+    }
+
+    /// The rays in a prototype, of which those have entered that could find part
+    /// of the answer there.
+    pub fn enter(
+        &self,
+        frame: &Frame,
+        wanted: RaySet,
+        rays: &PacketRays,
+        instructions: Instructions,
+    ) -> PacketEntry {
+        instructions.run(Enter {
+            frame,
+            rays,
+            wanted,
+            t_min: &self.t_min,
+            t_max: &self.bound,
+        })
+    }
+
+    /// Runs `trace` with the rays of a further prototype.
+    pub fn within<T>(&mut self, level: PacketLevel, trace: impl FnOnce(&mut Self) -> T) -> T {
+        self.levels.push(level);
+        let answer = trace(self);
+        self.levels.pop();
+        answer
+    }
+
+    /// Runs `trace` with a query of one ray of the packet, and keeps its answer.
+    pub fn alone<T>(&mut self, ray: usize, level: Level, trace: impl FnOnce(&mut Query) -> T) -> T {
+        let (t_min, t_max) = (lane(&self.t_min, ray), lane(&self.t_max, ray));
+        let path = std::mem::take(&mut self.path);
+        let mut query = Query::new(t_min, t_max, path, self.nearest[ray].take());
+        query.level = Some(level);
+        let answer = trace(&mut query);
+        self.callbacks += query.callbacks;
+        if let Keep::First(nearest) = query.keep {
+            if let Some(nearest) = &nearest {
+                set_lane(&mut self.bound, ray, nearest.t);
+            }
+            self.nearest[ray] = nearest;
+        }
+        self.path = query.path;
+        answer
+    }
+
+    /// The level that callbacks run in.
+    #[inline(always)]
+    fn level(&self) -> &PacketLevel {
+        self.levels
+            .last()
+            .expect("callbacks run within a prototype")
+    }
+
+    /// The rays in the prototype that is being traced.
+    #[inline(always)]
+    pub fn rays(&self) -> &PacketRays {
+        &self.level().rays
+    }
+
+    /// The greatest `t` that can still be part of a ray's answer.
+    #[inline(always)]
+    pub fn bound(&self, ray: usize) -> f64 {
+        lane(&self.bound, ray)
+    }
+
+    /// The `t_far` that leaves room for all hits that a ray would keep.
+    #[inline(always)]
+    pub fn t_far(&self, ray: usize) -> f32 {
+        self.level().window(ray).t_far(self.bound(ray))
+    }
+
+    /// Keeps the points where rays first meet a cylinder of the current
+    /// prototype, if they are before the known ones. Answers with the rays that
+    /// end earlier now, whose `t_far` is set. `cylinder` is that of the record.
+    #[inline(always)]
+    pub fn visit<E: Ends>(
+        &mut self,
+        cylinder: &Cylinder,
+        (cylinders, record): (&Cylinders, u32),
+        rays: RaySet,
+        t_far: &mut [f32; GREATEST_PACKET],
+    ) -> RaySet {
+        let mut shorter = RaySet::EMPTY;
+        for row in 0..ROWS {
+            let wanted = (rays.bits() >> (row * LANES)) as u8;
+            if wanted == 0 {
+                continue;
+            }
+            let (met, t) = self.first::<E>(cylinder, row, wanted, &self.bound[row]);
+            let mut met = met.bits();
+            while met != 0 {
+                let in_row = met.trailing_zeros() as usize;
+                met &= met - 1;
+                let ray = row * LANES + in_row;
+                if self.offer(ray, t.0[in_row], cylinders, record) {
+                    t_far[ray] = self.t_far(ray);
+                    shorter.insert(ray);
+                }
+            }
+        }
+        shorter
+    }
+
+    /// Those of the rays that meet a cylinder of the current prototype.
+    #[inline(always)]
+    pub fn meets<E: Ends>(&self, cylinder: &Cylinder, rays: RaySet) -> RaySet {
+        let mut blocked = 0;
+        for row in 0..ROWS {
+            let wanted = (rays.bits() >> (row * LANES)) as u8;
+            if wanted != 0 {
+                let (met, _) = self.first::<E>(cylinder, row, wanted, &self.t_max[row]);
+                blocked |= u16::from(met.bits()) << (row * LANES);
+            }
+        }
+        RaySet::from_bits(blocked)
+    }
+
+    /// Where the rays of a row that are `wanted` first meet a cylinder.
+    #[inline(always)]
+    fn first<E: Ends>(
+        &self,
+        cylinder: &Cylinder,
+        row: usize,
+        wanted: u8,
+        t_max: &Lanes,
+    ) -> (LaneMask, Lanes) {
+        counters::solved(wanted.count_ones());
+        let rays = self.rays();
+        let p0 = LaneVectors::splat(cylinder.p0());
+        let cylinders = CylinderLanes {
+            axis: LaneVectors::splat(cylinder.p1() - cylinder.p0()),
+            radius: Lanes::splat(cylinder.radius()),
+            caps: E::of_one(cylinder.caps()),
+        };
+        let in_row = RayLanes {
+            from_p0: rays.origin[row] - (p0 - rays.base[row]),
+            direction: rays.direction[row],
+            shift: rays.shift[row],
+            t_min: self.t_min[row],
+            t_max: *t_max,
+        };
+        lanes::first(&cylinders, &in_row, &LaneMask::from_bits(wanted))
+    }
+
+    /// Keeps a ray's first hit if it is before the one that is known.
+    #[inline(always)]
+    fn offer(&mut self, ray: usize, t: f64, cylinders: &Cylinders, record: u32) -> bool {
+        let (nearest, path) = (&mut self.nearest[ray], &self.path);
+        let is_first = nearest.as_ref().is_none_or(|known| {
+            known.is_after(t, path, record, |record| cylinders.primitive(record))
+        });
+        if is_first {
+            *nearest = Some(Nearest {
+                t,
+                place: Place {
+                    prototype: cylinders.prototype(),
+                    record,
+                    path: path.clone(),
+                },
+            });
+            set_lane(&mut self.bound, ray, t);
+        }
+        is_first
+    }
+}
+
+#[inline(always)]
+fn lane(rows: &Rows<Lanes>, ray: usize) -> f64 {
+    rows[ray / LANES].0[ray % LANES]
+}
+
+#[inline(always)]
+fn set_lane(rows: &mut Rows<Lanes>, ray: usize, value: f64) {
+    rows[ray / LANES].0[ray % LANES] = value;
+}

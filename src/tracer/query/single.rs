@@ -1,0 +1,200 @@
+//! A query of one ray.
+
+use super::found::{Found, InstancePath, Keep, Nearest, Next, Place};
+use crate::embree::{self, Ray32};
+use crate::math::{LaneMask, Lanes, Ray};
+use crate::solid::{Cylinder, Meeting, triple_product};
+use crate::tracer::counters;
+use crate::tracer::frame::{Frame, Level, LocalRay};
+use crate::tracer::prototype::{CylinderBlock, Cylinders, Ends};
+
+/// A query on its way.
+#[derive(Debug)]
+pub(crate) struct Query {
+    t_min: f64,
+    t_max: f64,
+    /// The ray in the prototype that is being traced.
+    pub level: Option<Level>,
+    pub path: InstancePath,
+    pub keep: Keep,
+    /// How often Embree has called back for it, which is what it costs.
+    pub callbacks: u32,
+}
+
+impl embree::Query for Query {
+    type Packet = super::Packet;
+}
+
+impl Query {
+    /// A query for the first hit, or whether there is any.
+    pub fn first(ray: &Ray) -> Self {
+        Self::new(ray.t_min, ray.t_max, InstancePath::new(), None)
+    }
+
+    /// A query for the first hit in a range, on the way along `path`, where one
+    /// is known.
+    pub fn new(t_min: f64, t_max: f64, path: InstancePath, nearest: Option<Nearest>) -> Self {
+        Self {
+            t_min,
+            t_max,
+            level: None,
+            path,
+            keep: Keep::First(nearest),
+            callbacks: 0,
+        }
+    }
+
+    /// A query for the next hits after one, at most `most`.
+    pub fn next(ray: &Ray, after: Option<Found>, most: usize) -> Self {
+        let hits = Vec::new();
+        Self {
+            keep: Keep::Next(Next { after, most, hits }),
+            ..Self::first(ray)
+        }
+    }
+
+    /// The greatest `t` that can still be part of the answer.
+    #[inline(always)]
+    pub fn bound(&self) -> f64 {
+        self.keep.bound(self.t_max)
+    }
+
+    /// The least `t` that can be part of the answer. The range as it was asked
+    /// for begins earlier, and stays what solids are met in: a ray within a disc
+    /// meets it where its range begins.
+    #[inline]
+    fn start(&self) -> f64 {
+        match &self.keep {
+            Keep::Next(Next {
+                after: Some(after), ..
+            }) => after.meeting.t,
+            Keep::First(_) | Keep::Next(_) => self.t_min,
+        }
+    }
+
+    /// The ray in a prototype, if anything there could be part of the answer.
+    #[inline]
+    pub fn enter(&self, frame: &Frame, ray: &LocalRay) -> Option<(Level, Ray32)> {
+        frame.enter(ray, self.start(), self.bound())
+    }
+
+    /// The level that callbacks run in.
+    #[inline(always)]
+    pub fn level(&self) -> &Level {
+        self.level
+            .as_ref()
+            .expect("callbacks run within a prototype")
+    }
+
+    /// The first point, up to `t_max`, where the ray meets a cylinder of the
+    /// current prototype.
+    #[inline(always)]
+    fn first_meeting(&self, cylinder: &Cylinder, t_max: f64) -> Option<Meeting> {
+        counters::solved(1);
+        let LocalRay {
+            direction, shift, ..
+        } = self.level().ray;
+        let from_p0 = self.level().ray.origin_from(cylinder.p0());
+        triple_product::first(cylinder, from_p0, direction, shift, self.t_min, t_max)
+    }
+
+    /// Whether the ray meets a cylinder of the current prototype.
+    #[inline(always)]
+    pub fn meets(&self, cylinder: &Cylinder) -> bool {
+        self.first_meeting(cylinder, self.t_max).is_some()
+    }
+
+    /// Keeps of the points where the ray meets a cylinder of the current
+    /// prototype those that are wanted. `cylinder` is that of the record.
+    #[inline(always)]
+    pub fn visit(&mut self, cylinder: &Cylinder, cylinders: &Cylinders, record: u32) {
+        if let Keep::First(_) = self.keep {
+            if let Some(meeting) = self.first_meeting(cylinder, self.bound()) {
+                self.offer(meeting.t, cylinders, record);
+            }
+        } else {
+            self.visit_all(cylinder, cylinders, record);
+        }
+    }
+
+    /// As [`Query::visit`], where all hits are asked for.
+    #[cold]
+    fn visit_all(&mut self, cylinder: &Cylinder, cylinders: &Cylinders, record: u32) {
+        let ray = &self.level().ray;
+        let (from_p0, shift) = (ray.origin_from(cylinder.p0()), ray.shift);
+        let Some(chord) = triple_product::chord(cylinder, from_p0, ray.direction) else {
+            return;
+        };
+        let bound = self.bound();
+        let Keep::Next(next) = &mut self.keep else {
+            return;
+        };
+        let (prototype, primitive) = (cylinders.prototype(), cylinders.primitive(record));
+        for meeting in chord.meetings(cylinder.caps(), shift, self.t_min, bound) {
+            next.offer(meeting, &self.path, primitive, || Place {
+                prototype,
+                record,
+                path: self.path.clone(),
+            });
+        }
+    }
+
+    /// Keeps a first hit if it is before the one that is known.
+    #[inline(always)]
+    fn offer(&mut self, t: f64, cylinders: &Cylinders, record: u32) {
+        let Keep::First(nearest) = &mut self.keep else {
+            return;
+        };
+        let path = &self.path;
+        let is_first = nearest.as_ref().is_none_or(|known| {
+            known.is_after(t, path, record, |record| cylinders.primitive(record))
+        });
+        if is_first {
+            *nearest = Some(Nearest {
+                t,
+                place: Place {
+                    prototype: cylinders.prototype(),
+                    record,
+                    path: path.clone(),
+                },
+            });
+        }
+    }
+
+    /// As [`Query::visit`] for all cylinders of a block.
+    #[inline(always)]
+    pub fn visit_block<E: Ends>(&mut self, block: &impl CylinderBlock, cylinders: &Cylinders) {
+        if let Keep::Next(_) = self.keep {
+            for record in block.records() {
+                self.visit_all(&cylinders.cylinder(record), cylinders, record);
+            }
+            return;
+        }
+        let (met, t) = self.first_of_block::<E>(block, self.bound());
+        let mut met = met.bits();
+        while met != 0 {
+            let lane = met.trailing_zeros() as usize;
+            met &= met - 1;
+            self.offer(t.0[lane], cylinders, block.record(lane));
+        }
+    }
+
+    /// Whether the ray meets a cylinder of a block.
+    #[inline(always)]
+    pub fn meets_block<E: Ends>(&self, block: &impl CylinderBlock) -> bool {
+        self.first_of_block::<E>(block, self.t_max).0.bits() != 0
+    }
+
+    /// Where the ray first meets each cylinder of a block, up to `t_max`.
+    #[inline(always)]
+    fn first_of_block<E: Ends>(&self, block: &impl CylinderBlock, t_max: f64) -> (LaneMask, Lanes) {
+        counters::solved(1);
+        block.first::<E>(&self.level().ray, self.t_min, t_max)
+    }
+
+    /// The `t_far` that leaves room for all hits that would be kept.
+    #[inline(always)]
+    pub fn t_far(&self) -> f32 {
+        self.level().window.t_far(self.bound())
+    }
+}

@@ -1,0 +1,107 @@
+//! What was built, and what was not.
+
+use std::slice;
+use std::sync::Arc;
+
+use super::build::Plan;
+use super::estimate::MemoryEstimate;
+use super::options::Options;
+use super::prototype::Prototype;
+use crate::scene::{Placement, PrototypeIndex, Scene};
+
+/// What was built, and what was not.
+#[derive(Clone, Debug)]
+pub struct Statistics {
+    /// Cylinders in the prototypes that the root places.
+    pub cylinders_unique: u64,
+    /// Cylinders in the scene with every placement counted.
+    pub cylinders_instanced: u128,
+    /// Placements in the scene, those within placed prototypes counted each
+    /// time.
+    pub instances: u128,
+    /// Memory that Embree holds.
+    pub embree_bytes: usize,
+    /// Memory of the records of cylinders and placements.
+    pub records_bytes: usize,
+    /// What was left out because the scene does not need it, so far.
+    pub skipped: Vec<String>,
+    /// The version of the Embree library.
+    pub embree_version: String,
+    /// The instruction set in use.
+    pub isa: String,
+}
+
+/// What stays the same of a tracer's statistics.
+pub(super) struct Counted {
+    pub cylinders_unique: u64,
+    pub cylinders_instanced: u128,
+    pub instances: u128,
+    pub described_bytes: usize,
+    /// The prototypes that the root needs.
+    needed: Vec<PrototypeIndex>,
+}
+
+impl Counted {
+    pub fn new(scene: &Scene, plan: &Plan) -> Self {
+        let cylinders =
+            |index: &PrototypeIndex| scene.prototypes[index.0 as usize].cylinders.len() as u64;
+        Self {
+            cylinders_unique: plan.order.iter().map(cylinders).sum(),
+            cylinders_instanced: plan.instanced_cylinders[0],
+            instances: plan.instances[0],
+            described_bytes: described_bytes(scene),
+            needed: plan.order.clone(),
+        }
+    }
+
+    /// A sentence for each prototype that was not built, and one for rows that
+    /// are no solid.
+    pub fn skipped(
+        &self,
+        scene: &Scene,
+        made: &[Option<Arc<Prototype>>],
+        options: &Options,
+    ) -> Vec<String> {
+        let rows = (scene.skipped_rows > 0)
+            .then(|| format!("degenerate rows of tables: {}", scene.skipped_rows));
+        let contents = scene.contents();
+        let unbuilt = contents.iter().enumerate().filter_map(|(index, contents)| {
+            let name = match contents.name.as_str() {
+                "" => "the scene itself".to_owned(),
+                name => format!("prototype \"{name}\""),
+            };
+            if !self.needed.contains(&PrototypeIndex(index as u32)) {
+                return Some(format!("{name} is placed nowhere: not built"));
+            }
+            let made = made[index].as_ref()?;
+            (!made.is_touched()).then(|| {
+                let estimate =
+                    MemoryEstimate::of(slice::from_ref(contents), options.layout, options.max_isa);
+                format!(
+                    "{name} was reached by no ray: not built ({} cylinders and {} placements), which saves about {:.1} MB",
+                    contents.cylinders,
+                    contents.placements(),
+                    (estimate.embree_bytes + estimate.copies_bytes) as f64 / 1e6
+                )
+            })
+        });
+        let out_of_view = made
+            .first()
+            .and_then(|root| Some(root.as_ref()?.placements_out_of_view()))
+            .filter(|&count| count > 0)
+            .map(|count| format!("{count} placements are out of the camera's view: not built"));
+        let general = rows.into_iter().chain(out_of_view);
+        general.chain(unbuilt).collect()
+    }
+}
+
+/// The memory of what the description keeps for solids and placements.
+fn described_bytes(scene: &Scene) -> usize {
+    let prototypes = scene.prototypes.iter();
+    prototypes
+        .map(|prototype| {
+            prototype.cylinders.records_bytes()
+                + prototype.placements.len() * size_of::<Placement>()
+        })
+        .sum()
+}
