@@ -1,7 +1,7 @@
 //! The comparison itself: who takes part, and what is found of each.
 
 use super::rivals::{Native, SIDES, Shape, Traced};
-use super::statistics::Spread;
+use super::statistics::{Spread, ratios};
 use super::timing::{Rounds, Timer, interleave};
 use super::truth::{Errors, JudgedCases};
 use crate::embree::DeviceOptions;
@@ -250,14 +250,6 @@ impl Accuracy {
             rows,
         }
     }
-}
-
-/// Round by round, so that what slowed a round slows both.
-fn ratios(seconds: &[f64], baseline: &[f64]) -> Vec<f64> {
-    let pairs = seconds.iter().zip(baseline);
-    pairs
-        .map(|(seconds, baseline)| seconds / baseline)
-        .collect()
 }
 
 #[cfg(test)]

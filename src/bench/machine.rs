@@ -17,7 +17,7 @@ pub struct Circumstances {
     /// The sources it was compiled from, if whoever compiled it set
     /// `CYLTRACE_COMMIT`.
     pub commit: Option<&'static str>,
-    /// Cases of each family.
+    /// Cases of each family, or rays of each kind.
     pub cases: u64,
     /// Chooses the cases.
     pub seed: u64,
@@ -45,6 +45,18 @@ impl Circumstances {
     /// All of it in a sentence or two.
     #[must_use]
     pub fn sentence(&self) -> String {
+        format!(
+            "{} cases a family on f32 inputs, seed {}, {} rounds. {}",
+            self.cases,
+            self.seed,
+            self.rounds,
+            self.place()
+        )
+    }
+
+    /// The machine and the program, as a sentence.
+    #[must_use]
+    pub fn place(&self) -> String {
         let compiled = if self.target_features.is_empty() {
             String::from("the default target")
         } else {
@@ -54,8 +66,8 @@ impl Circumstances {
             .commit
             .map_or_else(String::new, |commit| format!(" from {commit}"));
         format!(
-            "{} cases a family on f32 inputs, seed {}, {} rounds. {}; compiled for {compiled}{commit}; Embree on {}.",
-            self.cases, self.seed, self.rounds, self.machine, self.isa
+            "{}; compiled for {compiled}{commit}; Embree on {}.",
+            self.machine, self.isa
         )
     }
 }

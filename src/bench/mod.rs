@@ -1,9 +1,10 @@
-//! Run time against error.
+//! Run time against error, and against size.
 //!
 //! [`Accuracy::measure`] asks every formulation and rival about the same cases
 //! and compares the answers with the oracle's (`truth`); then it runs them in
 //! turns on the ordinary ones (`timing`). [`Accuracy`] is the outcome, and
-//! [`figure`], [`page`] and [`table`] show it.
+//! [`figure`], [`page`] and [`table`] show it. [`traversal`] compares whole
+//! scenes, [`scale`] follows this library to large ones.
 
 mod accuracy;
 mod machine;
@@ -11,8 +12,10 @@ mod outputs;
 mod rivals;
 #[cfg(test)]
 mod samples;
+pub mod scale;
 mod statistics;
 mod timing;
+pub mod traversal;
 mod truth;
 
 pub use accuracy::{

@@ -30,6 +30,16 @@ impl Spread {
     }
 }
 
+/// One time over another, round by round, so that what slowed a round slows
+/// both.
+#[must_use]
+pub fn ratios(seconds: &[f64], baseline: &[f64]) -> Vec<f64> {
+    let pairs = seconds.iter().zip(baseline);
+    pairs
+        .map(|(seconds, baseline)| seconds / baseline)
+        .collect()
+}
+
 /// The number in the middle, or between the two that are.
 fn median(numbers: &[f64]) -> f64 {
     assert!(!numbers.is_empty(), "nothing has no median");

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::statistics::p99;
 use crate::cases::{Family, Inputs};
-use crate::oracle::{CylinderTruth, exact, first_hit, to_f64};
+use crate::oracle::{TrueHit, exact, first_hit, to_f64};
 use crate::solid::formulations::{Formulation, Problem};
 
 /// Problems handed to a formulation at a time, so that threads share the work.
@@ -13,9 +13,24 @@ const AT_A_TIME: usize = 64;
 /// The exact parameter of a hit as two numbers, good to some 2^-100: the
 /// errors of f64 solvers are themselves a few 2^-53.
 #[derive(Clone, Copy, Debug)]
-struct TrueT {
+pub(super) struct TrueT {
     nearest: f64,
     rest: f64,
+}
+
+impl TrueT {
+    /// That of a hit.
+    pub fn of(hit: &TrueHit) -> Self {
+        let nearest = hit.t_f64();
+        let rest = to_f64(&(&hit.t - exact(nearest)));
+        Self { nearest, rest }
+    }
+
+    /// How far an answer is off. The difference of two near numbers is exact,
+    /// so nothing is lost in it.
+    pub fn off(&self, t: f64) -> f64 {
+        ((t - self.nearest) - self.rest).abs()
+    }
 }
 
 /// Problems of one kind, with their answers worked out once.
@@ -56,7 +71,10 @@ impl JudgedCases {
     pub fn new(name: &'static str, problems: Vec<Problem>) -> Self {
         let truths = problems
             .par_iter()
-            .map(|problem| true_t(&first_hit(&problem.cylinder, &problem.ray)))
+            .map(|problem| {
+                let truth = first_hit(&problem.cylinder, &problem.ray);
+                truth.hit.as_ref().map(TrueT::of)
+            })
             .collect();
         Self {
             name,
@@ -118,18 +136,9 @@ pub fn draw(family: Family, seed: u64, count: u64) -> Vec<Problem> {
     (0..count).into_par_iter().map(case).collect()
 }
 
-fn true_t(truth: &CylinderTruth) -> Option<TrueT> {
-    let hit = truth.hit.as_ref()?;
-    let nearest = hit.t_f64();
-    let rest = to_f64(&(&hit.t - exact(nearest)));
-    Some(TrueT { nearest, rest })
-}
-
-/// How far along the ray the answer is from the truth, in radii. The
-/// difference of two near numbers is exact, so nothing is lost in it.
+/// How far along the ray the answer is from the truth, in radii.
 fn position_error(problem: &Problem, truth: &TrueT, t: f64) -> f64 {
-    let off = ((t - truth.nearest) - truth.rest).abs();
-    off * problem.ray.direction.length() / problem.cylinder.radius()
+    truth.off(t) * problem.ray.direction.length() / problem.cylinder.radius()
 }
 
 #[cfg(test)]

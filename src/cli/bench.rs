@@ -1,6 +1,10 @@
 //! `cyltrace bench`.
 
+mod scale;
+mod traversal;
+
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use anyhow::bail;
 use cyltrace::bench::{
@@ -13,7 +17,7 @@ use cyltrace::solid::formulations;
 use cyltrace::tracer::Options;
 use serde_json::{Value, json};
 
-use super::arguments::{AccuracyArguments, Bench, BenchArguments};
+use super::arguments::{AccuracyArguments, Bench, BenchArguments, Common};
 use super::print::print;
 use super::target::{make_directory, write_text};
 use super::{interrupt, json, progress, scene};
@@ -22,6 +26,8 @@ use super::{interrupt, json, progress, scene};
 pub fn run(arguments: &BenchArguments) -> anyhow::Result<()> {
     match &arguments.bench {
         Bench::Accuracy(arguments) => accuracy(arguments),
+        Bench::Traversal(arguments) => traversal::run(arguments),
+        Bench::Scale(arguments) => scale::run(arguments),
     }
 }
 
@@ -80,14 +86,8 @@ fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
         write_text(&directory.join("index.html"), &page(&found, &circumstances))?;
     }
     json::write(common, &figures(&found, &circumstances))?;
-    if common.prints() {
-        let mut text = summary_text(&found, &circumstances);
-        if let Some(directory) = &arguments.report {
-            text += &format!("report: {}\n", directory.join("index.html").display());
-        }
-        print(&text)?;
-    }
-    Ok(())
+    let text = summary_text(&found, &circumstances);
+    tell(common, text, arguments.report.as_deref())
 }
 
 /// Those that take part: all, or the ones that are named.
@@ -97,6 +97,7 @@ fn contenders_of(arguments: &AccuracyArguments) -> anyhow::Result<Vec<Contender>
     let options = Options {
         threads: arguments.common.threads,
         max_isa: arguments.common.max_isa,
+        ..Options::default()
     };
     Ok(contenders(formulations::all(), &options, is_wanted)?)
 }
@@ -154,16 +155,45 @@ fn figures(found: &Accuracy, circumstances: &Circumstances) -> Value {
             "ns_by_round": row.ns_by_round,
         })
     };
-    json!({
+    let figures = json!({
         "formulations": found.rows.iter().map(formulation).collect::<Vec<_>>(),
         "samples": found.rows.iter().map(sample).collect::<Vec<_>>(),
         "spread": "median absolute deviation",
-        "machine": circumstances.machine,
-        "isa": circumstances.isa,
-        "target_features": circumstances.target_features,
-        "commit": circumstances.commit,
-        "cases": circumstances.cases,
-        "seed": circumstances.seed,
-        "rounds": circumstances.rounds,
-    })
+    });
+    with_circumstances(figures, circumstances, "cases")
+}
+
+/// The figures with what they depend on behind them; `count` is what there are
+/// [`Circumstances::cases`] of.
+fn with_circumstances(mut figures: Value, circumstances: &Circumstances, count: &str) -> Value {
+    figures["machine"] = json!(circumstances.machine);
+    figures["isa"] = json!(circumstances.isa);
+    figures["target_features"] = json!(circumstances.target_features);
+    figures["commit"] = json!(circumstances.commit);
+    figures[count] = json!(circumstances.cases);
+    figures["seed"] = json!(circumstances.seed);
+    figures["rounds"] = json!(circumstances.rounds);
+    figures
+}
+
+/// What rays through whole scenes depend on, as a sentence.
+fn rays_sentence(circumstances: &Circumstances) -> String {
+    format!(
+        "{} rays of each kind, seed {}, {} rounds. {}",
+        circumstances.cases,
+        circumstances.seed,
+        circumstances.rounds,
+        circumstances.place()
+    )
+}
+
+/// Prints what people read, and where the report is.
+fn tell(common: &Common, mut text: String, report: Option<&Path>) -> anyhow::Result<()> {
+    if !common.prints() {
+        return Ok(());
+    }
+    if let Some(directory) = report {
+        text += &format!("report: {}\n", directory.join("index.html").display());
+    }
+    print(&text)
 }

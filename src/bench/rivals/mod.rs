@@ -20,6 +20,7 @@ use glam::DVec3;
 use crate::solid::formulations::{Answer, Batch, Formulation, Precision, Problem};
 use crate::solid::{Caps, Cylinder};
 
+pub(super) use native::ray_for_embree;
 pub use native::{Native, SIDES, Shape};
 pub use spaced::Spaced;
 pub use traced::Traced;

@@ -10,7 +10,7 @@ use crate::embree::{
 };
 use crate::math::Ray;
 use crate::solid::formulations::{Answer, Batch, Precision, Problem};
-use crate::solid::tessellation::{Mesh, inscribed_prism};
+use crate::solid::tessellation::{inscribed_prism, prism_size};
 use crate::solid::{Caps, Cylinder, Part};
 
 /// The meshes, by the number of their sides.
@@ -35,6 +35,74 @@ pub enum Shape {
     Cone,
     /// The inscribed prism with so many sides.
     Mesh(u32),
+}
+
+impl Shape {
+    /// Attaches one geometry of all these cylinders, in their order.
+    ///
+    /// # Errors
+    /// When Embree refuses one.
+    pub fn attach(
+        self,
+        builder: &mut SceneBuilder<()>,
+        cylinders: impl Iterator<Item = Cylinder>,
+    ) -> Result<(), Error> {
+        match self {
+            Self::Cone => attach_cones(builder, cylinders),
+            Self::Mesh(sides) => attach_meshes(builder, cylinders, sides),
+        }
+    }
+
+    /// How many of Embree's primitives a cylinder with these discs becomes.
+    #[must_use]
+    pub fn primitives(self, caps: Caps) -> u64 {
+        match self {
+            Self::Cone => 1,
+            Self::Mesh(sides) => prism_size(caps, sides).1,
+        }
+    }
+}
+
+fn attach_cones(
+    builder: &mut SceneBuilder<()>,
+    cylinders: impl Iterator<Item = Cylinder>,
+) -> Result<(), Error> {
+    let (mut vertices, mut first, mut neighbours) = (Vec::new(), Vec::new(), Vec::new());
+    for cylinder in cylinders {
+        first.push(vertices.len() as u32);
+        for end in [cylinder.p0(), cylinder.p1()] {
+            let [x, y, z] = end.as_vec3().to_array();
+            vertices.push([x, y, z, cylinder.radius() as f32]);
+        }
+        // An end without disc is one that a neighbour continues.
+        neighbours.push(match cylinder.caps() {
+            Caps::Both => 0,
+            Caps::P1 => 1,
+            Caps::P0 => 2,
+            Caps::None => 3,
+        });
+    }
+    builder.attach_cone_curves(&vertices, &first, Some(&neighbours))?;
+    Ok(())
+}
+
+fn attach_meshes(
+    builder: &mut SceneBuilder<()>,
+    cylinders: impl Iterator<Item = Cylinder>,
+    sides: u32,
+) -> Result<(), Error> {
+    // In f32 from the start: a million prisms in f64 are gigabytes.
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for cylinder in cylinders {
+        let prism = inscribed_prism(&cylinder, sides);
+        let first = vertices.len() as u32;
+        let corners = |triangle: &[u32; 3]| triangle.map(|corner| first + corner);
+        triangles.extend(prism.triangles.iter().map(corners));
+        let narrow = |vertex: &DVec3| vertex.as_vec3().to_array();
+        vertices.extend(prism.vertices.iter().map(narrow));
+    }
+    builder.attach_triangles(&vertices, &triangles)?;
+    Ok(())
 }
 
 /// Cylinders as Embree's own geometry.
@@ -71,10 +139,7 @@ impl Native {
     /// A scene of these cylinders and nothing else.
     fn build(&self, cylinders: &[Cylinder]) -> Result<Scene<()>, Error> {
         let mut builder = SceneBuilder::new(&self.device)?;
-        match self.shape {
-            Shape::Cone => attach_cones(&mut builder, cylinders)?,
-            Shape::Mesh(sides) => attach_meshes(&mut builder, cylinders, sides)?,
-        }
+        self.shape.attach(&mut builder, cylinders.iter().copied())?;
         builder.commit()
     }
 
@@ -144,51 +209,9 @@ impl Batch for NativeBatch {
     }
 }
 
-fn attach_cones(builder: &mut SceneBuilder<()>, cylinders: &[Cylinder]) -> Result<(), Error> {
-    let end = |point: DVec3, cylinder: &Cylinder| {
-        let [x, y, z] = point.as_vec3().to_array();
-        [x, y, z, cylinder.radius() as f32]
-    };
-    let vertices: Vec<[f32; 4]> = cylinders
-        .iter()
-        .flat_map(|one| [end(one.p0(), one), end(one.p1(), one)])
-        .collect();
-    let first: Vec<u32> = (0..cylinders.len() as u32).map(|index| 2 * index).collect();
-    // An end without disc is one that a neighbour continues.
-    let neighbours: Vec<u8> = cylinders
-        .iter()
-        .map(|one| match one.caps() {
-            Caps::Both => 0,
-            Caps::P1 => 1,
-            Caps::P0 => 2,
-            Caps::None => 3,
-        })
-        .collect();
-    builder.attach_cone_curves(&vertices, &first, Some(&neighbours))?;
-    Ok(())
-}
-
-fn attach_meshes(
-    builder: &mut SceneBuilder<()>,
-    cylinders: &[Cylinder],
-    sides: u32,
-) -> Result<(), Error> {
-    let mut mesh = Mesh::default();
-    for cylinder in cylinders {
-        mesh.append(&inscribed_prism(cylinder, sides));
-    }
-    let vertices: Vec<[f32; 3]> = mesh
-        .vertices
-        .iter()
-        .map(|vertex| vertex.as_vec3().to_array())
-        .collect();
-    builder.attach_triangles(&vertices, &mesh.triangles)?;
-    Ok(())
-}
-
 /// The ray in f32, if Embree takes it. What lies behind the origin is out of
 /// its reach.
-fn ray_for_embree(ray: &Ray) -> Option<Ray32> {
+pub(in crate::bench) fn ray_for_embree(ray: &Ray) -> Option<Ray32> {
     let (origin, direction) = (ray.origin.as_vec3(), ray.direction.as_vec3());
     let greatest = origin
         .abs()

@@ -1,0 +1,347 @@
+//! The comparison: every representation beside this library's fastest mode.
+//!
+//! This library's modes are timed in turns first. Then rivals come one after
+//! the other, each built alone beside this library and gone before the next:
+//! with each the fastest mode is timed anew, in turns, and what is compared is
+//! compared between neighbouring measurements. A C callback is compared with
+//! single rays, which are what it answers.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::building::build;
+use super::flat::Flat;
+use super::ours;
+use super::outcome::{Figures, Row, Traversal};
+use super::race::{Crew, Lap, Times, race};
+use super::rays::{Kind, Rays};
+use super::representation::{Representation, Representative};
+use super::scenes::SceneName;
+use super::witness::{Judged, Witness};
+use crate::bench::statistics::Spread;
+use crate::bench::timing::Timer;
+use crate::tracer::Options;
+use crate::tracer::counters::Counts;
+
+/// What is measured.
+pub struct Plan {
+    /// The scenes.
+    pub scenes: Vec<SceneName>,
+    /// Where scene files are.
+    pub directory: PathBuf,
+    /// Rays of each kind.
+    pub rays: usize,
+    /// Samples of each time, at least 1.
+    pub rounds: usize,
+    /// Chooses sticks and rays.
+    pub seed: u64,
+    /// The threads that trace; the first crew's times make the ratios.
+    pub crews: Vec<Crew>,
+    /// Rivals that would take more bytes are left out.
+    pub max_memory: u64,
+    /// How scenes are built.
+    pub options: Options,
+}
+
+impl Traversal {
+    /// The steps of which [`Traversal::measure`] tells.
+    #[must_use]
+    pub fn steps(plan: &Plan) -> usize {
+        plan.scenes.len() * Representation::ALL.len()
+    }
+
+    /// Measures everything; `after_step` is called as often as
+    /// [`Traversal::steps`] says.
+    #[must_use]
+    pub fn measure(plan: &Plan, timer: &mut dyn Timer, after_step: &mut dyn FnMut()) -> Self {
+        let mut rows = Vec::new();
+        for &scene in &plan.scenes {
+            let mut course = Course::new(plan, scene);
+            match prepare(plan, scene) {
+                Ok(field) => course.run(&field, timer, after_step),
+                Err(reason) => {
+                    for representation in Representation::ALL {
+                        course.absent(representation, &reason);
+                        after_step();
+                    }
+                }
+            }
+            rows.append(&mut course.sorted());
+        }
+        Self {
+            scenes: plan.scenes.clone(),
+            threads: plan.crews.iter().map(|crew| crew.threads).collect(),
+            rows,
+        }
+    }
+}
+
+/// A scene, this library's modes on it, rays and what is right about them.
+struct Field {
+    flat: Arc<Flat>,
+    ours: Vec<(Representation, Arc<dyn Representative>, f64)>,
+    rays: Vec<(Rays, Judged)>,
+}
+
+fn prepare(plan: &Plan, scene: SceneName) -> Result<Field, String> {
+    let description = scene.make(&plan.directory, plan.seed)?;
+    let flat = Arc::new(Flat::new(Arc::new(description)));
+    let modes = ours::modes(&flat, &plan.options).map_err(|error| error.to_string())?;
+    let tracer = Arc::clone(modes[0].1.tracer());
+    let rays = Rays::of_scene(&flat, &tracer, plan.rays, plan.seed);
+    let witness = Witness::new(&flat);
+    let judge = |rays: Rays| {
+        let judged = witness.judge(&rays, scene.judged());
+        (rays, judged)
+    };
+    let rays = rays.into_iter().map(judge).collect();
+    let shared = |(mode, ours, build_s)| (mode, Arc::new(ours) as Arc<dyn Representative>, build_s);
+    drop(witness);
+    Ok(Field {
+        flat,
+        ours: modes.into_iter().map(shared).collect(),
+        rays,
+    })
+}
+
+/// The rows of one scene as they come in.
+struct Course<'a> {
+    plan: &'a Plan,
+    scene: SceneName,
+    rows: Vec<Row>,
+}
+
+impl<'a> Course<'a> {
+    fn new(plan: &'a Plan, scene: SceneName) -> Self {
+        Self {
+            plan,
+            scene,
+            rows: Vec::new(),
+        }
+    }
+
+    fn sorted(mut self) -> Vec<Row> {
+        let place = |row: &Row| {
+            let rays = Kind::ALL.iter().position(|&one| one == row.rays);
+            let all = &Representation::ALL;
+            (rays, all.iter().position(|&one| one == row.representation))
+        };
+        self.rows.sort_by_key(place);
+        self.rows
+    }
+
+    fn push(
+        &mut self,
+        rays: Kind,
+        representation: Representation,
+        threads: usize,
+        found: Result<Figures, String>,
+    ) {
+        self.rows.push(Row {
+            scene: self.scene,
+            rays,
+            representation,
+            threads,
+            found,
+        });
+    }
+
+    fn absent(&mut self, representation: Representation, reason: &str) {
+        let plan = self.plan;
+        for rays in Kind::ALL {
+            for crew in &plan.crews {
+                self.push(rays, representation, crew.threads, Err(reason.to_owned()));
+            }
+        }
+    }
+
+    fn run(&mut self, field: &Field, timer: &mut dyn Timer, after_step: &mut dyn FnMut()) {
+        let fastest = self.run_ours(field, timer);
+        for _ in &field.ours {
+            after_step();
+        }
+        for representation in Representation::ALL {
+            if representation.is_ours() {
+                continue;
+            }
+            let start = Instant::now();
+            match build(self.plan, &field.flat, representation) {
+                Ok(rival) => {
+                    let build_s = start.elapsed().as_secs_f64();
+                    self.run_rival(field, &fastest, representation, &rival, build_s, timer);
+                }
+                Err(reason) => self.absent(representation, &reason),
+            }
+            after_step();
+        }
+    }
+
+    /// Times this library's modes, and answers with the fastest by rays and
+    /// crew.
+    fn run_ours(&mut self, field: &Field, timer: &mut dyn Timer) -> Vec<Vec<usize>> {
+        let plan = self.plan;
+        let mut fastest = Vec::new();
+        for (rays, judged) in &field.rays {
+            let mut by_crew = Vec::new();
+            for crew in &plan.crews {
+                let laps: Vec<Lap<'_>> = field
+                    .ours
+                    .iter()
+                    .map(|(_, ours, _)| lap(ours.as_ref(), rays, crew))
+                    .collect();
+                let times = race(timer, &laps, plan.rounds);
+                let seconds: Vec<Spread> = times.iter().map(Times::lap).collect();
+                let order =
+                    |a: &usize, b: &usize| seconds[*a].median.total_cmp(&seconds[*b].median);
+                by_crew.push((0..seconds.len()).min_by(order).unwrap_or(0));
+                for ((mode, ours, build_s), &lap_s) in field.ours.iter().zip(&seconds) {
+                    let entry = Entry {
+                        representative: ours,
+                        build_s: *build_s,
+                        counts: ours.counts(rays),
+                        lap_s,
+                        ratio: None,
+                    };
+                    let found = figures(field, rays, judged, entry);
+                    self.push(rays.kind, *mode, crew.threads, found);
+                }
+            }
+            fastest.push(by_crew);
+        }
+        fastest
+    }
+
+    fn run_rival(
+        &mut self,
+        field: &Field,
+        fastest: &[Vec<usize>],
+        representation: Representation,
+        rival: &Arc<dyn Representative>,
+        build_s: f64,
+        timer: &mut dyn Timer,
+    ) {
+        let plan = self.plan;
+        for ((rays, judged), fastest) in field.rays.iter().zip(fastest) {
+            for (crew, &fastest) in plan.crews.iter().zip(fastest) {
+                let against = match representation {
+                    Representation::CCallback => 0,
+                    _ => fastest,
+                };
+                let (mode, ours, _) = &field.ours[against];
+                let laps = [ours, rival].map(|one| lap(one.as_ref(), rays, crew));
+                let times = race(timer, &laps, plan.rounds);
+                let entry = Entry {
+                    representative: rival,
+                    build_s,
+                    counts: None,
+                    lap_s: times[1].lap(),
+                    ratio: Some((times[1].over(&times[0]), *mode)),
+                };
+                let found = figures(field, rays, judged, entry);
+                self.push(rays.kind, representation, crew.threads, found);
+            }
+        }
+    }
+}
+
+fn lap<'a>(representative: &'a dyn Representative, rays: &'a Rays, crew: &'a Crew) -> Lap<'a> {
+    Lap {
+        crew,
+        count: rays.wide.len(),
+        run: Box::new(|range| representative.run(rays, range)),
+    }
+}
+
+/// What was measured of a representation on some rays.
+struct Entry<'a> {
+    representative: &'a Arc<dyn Representative>,
+    build_s: f64,
+    counts: Option<Counts>,
+    lap_s: Spread,
+    ratio: Option<(Spread, Representation)>,
+}
+
+fn figures(
+    field: &Field,
+    rays: &Rays,
+    judged: &Judged,
+    entry: Entry<'_>,
+) -> Result<Figures, String> {
+    let count = rays.wide.len();
+    if count == 0 {
+        return Err(String::from("no ray of the camera hits anything"));
+    }
+    let per_ray = |of: fn(&Counts) -> u64| Some(of(entry.counts.as_ref()?) as f64 / count as f64);
+    let errors = judged.errors(entry.representative.as_ref(), rays);
+    Ok(Figures {
+        ns: Spread {
+            median: entry.lap_s.median * 1e9 / count as f64,
+            deviation: entry.lap_s.deviation * 1e9 / count as f64,
+        },
+        wrong_percent: errors.wrong_percent(),
+        p99_error_r: errors.p99_r,
+        bytes_per_cylinder: entry.representative.bytes() as f64 / field.flat.stored() as f64,
+        build_s: entry.build_s,
+        callbacks_per_ray: per_ray(|counts| counts.callbacks),
+        solves_per_ray: per_ray(|counts| counts.solves),
+        ratio: entry.ratio,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::building::BYTES_PER_PRIMITIVE;
+    use super::super::race::Crew;
+    use super::*;
+
+    /// A clock on which everything takes a second.
+    struct Even;
+
+    impl Timer for Even {
+        fn seconds(&mut self, work: &mut dyn FnMut()) -> f64 {
+            work();
+            1.0
+        }
+    }
+
+    #[test]
+    fn measure_rows_are_complete_and_what_does_not_fit_has_its_reason() {
+        let plan = Plan {
+            scenes: vec![SceneName::Sticks1e4, SceneName::Forest],
+            directory: PathBuf::from("nowhere"),
+            rays: 100,
+            rounds: 1,
+            seed: 4,
+            crews: vec![Crew::new(1).unwrap(), Crew::new(2).unwrap()],
+            // Room for 32 triangles a cylinder, not for 64.
+            max_memory: 48 * 10_000 * BYTES_PER_PRIMITIVE,
+            options: Options::default(),
+        };
+        let mut steps = 0;
+        let found = Traversal::measure(&plan, &mut Even, &mut || steps += 1);
+        assert_eq!(steps, Traversal::steps(&plan));
+        assert_eq!(found.rows.len(), 2 * 3 * 12 * 2);
+        for row in &found.rows {
+            let name = row.representation.name();
+            match (&row.found, row.scene) {
+                (Err(reason), SceneName::Forest) => assert!(reason.contains("not there")),
+                (Err(reason), _) if ["mesh_16", "mesh_32", "mesh_64"].contains(&name) => {
+                    assert!(reason.contains("more than the"), "{name}: {reason}");
+                }
+                (Err(_), _) => assert!(
+                    ["embree_cone_packet", "native_instances", "instance_array"].contains(&name),
+                    "{name}"
+                ),
+                (Ok(figures), _) => {
+                    assert!(figures.bytes_per_cylinder > 30.0, "{name}");
+                    let analytic = row.representation.is_ours() || name == "c_callback";
+                    assert!(!analytic || figures.wrong_percent == 0.0, "{name}");
+                    let ratio = figures.ratio.map(|(spread, _)| spread.median);
+                    assert_eq!(ratio.unwrap_or(1.0), 1.0);
+                    assert_eq!(ratio.is_none(), row.representation.is_ours());
+                }
+            }
+        }
+    }
+}

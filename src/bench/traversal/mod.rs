@@ -1,0 +1,34 @@
+//! Rays through whole scenes: this library beside everything that Embree can
+//! trace in its place.
+//!
+//! [`Traversal::measure`] takes some scenes (`scenes`), draws rays of three
+//! kinds (`rays`), has a part of them judged by the oracle (`witness`), builds
+//! one representation after the other (`ours`, `c_callback`, `native`) and runs
+//! it in turns with this library (`race`). [`figures`],
+//! [`page`] and [`table`] show the outcome.
+
+mod building;
+mod c_callback;
+mod flat;
+mod measure;
+mod native;
+mod native_packets;
+mod ours;
+mod outcome;
+mod outputs;
+mod race;
+mod rays;
+mod representation;
+mod scenes;
+mod witness;
+
+pub use flat::{Flat, Placed};
+pub use measure::Plan;
+pub(super) use ours::run as run_ours;
+pub use outcome::{Figures, RIVALS, Ratio, Row, Traversal};
+pub use outputs::{SUMMARY_HEADINGS, Shown, figures, page, summary, table};
+pub use race::Crew;
+pub(super) use race::{Lap, race};
+pub use rays::{Kind, Rays, TILE, camera_rays, random_rays};
+pub use representation::{Met, Representation, Representative, SolidId};
+pub use scenes::{SceneName, sticks};

@@ -1,0 +1,184 @@
+//! What the comparison finds.
+
+use super::rays::Kind;
+use super::representation::Representation;
+use super::scenes::SceneName;
+use crate::bench::statistics::Spread;
+
+/// What was found of a representation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figures {
+    /// Nanoseconds a ray: of the whole crew, so that two threads take half.
+    pub ns: Spread,
+    /// Rays with a wrong answer, of those that the oracle judged.
+    pub wrong_percent: f64,
+    /// The distance of the answer from the true hit, along the ray, in radii of
+    /// the cylinder that is hit: the 99th percentile over the rays with the
+    /// right cylinder, for others are wrong. `None` where only a hit is asked
+    /// for.
+    pub p99_error_r: Option<f64>,
+    /// What is kept for the scene, records and all that Embree holds, for each
+    /// cylinder that is stored (those of a prototype count once).
+    pub bytes_per_cylinder: f64,
+    /// Seconds from the description to what can be traced.
+    pub build_s: f64,
+    /// Callbacks a ray, where the library counts them.
+    pub callbacks_per_ray: Option<f64>,
+    /// Rays put to a cylinder or to a block of them, a ray, where it is counted.
+    pub solves_per_ray: Option<f64>,
+    /// Its time over that of a mode of this library, which is named.
+    pub ratio: Option<(Spread, Representation)>,
+}
+
+impl Figures {
+    /// Millions of rays in a second.
+    #[must_use]
+    pub fn mrays_per_s(&self) -> f64 {
+        1e3 / self.ns.median
+    }
+}
+
+/// A row of the table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The scene.
+    pub scene: SceneName,
+    /// The rays.
+    pub rays: Kind,
+    /// The representation.
+    pub representation: Representation,
+    /// The threads that trace.
+    pub threads: usize,
+    /// What was found, or why nothing was.
+    pub found: Result<Figures, String>,
+}
+
+/// How many times faster this library is than a rival, each in its fastest mode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ratio {
+    /// The median over the rounds, and their spread.
+    pub spread: Spread,
+    /// The mode of this library.
+    pub ours: Representation,
+    /// That of the rival.
+    pub rival: Representation,
+}
+
+/// The rivals that ratios are to, by the names of their keys.
+pub const RIVALS: [(&str, &[Representation]); 3] = [
+    (
+        "vs_embree_cone",
+        &[Representation::EmbreeCone, Representation::EmbreeConePacket],
+    ),
+    ("vs_mesh_32", &[Representation::Mesh32]),
+    ("vs_mesh_64", &[Representation::Mesh64]),
+];
+
+/// The outcome.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Traversal {
+    /// The scenes, in the order of [`Plan::scenes`](super::Plan::scenes).
+    pub scenes: Vec<SceneName>,
+    /// The threads, in the order of [`Plan::crews`](super::Plan::crews).
+    pub threads: Vec<usize>,
+    /// The rows: by scene, rays, representation and threads.
+    pub rows: Vec<Row>,
+}
+
+impl Traversal {
+    /// How many times faster this library is, on the first crew's threads, than
+    /// the fastest of some representations; or why there is no such number.
+    ///
+    /// # Errors
+    /// The reasons of the representations.
+    pub fn ratio(
+        &self,
+        scene: SceneName,
+        rays: Kind,
+        rivals: &[Representation],
+    ) -> Result<Ratio, String> {
+        let rows = || {
+            self.rows.iter().filter(|row| {
+                row.scene == scene
+                    && row.rays == rays
+                    && self.threads.first() == Some(&row.threads)
+                    && rivals.contains(&row.representation)
+            })
+        };
+        let measured = rows().filter_map(|row| {
+            let found = row.found.as_ref().ok()?;
+            let (spread, ours) = found.ratio?;
+            let ratio = Ratio {
+                spread,
+                ours,
+                rival: row.representation,
+            };
+            Some((found.ns.median, ratio))
+        });
+        measured
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, ratio)| ratio)
+            .ok_or_else(|| {
+                let reasons = rows().filter_map(|row| row.found.as_ref().err());
+                reasons.cloned().collect::<Vec<_>>().join("; ")
+            })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spread(median: f64) -> Spread {
+        Spread {
+            median,
+            deviation: 0.0,
+        }
+    }
+
+    fn row(representation: Representation, threads: usize, found: Option<(f64, f64)>) -> Row {
+        let figures = |(ns, ratio): (f64, f64)| Figures {
+            ns: spread(ns),
+            wrong_percent: 0.0,
+            p99_error_r: None,
+            bytes_per_cylinder: 1.0,
+            build_s: 1.0,
+            callbacks_per_ray: None,
+            solves_per_ray: None,
+            ratio: Some((spread(ratio), Representation::AnalyticBlock)),
+        };
+        Row {
+            scene: SceneName::Sticks1e4,
+            rays: Kind::Coherent,
+            representation,
+            threads,
+            found: found
+                .map(figures)
+                .ok_or_else(|| format!("no {}", representation.name())),
+        }
+    }
+
+    #[test]
+    fn ratio_is_to_the_faster_mode_of_the_rival_on_the_first_crew() {
+        use Representation::{EmbreeCone, EmbreeConePacket, Mesh32};
+        let mut found = Traversal {
+            scenes: vec![SceneName::Sticks1e4],
+            threads: vec![1, 2],
+            rows: vec![
+                row(EmbreeCone, 1, Some((300.0, 3.0))),
+                row(EmbreeCone, 2, Some((10.0, 9.0))),
+                row(EmbreeConePacket, 1, Some((200.0, 2.0))),
+                row(Mesh32, 1, None),
+            ],
+        };
+        let ratio = |found: &Traversal, rivals: &[Representation]| {
+            found.ratio(SceneName::Sticks1e4, Kind::Coherent, rivals)
+        };
+        let cone = ratio(&found, RIVALS[0].1).unwrap();
+        assert_eq!((cone.spread.median, cone.rival), (2.0, EmbreeConePacket));
+        assert_eq!(cone.ours, Representation::AnalyticBlock);
+        assert_eq!(ratio(&found, &[Mesh32]).unwrap_err(), "no mesh_32");
+        found.rows[2] = row(EmbreeConePacket, 1, None);
+        assert_eq!(ratio(&found, RIVALS[0].1).unwrap().rival, EmbreeCone);
+    }
+}

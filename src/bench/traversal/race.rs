@@ -1,0 +1,237 @@
+//! Times of one beside another on the same rays.
+//!
+//! A lap is cut into pieces of some hundred microseconds, and in every round
+//! each stretch of pieces is run by all, one after the other. On a shared
+//! processor a longer sample is nearly always disturbed; a short one seldom,
+//! which the median over the rounds does not notice.
+//!
+//! The time of a lap is the sum of the pieces' medians. The ratio of two is the
+//! mean of the pieces' ratios, each the median over the rounds of measurements a
+//! stretch apart, weighted by the time that the piece takes of the second lap.
+
+use std::hint::black_box;
+use std::ops::Range;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuildError};
+
+use super::rays::TILE;
+use crate::bench::statistics::{Spread, ratios};
+use crate::bench::timing::Timer;
+use crate::tracer::workers;
+
+/// Rays that a thread takes at a time: enough to forget how they were handed
+/// out, few enough to share.
+const AT_A_TIME: usize = 16 * TILE;
+
+/// Rays of a piece: some hundred microseconds. Threads have to be woken, so that
+/// each of several gets more of them.
+fn piece_size(threads: usize) -> usize {
+    if threads == 1 {
+        AT_A_TIME
+    } else {
+        4 * AT_A_TIME * threads
+    }
+}
+
+/// Pieces that one runs before it is another's turn. With one, modes of this
+/// library found the tree in the caches where the other had left it for the same
+/// rays, and came out up to twice as fast as beside a rival, that fills them
+/// with its own.
+const STRETCH: usize = 16;
+
+/// So many threads.
+#[derive(Clone)]
+pub struct Crew {
+    /// How many.
+    pub threads: usize,
+    pool: Arc<ThreadPool>,
+}
+
+impl Crew {
+    /// Starts them.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn new(threads: usize) -> Result<Self, ThreadPoolBuildError> {
+        let pool = Arc::new(workers(std::num::NonZeroUsize::new(threads))?);
+        Ok(Self { threads, pool })
+    }
+}
+
+impl Crew {
+    /// Has `work` done on parts of `0..count`, each of which starts at a multiple
+    /// of [`TILE`], and adds up what it answers.
+    pub fn share(&self, count: usize, work: impl Fn(Range<usize>) -> u64 + Sync) -> u64 {
+        if self.threads == 1 {
+            return work(0..count);
+        }
+        self.pool.install(|| {
+            let part = |number: usize| {
+                let first = number * AT_A_TIME;
+                work(first..(first + AT_A_TIME).min(count))
+            };
+            let parts = (0..count.div_ceil(AT_A_TIME)).into_par_iter();
+            parts.map(part).reduce(|| 0, u64::wrapping_add)
+        })
+    }
+}
+
+/// Some rays that are traced again and again.
+pub struct Lap<'a> {
+    /// On which threads.
+    pub crew: &'a Crew,
+    /// How many rays.
+    pub count: usize,
+    /// Traces some of them, and answers with a number that depends on every
+    /// answer.
+    pub run: Box<dyn Fn(Range<usize>) -> u64 + Sync + 'a>,
+}
+
+impl Lap<'_> {
+    fn piece(&self, piece: &Range<usize>) -> u64 {
+        let run = |part: Range<usize>| (self.run)(piece.start + part.start..piece.start + part.end);
+        self.crew.share(piece.len(), run)
+    }
+}
+
+/// The seconds of each piece of a lap in each round.
+pub struct Times(Vec<Vec<f64>>);
+
+impl Times {
+    /// The seconds of the lap: the sums of the pieces' medians and of their
+    /// deviations, as if all were off together.
+    pub fn lap(&self) -> Spread {
+        let pieces = self.0.iter().map(|seconds| Spread::of(seconds));
+        pieces.fold(NOTHING, |sum, piece| Spread {
+            median: sum.median + piece.median,
+            deviation: sum.deviation + piece.deviation,
+        })
+    }
+
+    /// The time of this lap over that of another that was run in turns with it.
+    pub fn over(&self, other: &Self) -> Spread {
+        let whole = other.lap().median;
+        let pieces = self.0.iter().zip(&other.0);
+        pieces.fold(NOTHING, |sum, (seconds, others)| {
+            let ratio = Spread::of(&ratios(seconds, others));
+            let share = Spread::of(others).median / whole;
+            Spread {
+                median: sum.median + share * ratio.median,
+                deviation: sum.deviation + share * ratio.deviation,
+            }
+        })
+    }
+}
+
+const NOTHING: Spread = Spread {
+    median: 0.0,
+    deviation: 0.0,
+};
+
+/// Runs laps of the same rays in turns, after one round that warms up.
+pub fn race(timer: &mut dyn Timer, laps: &[Lap<'_>], rounds: usize) -> Vec<Times> {
+    let (count, size) = laps
+        .first()
+        .map_or((0, 1), |lap| (lap.count, piece_size(lap.crew.threads)));
+    let starts = (0..count).step_by(size);
+    let pieces: Vec<Range<usize>> = starts.map(|at| at..(at + size).min(count)).collect();
+    let mut times: Vec<Times> = laps
+        .iter()
+        .map(|_| Times(vec![Vec::with_capacity(rounds); pieces.len()]))
+        .collect();
+    let numbers: Vec<usize> = (0..pieces.len()).collect();
+    for round in 0..=rounds {
+        for (stretch, numbers) in numbers.chunks(STRETCH).enumerate() {
+            for turn in 0..laps.len() {
+                let index = (round + stretch + turn) % laps.len();
+                for &number in numbers {
+                    let seconds = timer.seconds(&mut || {
+                        black_box(laps[index].piece(&pieces[number]));
+                    });
+                    if round > 0 {
+                        times[index].0[number].push(seconds);
+                    }
+                }
+            }
+        }
+    }
+    times
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+
+    /// A clock on which a ray of work takes as long as the work says, on a
+    /// machine that is slower by half after every so many samples.
+    struct Slowing<'a> {
+        last: &'a Mutex<f64>,
+        slower_after: u32,
+        samples: u32,
+    }
+
+    impl Timer for Slowing<'_> {
+        fn seconds(&mut self, work: &mut dyn FnMut()) -> f64 {
+            work();
+            let factor = libm::pow(1.5, f64::from(self.samples / self.slower_after));
+            self.samples += 1;
+            *self.last.lock().unwrap() * factor
+        }
+    }
+
+    fn lap<'a>(crew: &'a Crew, last: &'a Mutex<f64>, count: usize, seconds: f64) -> Lap<'a> {
+        Lap {
+            crew,
+            count,
+            run: Box::new(move |range| {
+                *last.lock().unwrap() = seconds * range.len() as f64;
+                0
+            }),
+        }
+    }
+
+    #[test]
+    fn race_with_a_rival_twice_as_slow_gives_two_however_slow_the_rounds() {
+        let (crew, last) = (Crew::new(1).unwrap(), Mutex::new(0.0));
+        // Three pieces, the last of which is half as long.
+        let count = 5 * piece_size(1) / 2;
+        let mut timer = Slowing {
+            last: &last,
+            slower_after: 6,
+            samples: 0,
+        };
+        let laps = [1.0, 2.0].map(|seconds| lap(&crew, &last, count, seconds));
+        let times = race(&mut timer, &laps, 5);
+        let ratio = times[1].over(&times[0]);
+        assert_eq!((ratio.median, ratio.deviation), (2.0, 0.0));
+        // The third of five rounds, after one that warms up.
+        let expected = count as f64 * 1.5 * 1.5 * 1.5;
+        assert_eq!(times[0].lap().median, expected);
+        assert_eq!(times[1].lap().median, 2.0 * expected);
+    }
+
+    #[test]
+    fn over_pieces_count_by_their_time() {
+        let times = |pieces: [f64; 2]| Times(pieces.map(|seconds| vec![seconds; 3]).into());
+        let ratio = times([2.0, 9.0]).over(&times([1.0, 3.0]));
+        assert!((ratio.median - 11.0 / 4.0).abs() < 1e-15, "{ratio:?}");
+    }
+
+    #[test]
+    fn lap_threads_share_all_rays() {
+        for threads in [1, 3] {
+            let crew = Crew::new(threads).unwrap();
+            let lap = Lap {
+                crew: &crew,
+                count: 1500,
+                run: Box::new(|range| range.map(|number| number as u64).sum()),
+            };
+            assert_eq!(lap.piece(&(0..1500)), 1499 * 1500 / 2);
+            assert_eq!(lap.piece(&(500..1500)), (500..1500).sum::<u64>());
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Who takes part: the names of representations, and what is asked of each.
+
+use std::ops::Range;
+
+use super::rays::Rays;
+use crate::bench::rivals::Shape;
+use crate::tracer::counters::Counts;
+
+/// How cylinders are represented and rays traced through them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Representation {
+    /// This library, a ray at a time, a cylinder a primitive.
+    AnalyticSingle,
+    /// This library as it chooses itself: packets where rays are coherent.
+    AnalyticPacket,
+    /// This library, a ray at a time, blocks of cylinders a primitive.
+    AnalyticBlock,
+    /// This library's traversal and solver, with the callback in C.
+    CCallback,
+    /// Embree's cone curve, a ray at a time.
+    EmbreeCone,
+    /// Embree's cone curve, 16 rays at a time.
+    EmbreeConePacket,
+    /// Inscribed prisms of 8 sides.
+    Mesh8,
+    /// Inscribed prisms of 16 sides.
+    Mesh16,
+    /// Inscribed prisms of 32 sides.
+    Mesh32,
+    /// Inscribed prisms of 64 sides.
+    Mesh64,
+    /// The callback in C below Embree's own instances, on their f32 rays.
+    NativeInstances,
+    /// The same below one of Embree 4's arrays of instances.
+    InstanceArray,
+}
+
+impl Representation {
+    /// All, in the order of tables; this library's own come first.
+    pub const ALL: [Self; 12] = [
+        Self::AnalyticSingle,
+        Self::AnalyticPacket,
+        Self::AnalyticBlock,
+        Self::CCallback,
+        Self::EmbreeCone,
+        Self::EmbreeConePacket,
+        Self::Mesh8,
+        Self::Mesh16,
+        Self::Mesh32,
+        Self::Mesh64,
+        Self::NativeInstances,
+        Self::InstanceArray,
+    ];
+
+    /// The modes of this library.
+    pub const OURS: [Self; 3] = [
+        Self::AnalyticSingle,
+        Self::AnalyticPacket,
+        Self::AnalyticBlock,
+    ];
+
+    /// The name in tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::AnalyticSingle => "analytic_single",
+            Self::AnalyticPacket => "analytic_packet",
+            Self::AnalyticBlock => "analytic_block",
+            Self::CCallback => "c_callback",
+            Self::EmbreeCone => "embree_cone",
+            Self::EmbreeConePacket => "embree_cone_packet",
+            Self::Mesh8 => "mesh_8",
+            Self::Mesh16 => "mesh_16",
+            Self::Mesh32 => "mesh_32",
+            Self::Mesh64 => "mesh_64",
+            Self::NativeInstances => "native_instances",
+            Self::InstanceArray => "instance_array",
+        }
+    }
+
+    /// What Embree intersects by itself, if it does.
+    #[must_use]
+    pub fn shape(self) -> Option<Shape> {
+        match self {
+            Self::EmbreeCone | Self::EmbreeConePacket => Some(Shape::Cone),
+            Self::Mesh8 => Some(Shape::Mesh(8)),
+            Self::Mesh16 => Some(Shape::Mesh(16)),
+            Self::Mesh32 => Some(Shape::Mesh(32)),
+            Self::Mesh64 => Some(Shape::Mesh(64)),
+            _ => None,
+        }
+    }
+
+    /// Whether it is this library.
+    #[must_use]
+    pub fn is_ours(self) -> bool {
+        Self::OURS.contains(&self)
+    }
+}
+
+/// A cylinder of the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SolidId {
+    /// Where its prototype stands: the position in
+    /// [`Flat::placed`](super::Flat::placed).
+    pub placed: u32,
+    /// Its number within the prototype.
+    pub primitive: u32,
+}
+
+/// The first hit of a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Met {
+    /// The ray's parameter.
+    pub t: f64,
+    /// What is hit.
+    pub solid: SolidId,
+}
+
+/// A scene in one representation, ready to answer.
+pub trait Representative: Send + Sync {
+    /// The first hits of some of the rays, in their order. The range starts at
+    /// a multiple of [`TILE`](super::rays::TILE).
+    fn closest(&self, rays: &Rays, range: Range<usize>) -> Vec<Option<Met>>;
+
+    /// Whether those rays hit anything.
+    fn blocked(&self, rays: &Rays, range: Range<usize>) -> Vec<bool>;
+
+    /// Asks the rays' own question of each, and answers with a number that
+    /// depends on every answer. It is what is timed.
+    fn run(&self, rays: &Rays, range: Range<usize>) -> u64;
+
+    /// What is kept for the scene, in bytes: records of cylinders and
+    /// placements, and what Embree holds.
+    fn bytes(&self) -> usize;
+
+    /// What all rays cost, where it is counted.
+    fn counts(&self, _rays: &Rays) -> Option<Counts> {
+        None
+    }
+}

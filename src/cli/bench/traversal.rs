@@ -1,0 +1,163 @@
+//! `cyltrace bench traversal`.
+
+use cyltrace::bench::traversal::{
+    Crew, Figures, Kind, Plan, RIVALS, Ratio, Row, SUMMARY_HEADINGS, SceneName, Traversal, figures,
+    page, summary, table,
+};
+use cyltrace::bench::{Circumstances, WallClock};
+use cyltrace::report::Table;
+use cyltrace::tracer::Options;
+use serde_json::{Map, Value, json};
+
+use super::{rays_sentence, tell, with_circumstances};
+use crate::cli::arguments::TraversalArguments;
+use crate::cli::target::{make_directory, write_text};
+use crate::cli::{interrupt, json, progress, scene};
+
+/// Time, error and memory of everything that traces cylinders.
+pub fn run(arguments: &TraversalArguments) -> anyhow::Result<()> {
+    let common = &arguments.common;
+    json::check(common)?;
+    interrupt::install()?;
+    if let Some(directory) = &arguments.report {
+        make_directory(directory)?;
+    }
+    // What is not timed runs on all of these.
+    let workers = scene::workers(common)?;
+    let plan = plan(arguments, workers.current_num_threads())?;
+    let bar = progress::bar(common, Traversal::steps(&plan) as u64, "steps");
+    let found = workers.install(|| Traversal::measure(&plan, &mut WallClock, &mut || bar.inc(1)));
+    bar.finish_and_clear();
+
+    let circumstances = Circumstances::here(
+        common.max_isa,
+        arguments.rays.get() as u64,
+        arguments.seed,
+        arguments.rounds.get(),
+    );
+    let sentence = rays_sentence(&circumstances);
+    interrupt::end_in_order();
+    if let Some(directory) = &arguments.report {
+        for shown in figures(&found) {
+            write_text(&directory.join(shown.name + ".svg"), &shown.svg)?;
+        }
+        write_text(&directory.join("traversal.csv"), &table(&found))?;
+        write_text(&directory.join("index.html"), &page(&found, &sentence))?;
+    }
+    json::write(common, &all_figures(&found, &circumstances))?;
+    let text = summary_text(&found, &sentence);
+    tell(common, text, arguments.report.as_deref())
+}
+
+/// One thread and all, or as many as `--threads` says.
+fn plan(arguments: &TraversalArguments, all_threads: usize) -> anyhow::Result<Plan> {
+    let common = &arguments.common;
+    let threads = match common.threads {
+        None if all_threads > 1 => vec![1, all_threads],
+        _ => vec![all_threads],
+    };
+    let crews: Result<Vec<Crew>, _> = threads.into_iter().map(Crew::new).collect();
+    let scenes = match arguments.scene.as_slice() {
+        [] => SceneName::ALL.to_vec(),
+        some => some.to_vec(),
+    };
+    Ok(Plan {
+        scenes,
+        directory: arguments.scenes.clone(),
+        rays: arguments.rays.get(),
+        rounds: arguments.rounds.get(),
+        seed: arguments.seed,
+        crews: crews?,
+        max_memory: arguments.max_memory,
+        options: Options {
+            threads: common.threads,
+            max_isa: common.max_isa,
+            ..Options::default()
+        },
+    })
+}
+
+/// The table for people: what was measured, then what is missing.
+fn summary_text(found: &Traversal, sentence: &str) -> String {
+    let mut table = Table::new(&SUMMARY_HEADINGS, 3);
+    let measured = found.rows.iter().filter(|row| row.found.is_ok());
+    for row in measured {
+        table.push(summary(row));
+    }
+    let mut text = format!("{sentence}\n{table}");
+    for &scene in &found.scenes {
+        for rays in Kind::ALL {
+            let ratios = RIVALS.map(|(key, rivals)| {
+                let ratio = found.ratio(scene, rays, rivals);
+                let number = ratio.map_or_else(
+                    |_| String::from("–"),
+                    |ratio| format!("{:.2}", ratio.spread.median),
+                );
+                format!("{key} {number}")
+            });
+            let (scene, rays) = (scene.name(), rays.name());
+            text += &format!("times as fast: {scene}, {rays}: {}\n", ratios.join(", "));
+        }
+    }
+    text
+}
+
+/// All figures; null where there is none.
+fn all_figures(found: &Traversal, circumstances: &Circumstances) -> Value {
+    let numbers = |of: fn(Ratio) -> Value| by_scene(found, |ratio| ratio.map_or(Value::Null, of));
+    let figures = json!({
+        "rows": found.rows.iter().map(row_figures).collect::<Vec<_>>(),
+        "ratios": numbers(|ratio| json!(ratio.spread.median)),
+        "ratio_spreads": numbers(|ratio| json!(ratio.spread.deviation)),
+        "ratio_of": numbers(|ratio| json!([ratio.rival.name(), ratio.ours.name()])),
+        "reasons": by_scene(found, |ratio| {
+            ratio.err().map_or(Value::Null, |reason| json!(reason))
+        }),
+        "ratio_threads": found.threads.first(),
+        "spread": "median absolute deviation",
+    });
+    with_circumstances(figures, circumstances, "rays")
+}
+
+fn row_figures(row: &Row) -> Value {
+    let figures = row.found.as_ref().ok();
+    let number = |of: fn(&Figures) -> Option<f64>| figures.and_then(of);
+    json!({
+        "scene": row.scene.name(),
+        "rays": row.rays.name(),
+        "representation": row.representation.name(),
+        "threads": row.threads,
+        "ns_per_ray": number(|one| Some(one.ns.median)),
+        "spread": number(|one| Some(one.ns.deviation)),
+        "wrong_percent": number(|one| Some(one.wrong_percent)),
+        "p99_error_r": number(|one| one.p99_error_r),
+        "bytes_per_cylinder": number(|one| Some(one.bytes_per_cylinder)),
+        "build_s": number(|one| Some(one.build_s)),
+        "mrays_per_s": number(|one| Some(one.mrays_per_s())),
+        "callbacks_per_ray": number(|one| one.callbacks_per_ray),
+        "solves_per_ray": number(|one| one.solves_per_ray),
+        "ratio": number(|one| one.ratio.map(|(spread, _)| spread.median)),
+        "ratio_spread": number(|one| one.ratio.map(|(spread, _)| spread.deviation)),
+        "ratio_to": figures.and_then(|one| one.ratio.map(|(_, ours)| ours.name())),
+        "reason": row.found.as_ref().err(),
+    })
+}
+
+/// `{scene: {rays: {rival: value}}}`.
+fn by_scene(found: &Traversal, value: impl Fn(Result<Ratio, String>) -> Value) -> Value {
+    let scenes = found.scenes.iter().map(|&scene| {
+        let kinds = Kind::ALL.map(|rays| {
+            let rivals = RIVALS
+                .map(|(key, rivals)| (key.to_owned(), value(found.ratio(scene, rays, rivals))));
+            (
+                rays.name().to_owned(),
+                Value::Object(Map::from_iter(rivals)),
+            )
+        });
+        (
+            scene.name().to_owned(),
+            Value::Object(Map::from_iter(kinds)),
+        )
+    });
+    Value::Object(scenes.collect())
+}

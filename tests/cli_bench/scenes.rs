@@ -1,0 +1,287 @@
+//! `cyltrace bench traversal` and `bench scale`, on scenes that take seconds.
+
+use std::fs;
+
+use crate::{bench, figures, keys, report};
+
+const ROW_KEYS: [&str; 10] = [
+    "scene",
+    "rays",
+    "representation",
+    "threads",
+    "ns_per_ray",
+    "spread",
+    "wrong_percent",
+    "p99_error_r",
+    "bytes_per_cylinder",
+    "build_s",
+];
+
+const REPRESENTATIONS: [&str; 12] = [
+    "analytic_single",
+    "analytic_packet",
+    "analytic_block",
+    "c_callback",
+    "embree_cone",
+    "embree_cone_packet",
+    "mesh_8",
+    "mesh_16",
+    "mesh_32",
+    "mesh_64",
+    "native_instances",
+    "instance_array",
+];
+
+/// Too little memory for meshes of more than 16 sides.
+const STICKS: [&str; 13] = [
+    "traversal",
+    "--scene",
+    "sticks_1e4",
+    "--rays",
+    "64",
+    "--rounds",
+    "1",
+    "--seed",
+    "5",
+    "--threads",
+    "2",
+    "--max-memory",
+    "90MB",
+];
+
+#[test]
+fn traversal_json_has_every_row_and_ratio_or_its_reason() {
+    let folder = tempfile::tempdir().expect("a directory");
+    let found = figures(folder.path(), &STICKS);
+    let rows = found["rows"].as_array().expect("an array");
+    assert_eq!(rows.len(), 3 * REPRESENTATIONS.len());
+    for (number, row) in rows.iter().enumerate() {
+        assert_eq!(keys(row)[..ROW_KEYS.len()], ROW_KEYS);
+        assert_eq!(row["scene"], "sticks_1e4");
+        assert_eq!(
+            row["rays"],
+            ["coherent", "shadow", "incoherent"][number / 12]
+        );
+        let name = REPRESENTATIONS[number % 12];
+        assert_eq!(row["representation"], name);
+        assert_eq!(row["threads"], 2);
+        if row["ns_per_ray"].is_null() {
+            assert!(row["reason"].is_string(), "{row}");
+            assert!(row["build_s"].is_null(), "{row}");
+            continue;
+        }
+        assert!(row["ns_per_ray"].as_f64().unwrap() > 0.0, "{row}");
+        assert!(row["reason"].is_null(), "{row}");
+        let is_ours = name.starts_with("analytic");
+        if is_ours || name == "c_callback" {
+            assert_eq!(row["wrong_percent"], 0.0, "{row}");
+        }
+        assert_eq!(row["ratio"].is_null(), is_ours, "{row}");
+        assert_eq!(row["p99_error_r"].is_null(), row["rays"] == "shadow");
+    }
+    let at = |name: &str| &rows[REPRESENTATIONS.iter().position(|&one| one == name).unwrap()];
+    let error = |name| at(name)["p99_error_r"].as_f64().unwrap();
+    assert!(error("analytic_single") < 1e-9, "{rows:?}");
+    assert!(error("embree_cone") > 1e3 * error("analytic_single"));
+    assert!(at("mesh_16")["build_s"].is_f64(), "{}", at("mesh_16"));
+    for name in ["mesh_32", "mesh_64"] {
+        let reason = at(name)["reason"].as_str().unwrap();
+        assert!(reason.contains("more than the 90.0 MB"), "{reason}");
+    }
+
+    assert_eq!(keys(&found["ratios"]), ["sticks_1e4"]);
+    for rays in ["coherent", "shadow", "incoherent"] {
+        let ratios = &found["ratios"]["sticks_1e4"][rays];
+        assert_eq!(keys(ratios), ["vs_embree_cone", "vs_mesh_32", "vs_mesh_64"]);
+        let reasons = &found["reasons"]["sticks_1e4"][rays];
+        assert!(ratios["vs_embree_cone"].as_f64().unwrap() > 0.0);
+        assert!(reasons["vs_embree_cone"].is_null());
+        assert!(ratios["vs_mesh_64"].is_null());
+        assert!(reasons["vs_mesh_64"].as_str().unwrap().contains("90.0 MB"));
+    }
+}
+
+/// Two placements, one within the other, of a prototype with one pole.
+const PLACED: &str = r#"
+[[cylinder]]
+p0 = [0, 0, -0.2]
+p1 = [0, 0, 0]
+radius = 20
+
+[[prototype]]
+name = "pole"
+
+[[prototype.cylinder]]
+p0 = [0, 0, 0]
+p1 = [0, 0, 3]
+radius = 0.5
+
+[[prototype]]
+name = "pair"
+
+[[prototype.instance]]
+of = "pole"
+
+[[prototype.instance]]
+of = "pole"
+translate = [2, 0, 0]
+
+[[instance]]
+of = "pair"
+
+[[instance]]
+of = "pair"
+translate = [0, 3, 0]
+scale = 1.5
+"#;
+
+#[test]
+fn traversal_nested_placements_are_instanced_and_absent_scenes_say_so() {
+    let folder = tempfile::tempdir().expect("a directory");
+    fs::create_dir(folder.path().join("mine")).unwrap();
+    fs::write(folder.path().join("mine/lattice.toml"), PLACED).unwrap();
+    let found = figures(
+        folder.path(),
+        &[
+            "traversal",
+            "--scene",
+            "lattice",
+            "--scene",
+            "forest",
+            "--scenes",
+            "mine",
+            "--rays",
+            "512",
+            "--rounds",
+            "1",
+            "--threads",
+            "1",
+        ],
+    );
+    let rows = found["rows"].as_array().expect("an array");
+    assert_eq!(rows.len(), 2 * 3 * 12);
+    for row in rows {
+        let name = row["representation"].as_str().unwrap();
+        let missing = row["reason"].as_str();
+        if row["scene"] == "forest" {
+            let missing = missing.expect("the forest is not there");
+            assert!(missing.contains("forest.toml is not there"), "{missing}");
+            continue;
+        }
+        match name {
+            "c_callback" => assert!(missing.unwrap().contains("places prototypes")),
+            "embree_cone_packet" | "instance_array" => {}
+            _ => assert_eq!(missing, None, "{row}"),
+        }
+        if name.starts_with("analytic") {
+            assert_eq!(row["wrong_percent"], 0.0, "{row}");
+        }
+        // Poles of one scale: what f32 gets wrong is at edges.
+        if ["native_instances", "mesh_64"].contains(&name) {
+            assert!(row["wrong_percent"].as_f64().unwrap() < 3.0, "{row}");
+        }
+    }
+    let ratios = &found["ratios"]["forest"]["coherent"];
+    assert!(ratios["vs_embree_cone"].is_null());
+}
+
+#[test]
+fn traversal_report_is_written_whole_and_needs_nothing_else() {
+    let folder = tempfile::tempdir().expect("a directory");
+    let (out, names) = report(folder.path(), &STICKS);
+    for part in ["c_callback", "times as fast: sticks_1e4", "index.html"] {
+        assert!(out.contains(part), "no {part} in {out}");
+    }
+    assert_eq!(
+        names,
+        [
+            "index.html",
+            "sticks_1e4-bytes.svg",
+            "sticks_1e4-coherent.svg",
+            "sticks_1e4-incoherent.svg",
+            "sticks_1e4-shadow.svg",
+            "traversal.csv",
+        ]
+    );
+    let read = |name: &str| fs::read_to_string(folder.path().join("new/report").join(name));
+    assert_eq!(read("traversal.csv").unwrap().lines().count(), 1 + 36);
+    let page = read("index.html").unwrap();
+    assert!(page.contains(&read("sticks_1e4-coherent.svg").unwrap()));
+}
+
+#[test]
+fn traversal_unknown_scene_is_refused_with_the_known_ones() {
+    let folder = tempfile::tempdir().expect("a directory");
+    let (code, out, err) = bench(folder.path(), &["traversal", "--scene", "sticks"]);
+    assert_eq!((code, out.as_str()), (2, ""));
+    for part in ["sticks_1e4", "sticks_1e6", "lattice", "forest"] {
+        assert!(err.contains(part), "no {part} in {err}");
+    }
+}
+
+const SCALE: [&str; 11] = [
+    "scale",
+    "--most",
+    "10000",
+    "--rays",
+    "64",
+    "--rounds",
+    "1",
+    "--threads",
+    "1",
+    "--seed",
+    "3",
+];
+
+#[test]
+fn scale_json_has_decades_fits_and_reasons() {
+    let folder = tempfile::tempdir().expect("a directory");
+    let arguments = [&SCALE[..], &["--max-memory", "1MB"]].concat();
+    let found = figures(folder.path(), &arguments);
+    let numbers = |series: &str| -> Vec<u64> {
+        let rows = found[series].as_array().expect("an array");
+        rows.iter().map(|row| row["n"].as_u64().unwrap()).collect()
+    };
+    assert_eq!(numbers("cylinders"), [1000, 10_000]);
+    assert_eq!(numbers("placements"), [100, 1000, 10_000]);
+    let first = &found["cylinders"][0];
+    assert_eq!(
+        keys(first)[..6],
+        [
+            "n",
+            "build_s",
+            "bytes",
+            "bytes_per",
+            "resident_bytes",
+            "rays_per_s"
+        ]
+    );
+    let bytes = first["bytes"].as_f64().unwrap();
+    assert_eq!(first["bytes_per"].as_f64().unwrap(), bytes / 1000.0);
+    assert!(first["rays_per_s"].as_f64().unwrap() > 0.0);
+    assert!(found["cylinders"][1]["bytes"].is_null());
+    let reason = found["cylinders"][1]["reason"].as_str().unwrap();
+    assert!(reason.contains("more than the 1.0 MB"), "{reason}");
+
+    assert!(found["fits"]["cylinders"]["bytes"].is_null());
+    let growth = found["fits"]["placements"]["bytes"].as_f64().unwrap();
+    assert!((0.0..1.0).contains(&growth), "{growth}");
+}
+
+#[test]
+fn scale_report_is_written_whole() {
+    let folder = tempfile::tempdir().expect("a directory");
+    let (out, names) = report(folder.path(), &SCALE);
+    assert!(
+        out.contains("memory as n^") && out.contains("index.html"),
+        "{out}"
+    );
+    let expected = [
+        "build.svg",
+        "bytes.svg",
+        "index.html",
+        "rays.svg",
+        "scale.csv",
+    ];
+    assert_eq!(names, expected);
+}
