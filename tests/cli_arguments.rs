@@ -26,10 +26,14 @@ fn help_of_every_command_mentions_every_flag() {
                 "--spp",
                 "--integrator",
                 "--seed",
+                "--max-memory",
             ][..],
         ),
-        ("trace", &["--rays", "--output", "-o", "--all"][..]),
-        ("info", &[][..]),
+        (
+            "trace",
+            &["--rays", "--output", "-o", "--all", "--max-memory"][..],
+        ),
+        ("info", &["--max-memory"][..]),
         (
             "check",
             &[

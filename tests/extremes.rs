@@ -214,7 +214,8 @@ fn placements_that_flatten_or_pile_up_scales_are_refused() {
             &unit_cylinder(1.0),
             0,
             MaterialIndex(0),
-        )],
+        )]
+        .into(),
         ..Default::default()
     };
     let placed = |of: u32, scale: DVec3| Prototype {
@@ -251,7 +252,8 @@ fn deepest_nesting_is_traced() {
             &unit_cylinder(1.0),
             0,
             MaterialIndex(0),
-        )],
+        )]
+        .into(),
         ..Default::default()
     };
     let levels = (1..=64).map(|of| Prototype {

@@ -24,11 +24,12 @@ const RAYS: u64 = 100_000;
 /// The same scene with every radius times `factor`.
 fn with_radii(scene: &Scene, factor: f64) -> Tracer {
     let mut scene = scene.clone();
-    for record in &mut scene.prototypes[0].cylinders {
+    let thinner = scene.prototypes[0].cylinders.iter().map(|record| {
         let one = record.cylinder();
         let thinner = Cylinder::new(one.p0(), one.p1(), one.radius() * factor, one.caps()).unwrap();
-        *record = CylinderRecord::new(&thinner, record.primitive(), record.material());
-    }
+        CylinderRecord::new(&thinner, record.primitive(), record.material())
+    });
+    scene.prototypes[0].cylinders = thinner.collect();
     Tracer::new(Arc::new(scene), &Options::default()).unwrap()
 }
 
@@ -48,7 +49,7 @@ fn hits_of_the_minimal_scene_lie_between_the_mesh_s_cylinders() {
     let cylinders: Vec<Cylinder> = scene.prototypes[0]
         .cylinders
         .iter()
-        .map(CylinderRecord::cylinder)
+        .map(|record| record.cylinder())
         .collect();
     let outer = with_radii(&scene, 1.0);
     let bounds = outer.bounds();

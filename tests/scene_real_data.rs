@@ -46,7 +46,7 @@ fn tree_model_loads_in_three_lines() {
     .expect("the tree");
     let cylinders = &scene.prototypes[0].cylinders;
     assert_eq!(cylinders.len(), 1_149);
-    let first = cylinders[0].cylinder();
+    let first = cylinders.get(0).cylinder();
     assert_eq!(first.p0().to_array(), [0.760564, -16.356802, 253.888632]);
     assert_eq!(first.p1().to_array(), [0.759141, -16.360725, 253.938184]);
     assert_eq!(first.radius(), 0.047199);
@@ -66,7 +66,7 @@ fn neurons_load_with_their_degenerate_segments_counted() {
         let records = &scene.prototypes[0].cylinders;
         assert_eq!(records.len(), cylinders, "{name}");
         assert_eq!(scene.skipped_rows, skipped, "{name}");
-        let last = records.last().expect("a segment").primitive();
+        let last = records.iter().last().expect("a segment").primitive();
         assert_eq!(u64::from(last) + 1, cylinders as u64 + skipped, "{name}");
 
         let message = neuron(&path, "error").expect_err(name).to_string();

@@ -37,7 +37,7 @@ fn hit_solid(scene: &Scene, hit: &Hit) -> (Cylinder, ExactAffine) {
         prototype = &scene.prototypes[placement.of.0 as usize];
     }
     (
-        prototype.cylinders[hit.primitive as usize].cylinder(),
+        prototype.cylinders.get(hit.primitive as usize).cylinder(),
         world_from_object,
     )
 }
@@ -153,7 +153,7 @@ impl Retarget for Ray {
 fn box_of_cylinders_has_no_self_hit() {
     let cylinders = support::cylinders_in_a_box(SEED, 1000);
     let root = Prototype {
-        cylinders,
+        cylinders: cylinders.into(),
         ..Default::default()
     };
     let tracer = Tracer::new(support::scene_of(vec![root]), &Options::default()).unwrap();
@@ -198,7 +198,7 @@ fn long_cylinder_has_no_self_hit_along_its_axis() {
             let p1 = p0 + random.direction() * random.log_uniform(1.0, 1e4);
             let cylinder = Cylinder::new(p0, p1, 1.0, Caps::Both).unwrap();
             let root = Prototype {
-                cylinders: vec![CylinderRecord::new(&cylinder, 0, MaterialIndex(0))],
+                cylinders: vec![CylinderRecord::new(&cylinder, 0, MaterialIndex(0))].into(),
                 ..Default::default()
             };
             let tracer = Tracer::new(support::scene_of(vec![root]), &Options::default()).unwrap();
@@ -251,7 +251,7 @@ fn nested_placements_have_no_self_hit() {
         ..Default::default()
     };
     let leaf = Prototype {
-        cylinders,
+        cylinders: cylinders.into(),
         ..Default::default()
     };
     let world_from_leaf =
@@ -307,7 +307,7 @@ fn spawned_rays_do_not_pass_through_touching_neighbours() {
         let scene: Arc<Scene> = support::scene_of(vec![root.clone()]);
         let tracer = Tracer::new(scene, &Options::default()).unwrap();
         let alone = Prototype {
-            cylinders: vec![root.cylinders[0]],
+            cylinders: vec![root.cylinders.get(0)].into(),
             ..Default::default()
         };
         let alone = Tracer::new(support::scene_of(vec![alone]), &Options::default()).unwrap();

@@ -8,7 +8,9 @@ use std::ops::ControlFlow;
 
 use cyltrace::math::{ChildFromParent, PlacementErrors, Random, UNIT_ROUNDOFF};
 use cyltrace::mesh_file::{self, Format, MeshFileError, Plan};
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene};
+use cyltrace::scene::{
+    CylinderList, CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene,
+};
 use cyltrace::solid::tessellation::{Fit, prism_size};
 use cyltrace::solid::{Caps, Cylinder, Part, surface_point};
 use glam::{DAffine3, DMat3, DVec3};
@@ -129,7 +131,7 @@ fn random_scene(seed: u64) -> Scene {
     let mut random = Random::new(seed, 0);
     let mut prototype = |name: &str, cylinders, places: &[u32]| Prototype {
         name: name.into(),
-        cylinders: records(&mut random, cylinders),
+        cylinders: records(&mut random, cylinders).into(),
         placements: places
             .iter()
             .map(|&of| placement(&mut random, of))
@@ -341,12 +343,12 @@ fn deviation_of_unplaced_solids_is_the_sagitta_and_of_placed_ones_stretched() {
     let record = CylinderRecord::new(&cylinder, 0, MaterialIndex(0));
     let leaf = Prototype {
         name: "leaf".into(),
-        cylinders: vec![record],
+        cylinders: vec![record].into(),
         placements: Vec::new(),
     };
     let root = |of: u32, factors: DVec3| Prototype {
         name: String::new(),
-        cylinders: Vec::new(),
+        cylinders: CylinderList::default(),
         placements: vec![Placement {
             of: PrototypeIndex(of),
             parent_from_child: DAffine3::from_scale(factors),
@@ -402,7 +404,7 @@ fn meshes_too_large_or_interrupted_are_refused() {
     let mut prototypes: Vec<Prototype> = (1..=40)
         .map(|next| Prototype {
             name: format!("level {next}"),
-            cylinders: Vec::new(),
+            cylinders: CylinderList::default(),
             placements: vec![
                 Placement {
                     of: PrototypeIndex(next),
@@ -414,7 +416,7 @@ fn meshes_too_large_or_interrupted_are_refused() {
         .collect();
     prototypes.push(Prototype {
         name: "leaf".into(),
-        cylinders: records(&mut Random::new(1, 1), 1),
+        cylinders: records(&mut Random::new(1, 1), 1).into(),
         placements: Vec::new(),
     });
     let scene = Scene::new(prototypes);

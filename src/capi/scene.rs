@@ -10,7 +10,7 @@ use super::status::{CYLTRACE_ERROR, CYLTRACE_OK, guarded};
 use super::types::{CyltraceHit, CyltraceRay};
 use crate::math::Ray;
 use crate::scene::{self, Scene};
-use crate::tracer::{Options, Tracer};
+use crate::tracer::{BuildTime, Options, Tracer};
 
 /// `struct cyltrace_scene`: a scene, and its tracer once rays are traced.
 pub struct CyltraceScene {
@@ -21,7 +21,12 @@ pub struct CyltraceScene {
 impl CyltraceScene {
     fn tracer(&self) -> Result<&Tracer, String> {
         let build = || {
-            let built = Tracer::new(Arc::clone(&self.scene), &Options::default());
+            // Errors are told here; a ray that comes later could not.
+            let options = Options {
+                build: BuildTime::AtOnce,
+                ..Options::default()
+            };
+            let built = Tracer::new(Arc::clone(&self.scene), &options);
             built.map_err(|error| error.to_string())
         };
         let built = self.tracer.get_or_init(build);

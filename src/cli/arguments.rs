@@ -1,6 +1,6 @@
 //! The arguments, as clap reads them.
 
-use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -10,6 +10,11 @@ use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{Film, Integrator};
 use cyltrace::solid::tessellation::{GREATEST_SEGMENTS, LEAST_SEGMENTS};
 
+mod bench;
+
+pub use bench::{AccuracyArguments, Bench, BenchArguments, ScaleArguments, TraversalArguments};
+
+use super::limit::MemoryArguments;
 use super::memory;
 use super::target::is_standard_stream;
 
@@ -90,6 +95,8 @@ pub struct RenderArguments {
     )]
     pub seed: u64,
     #[command(flatten)]
+    pub memory: MemoryArguments,
+    #[command(flatten)]
     pub common: Common,
 }
 
@@ -110,6 +117,8 @@ pub struct TraceArguments {
     #[arg(long)]
     pub all: bool,
     #[command(flatten)]
+    pub memory: MemoryArguments,
+    #[command(flatten)]
     pub common: Common,
 }
 
@@ -119,6 +128,8 @@ pub struct InfoArguments {
     /// The scene file
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
+    #[command(flatten)]
+    pub memory: MemoryArguments,
     #[command(flatten)]
     pub common: Common,
 }
@@ -251,42 +262,6 @@ pub enum Rays {
     Count(u64),
     /// Those of a table.
     Table(PathBuf),
-}
-
-/// Measure run times and errors
-#[derive(Args, Debug)]
-pub struct BenchArguments {
-    #[command(subcommand)]
-    pub bench: Bench,
-}
-
-#[derive(Debug, Subcommand)]
-pub enum Bench {
-    Accuracy(AccuracyArguments),
-}
-
-/// Compare the time and the error of every known formulation, of Embree's cone
-/// curve and of meshes, on the same cases
-#[derive(Args, Debug)]
-pub struct AccuracyArguments {
-    /// Write accuracy.svg, accuracy.csv and index.html to DIR
-    #[arg(long, value_name = "DIR")]
-    pub report: Option<PathBuf>,
-    /// Cases of each family; meshes and other rivals get at most 1000 of them
-    #[arg(long, value_name = "N", default_value = "5000")]
-    pub cases: NonZeroU64,
-    /// Chooses the cases
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub seed: u64,
-    /// Samples of each time
-    #[arg(long, value_name = "N", default_value = "101")]
-    pub rounds: NonZeroUsize,
-    /// Measure this formulation or rival only, beside triple-product; may be
-    /// given several times
-    #[arg(long, value_name = "NAME")]
-    pub formulation: Vec<String>,
-    #[command(flatten)]
-    pub common: Common,
 }
 
 /// The integrators by their names.

@@ -6,6 +6,7 @@ use cyltrace::tracer::MemoryEstimate;
 use serde_json::json;
 
 use super::arguments::InfoArguments;
+use super::limit::{Limit, Need};
 use super::outputs::Files;
 use super::{json, memory, print, scene, text};
 
@@ -18,10 +19,14 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
     let start = Instant::now();
     let file = scene::read(&arguments.scene)?;
     files.check_with(&file)?;
-    let scene = scene::load(common, file)?;
+    let scene = scene::load(common, file, Need::Records, Limit::of(&arguments.memory))?;
     let load = start.elapsed().as_secs_f64();
-    let census = scene.census();
-    let estimate = MemoryEstimate::of(&census);
+    let census = scene::workers(common)?.install(|| scene.census());
+    let estimate = MemoryEstimate::of(
+        &scene.contents(),
+        arguments.memory.layout.into(),
+        common.max_isa,
+    );
     let (lower, upper) = (census.bounds.lower, census.bounds.upper);
 
     let materials: Vec<_> = scene
@@ -53,8 +58,12 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
             "memory_estimate": {
                 "records_bytes": estimate.records_bytes,
                 "embree_bytes": estimate.embree_bytes,
+                "copies_bytes": estimate.copies_bytes,
+                "building_bytes": estimate.building_bytes,
+                "peak_bytes": estimate.peak_bytes(),
             },
             "materials": materials,
+            "records": json::records(&scene),
         }),
     )?;
     if !arguments.common.prints() {
@@ -76,10 +85,12 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
     text += &text::skipped_rows(scene.skipped_rows);
     text += &format!("bounds: {} to {}\n", text::point(lower), text::point(upper));
     text += &format!(
-        "memory, estimated: {} of records, {} in Embree\n",
+        "memory, estimated: {} of records, {} in Embree, {} at most while it builds\n",
         memory::readable(estimate.records_bytes),
-        memory::readable(estimate.embree_bytes)
+        memory::readable(estimate.embree_bytes),
+        memory::readable(estimate.peak_bytes())
     );
+    text += &text::records(&scene);
     for material in &scene.materials {
         let name = if material.name.is_empty() {
             "(default)"

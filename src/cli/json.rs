@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use cyltrace::scene::Scene;
 use cyltrace::tracer::Statistics;
 use serde_json::{Value, json};
 
@@ -41,6 +42,11 @@ pub fn memory(statistics: &Statistics) -> Value {
         "records_bytes": statistics.records_bytes,
         "peak_rss_bytes": peak_resident_bytes(),
     })
+}
+
+/// How a scene's cylinders are kept.
+pub fn records(scene: &Scene) -> Value {
+    json!({ "numbers": scene.records().name(), "rounding": scene.rounding() })
 }
 
 /// The cylinders of a traced scene.

@@ -7,14 +7,20 @@ pub use cyltrace::report::readable;
 /// The greatest resident size of this process so far, in bytes, where the
 /// system tells it as Linux does.
 pub fn peak_resident_bytes() -> Option<u64> {
-    peak_in_status(&fs::read_to_string("/proc/self/status").ok()?)
+    kibibytes_of(&fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
 }
 
-/// The line `VmHWM:  1234 kB`; the kernel's kB are 1024 bytes.
-fn peak_in_status(status: &str) -> Option<u64> {
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+/// Has the system forget the greatest size so far, so that
+/// [`peak_resident_bytes`] starts anew; without effect where it cannot.
+pub fn forget_peak() {
+    // Linux alone has this file, and a refusal leaves a peak that is too great
+    // but true of the program as a whole.
+    let _ = fs::write("/proc/self/clear_refs", "5");
+}
+
+/// The bytes of a line such as `VmHWM:  1234 kB`; the kernel's kB are 1024 bytes.
+pub fn kibibytes_of(told: &str, name: &str) -> Option<u64> {
+    let line = told.lines().find_map(|line| line.strip_prefix(name))?;
     let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes * 1024)
 }
@@ -60,8 +66,8 @@ mod tests {
     #[test]
     fn status_with_peak_read_in_bytes() {
         let status = "Name:\tx\nVmPeak:\t  99 kB\nVmHWM:\t    1234 kB\nVmRSS:\t 5 kB\n";
-        assert_eq!(peak_in_status(status), Some(1234 * 1024));
-        assert_eq!(peak_in_status("Name:\tx\n"), None);
+        assert_eq!(kibibytes_of(status, "VmHWM:"), Some(1234 * 1024));
+        assert_eq!(kibibytes_of("Name:\tx\n", "VmHWM:"), None);
     }
 
     #[test]

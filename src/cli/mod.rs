@@ -10,6 +10,7 @@ mod hit_table;
 mod info;
 mod interrupt;
 mod json;
+mod limit;
 mod memory;
 mod outputs;
 mod print;

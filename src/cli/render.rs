@@ -4,10 +4,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use cyltrace::render::{Output, Picture, RenderError, Settings};
-use cyltrace::tracer::Tracer;
+use cyltrace::tracer::{Options, Tracer};
 use serde_json::json;
 
 use super::arguments::{RenderArguments, integrator_name};
+use super::limit::{Limit, Need};
 use super::outputs::Files;
 use super::{interrupt, json, memory, print, progress, scene, text};
 
@@ -31,7 +32,12 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let start = Instant::now();
     let file = scene::read(&arguments.scene)?;
     files.check_with(&file)?;
-    let scene = Arc::new(scene::load(common, file)?);
+    let scene = Arc::new(scene::load(
+        common,
+        file,
+        Need::Build,
+        Limit::of(&arguments.memory),
+    )?);
     let mut settings = Settings::of(&scene);
     settings.seed = arguments.seed;
     if let Some(size) = arguments.size {
@@ -47,7 +53,12 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let load = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
-    let tracer = scene::build(common, &scene)?;
+    let options = Options {
+        view: settings.view(&scene),
+        layout: arguments.memory.layout.into(),
+        ..Options::default()
+    };
+    let tracer = scene::build_with(common, &scene, options)?;
     let build = start.elapsed().as_secs_f64();
 
     let cancelled = interrupt::end_in_order();
@@ -94,7 +105,7 @@ fn report(
     times: &Times,
     threads: usize,
 ) -> anyhow::Result<()> {
-    let statistics = tracer.statistics();
+    let statistics = &tracer.statistics();
     let skipped_rows = tracer.scene().skipped_rows;
     let rays = picture.rays;
     let rays_per_s = rays.total() as f64 / times.render;
@@ -121,6 +132,7 @@ fn report(
             "embree": statistics.embree_version,
             "isa": statistics.isa,
             "threads": threads,
+            "records": json::records(tracer.scene()),
         }),
     )?;
     if !arguments.common.prints() {
@@ -142,6 +154,7 @@ fn report(
         statistics.embree_version,
         statistics.isa
     );
+    text += &text::records(tracer.scene());
     text += &format!(
         "time: load {:.2} s, build {:.2} s, render {:.2} s on {threads} threads\n",
         times.load, times.build, times.render

@@ -9,6 +9,7 @@ use cyltrace::tracer::{Options, Tracer};
 use rayon::ThreadPool;
 
 use super::arguments::Common;
+use super::limit::{Limit, Need};
 use super::progress;
 
 /// Reads a scene file, but not yet the files that it names.
@@ -17,20 +18,33 @@ pub fn read(path: &Path) -> anyhow::Result<SceneFile> {
     SceneFile::read(path).map_err(|error| anyhow!("{error}"))
 }
 
-/// Loads what a scene file names, and checks everything.
-pub fn load(common: &Common, file: SceneFile) -> anyhow::Result<Scene> {
+/// Loads what a scene file names, and checks everything; refuses a scene for
+/// whose need the memory is not there.
+pub fn load(common: &Common, file: SceneFile, need: Need, limit: Limit) -> anyhow::Result<Scene> {
+    let workers = workers(common)?;
     let spinner = progress::spinner(common, "loading the scene");
-    let scene = file.load().map_err(|error| anyhow!("{error}"));
+    let scene = limit
+        .check(file.path(), &file.contents(), need, common.max_isa)
+        .and_then(|()| {
+            let scene = workers.install(|| file.load());
+            scene.map_err(|error| anyhow!("{error}"))
+        });
     spinner.finish_and_clear();
     scene
 }
 
-/// Builds what is traced.
+/// Makes ready what is traced.
 pub fn build(common: &Common, scene: &Arc<Scene>) -> anyhow::Result<Tracer> {
+    build_with(common, scene, Options::default())
+}
+
+/// Makes ready what is traced, with options that are the command's own.
+pub fn build_with(common: &Common, scene: &Arc<Scene>, options: Options) -> anyhow::Result<Tracer> {
     let spinner = progress::spinner(common, "building the scene");
     let options = Options {
         threads: common.threads,
         max_isa: common.max_isa,
+        ..options
     };
     let tracer = Tracer::new(Arc::clone(scene), &options);
     spinner.finish_and_clear();

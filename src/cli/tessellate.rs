@@ -10,6 +10,7 @@ use cyltrace::solid::tessellation::Fit;
 use serde_json::json;
 
 use super::arguments::TessellateArguments;
+use super::limit::{Limit, Need};
 use super::outputs::Files;
 use super::target::Target;
 use super::{interrupt, json, memory, print, progress, scene, text};
@@ -28,7 +29,7 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
     let start = Instant::now();
     let file = scene::read(&arguments.scene)?;
     files.check_with(&file)?;
-    let scene = scene::load(common, file)?;
+    let scene = scene::load(common, file, Need::Records, Limit::available())?;
     let load = start.elapsed().as_secs_f64();
 
     let fit = if arguments.circumscribed {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use cyltrace::scene::{Records, Scene};
 use cyltrace::tracer::Statistics;
 use glam::DVec3;
 
@@ -35,6 +36,17 @@ pub fn cylinders(statistics: &Statistics) -> String {
         "cylinders: {unique} unique, {} with the {instances} instances",
         statistics.cylinders_instanced
     )
+}
+
+/// A line about rounded cylinders, or nothing where none is.
+pub fn records(scene: &Scene) -> String {
+    match scene.records() {
+        Records::F64 => String::new(),
+        Records::F32 => format!(
+            "records: rounded to f32, by at most {:.1e} (2^-24 of each number)\n",
+            scene.rounding()
+        ),
+    }
 }
 
 /// A line about rows that were left out, or nothing when there are none: the

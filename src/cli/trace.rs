@@ -9,12 +9,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use cyltrace::math::Ray;
-use cyltrace::tracer::{DEFAULT_BATCH, Hit, Tracer};
+use cyltrace::tracer::{DEFAULT_BATCH, Hit, Options, Tracer};
 use rayon::prelude::*;
 use serde_json::json;
 
 use super::arguments::TraceArguments;
 use super::interrupt::Interrupted;
+use super::limit::{Limit, Need};
 use super::outputs::Files;
 use super::ray_table::{Block, RayTable};
 use super::target::{Target, is_standard_stream};
@@ -64,10 +65,22 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     let check = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
-    let scene = Arc::new(scene::load(common, file)?);
+    let scene = Arc::new(scene::load(
+        common,
+        file,
+        Need::Build,
+        Limit::of(&arguments.memory),
+    )?);
     let load = (read + start.elapsed()).as_secs_f64();
     let start = Instant::now();
-    let tracer = scene::build(common, &scene)?;
+    let tracer = scene::build_with(
+        common,
+        &scene,
+        Options {
+            layout: arguments.memory.layout.into(),
+            ..Options::default()
+        },
+    )?;
     let build = start.elapsed().as_secs_f64();
 
     interrupt::end_in_order();
@@ -92,7 +105,7 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     let trace = start.elapsed().as_secs_f64();
     bar.finish_and_clear();
 
-    let statistics = tracer.statistics();
+    let statistics = &tracer.statistics();
     let skipped_rows = tracer.scene().skipped_rows;
     let Totals {
         rays,

@@ -35,7 +35,7 @@ pub(super) fn write(
         text.clear();
         push_group(&mut text, instance);
         for record in &instance.prototype.cylinders {
-            let vertices = instance.vertices(record, plan.segments(), plan.fit());
+            let vertices = instance.vertices(&record, plan.segments(), plan.fit());
             for vertex in &vertices {
                 let _ = writeln!(text, "v {:?} {:?} {:?}", vertex.x, vertex.y, vertex.z);
             }

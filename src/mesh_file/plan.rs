@@ -26,7 +26,7 @@
 
 use super::{Format, MeshFileError, obj, ply};
 use crate::math::{ChildFromParent, PlacementErrors, UNIT_ROUNDOFF, power_of_two};
-use crate::scene::{CylinderRecord, Placement, Prototype, PrototypeIndex, Scene};
+use crate::scene::{Placement, Prototype, PrototypeIndex, Scene};
 use crate::solid::tessellation::{
     Fit, GREATEST_SEGMENTS, LEAST_SEGMENTS, corner_error, deviation, inner_factor, prism_size,
 };
@@ -198,7 +198,7 @@ impl Whole {
             names: u128::from(is_group) * prototype.name.len() as u128,
             ..Self::default()
         };
-        for cylinder in prototype.cylinders.iter().map(CylinderRecord::cylinder) {
+        for cylinder in prototype.cylinders.iter().map(|record| record.cylinder()) {
             let (vertices, triangles) = prism_size(cylinder.caps(), segments);
             let ends = cylinder.p0().length().max(cylinder.p1().length());
             whole.add(&Self {

@@ -31,7 +31,7 @@ pub(super) fn write(
     let mut bytes = Vec::new();
     instances(scene, &mut |instance| {
         for record in &instance.prototype.cylinders {
-            let vertices = instance.vertices(record, plan.segments(), plan.fit());
+            let vertices = instance.vertices(&record, plan.segments(), plan.fit());
             bytes.clear();
             for vertex in &vertices {
                 bytes.extend(vertex.to_array().into_iter().flat_map(f64::to_le_bytes));

@@ -64,64 +64,144 @@ pub(super) struct View<'a> {
     pub(super) integrator: Integrator,
 }
 
+/// A sample of a pixel.
+#[derive(Clone, Copy)]
+pub(super) struct Sample {
+    /// The pixel's column and row.
+    pub pixel: (u32, u32),
+    pub sampler: PixelSampler,
+    pub number: u32,
+}
+
+impl Sample {
+    /// Two numbers for a direction.
+    fn direction(&self) -> (f64, f64) {
+        self.sampler.direction(self.number)
+    }
+}
+
+/// Many samples at a time, in steps: all rays of one purpose are traced
+/// together, so that those which go the same way share work. What is kept
+/// between the steps is kept here, to be used again.
+#[derive(Default)]
+pub(super) struct Batch {
+    rays: Vec<Ray>,
+    hits: Vec<Option<Hit>>,
+    /// The colours of the samples, in their order.
+    pub colors: Vec<DVec3>,
+    occlusion: Occlusion,
+}
+
+/// Rays of which only it is asked whether they meet anything, and the samples
+/// they are for.
+#[derive(Default)]
+struct Occlusion {
+    samples: Vec<usize>,
+    rays: Vec<Ray>,
+    blocked: Vec<bool>,
+}
+
+impl Occlusion {
+    fn clear(&mut self) {
+        self.samples.clear();
+        self.rays.clear();
+    }
+
+    fn push(&mut self, sample: usize, ray: Ray) {
+        self.samples.push(sample);
+        self.rays.push(ray);
+    }
+
+    /// Traces the rays, and hands on the samples whose ray meets nothing.
+    fn free(&mut self, tracer: &Tracer) -> impl Iterator<Item = usize> {
+        tracer.occluded_batch(&self.rays, &mut self.blocked);
+        let answers = self.samples.iter().zip(&self.blocked);
+        answers.filter_map(|(sample, blocked)| (!blocked).then_some(*sample))
+    }
+}
+
 impl View<'_> {
-    /// The linear colour of one sample of the pixel in column `x`, row `y`.
-    pub(super) fn sample(
-        &self,
-        (x, y): (u32, u32),
-        sampler: &PixelSampler,
-        sample: u32,
-        rays: &mut RayCounts,
-    ) -> DVec3 {
-        let (across, down) = sampler.place(sample);
-        let position = DVec2::new(f64::from(x) + across, f64::from(y) + down);
-        let ray = self.camera.ray(position);
-        rays.camera += 1;
-        let hit = self.tracer.closest(&ray);
-        match (self.integrator, hit) {
+    /// Works out the linear colours of samples, which are best near each other.
+    pub(super) fn trace(&self, samples: &[Sample], batch: &mut Batch, rays: &mut RayCounts) {
+        batch.rays.clear();
+        batch.rays.extend(samples.iter().map(|sample| {
+            let (across, down) = sample.sampler.place(sample.number);
+            let (x, y) = sample.pixel;
+            let position = DVec2::new(f64::from(x) + across, f64::from(y) + down);
+            self.camera.ray(position)
+        }));
+        rays.camera += samples.len() as u64;
+        self.tracer.closest_batch(&batch.rays, &mut batch.hits);
+
+        batch.colors.clear();
+        let color = |hit: &Option<Hit>| match (self.integrator, hit) {
             (Integrator::Normal, Some(hit)) => hit.normal * 0.5 + 0.5,
-            (Integrator::Normal, None) => DVec3::ZERO,
-            (Integrator::Ao, Some(hit)) => {
-                DVec3::splat(self.openness(&ray, &hit, sampler.direction(sample), rays))
-            }
+            (Integrator::Normal, None) | (Integrator::Ao | Integrator::Sun, Some(_)) => DVec3::ZERO,
             (Integrator::Ao, None) => DVec3::ONE,
-            (Integrator::Sun, Some(hit)) => {
-                let reflectance = self.materials[usize::from(hit.material.0)].color;
-                let sunlight = self.sunlight(&ray, &hit, rays);
-                let skylight = self.lights.sky().map_or(DVec3::ZERO, |radiance| {
-                    radiance * self.openness(&ray, &hit, sampler.direction(sample), rays)
-                });
-                reflectance * (sunlight * std::f64::consts::FRAC_1_PI + skylight)
-            }
             (Integrator::Sun, None) => self.lights.miss(),
-        }
-    }
-
-    /// The sun's irradiance at a hit. No ray is spent on a surface that faces
-    /// away.
-    fn sunlight(&self, ray: &Ray, hit: &Hit, rays: &mut RayCounts) -> DVec3 {
-        let Some(sun) = self.lights.sun() else {
-            return DVec3::ZERO;
         };
-        let cosine = facing_normal(ray, hit).dot(sun.direction);
-        if cosine <= 0.0 {
-            return DVec3::ZERO;
+        batch.colors.extend(batch.hits.iter().map(color));
+        match self.integrator {
+            Integrator::Normal => {}
+            Integrator::Ao => self.add_sky(samples, batch, rays, DVec3::ONE),
+            Integrator::Sun => {
+                self.add_sunlight(batch, rays);
+                if let Some(radiance) = self.lights.sky() {
+                    self.add_sky(samples, batch, rays, radiance);
+                }
+                for (color, hit) in batch.colors.iter_mut().zip(&batch.hits) {
+                    if let Some(hit) = hit {
+                        *color *= self.materials[usize::from(hit.material.0)].color;
+                    }
+                }
+            }
         }
-        rays.shadow += 1;
-        if self.tracer.occluded(&hit.spawn(sun.direction)) {
-            return DVec3::ZERO;
-        }
-        sun.irradiance * cosine
     }
 
-    /// 1 when a direction drawn with `numbers` leaves the scene, else 0.
-    fn openness(&self, ray: &Ray, hit: &Hit, numbers: (f64, f64), rays: &mut RayCounts) -> f64 {
-        rays.ao += 1;
-        let direction = cosine_direction(facing_normal(ray, hit), numbers);
-        if self.tracer.occluded(&hit.spawn(direction)) {
-            0.0
-        } else {
-            1.0
+    /// Adds the sun's light at the hits: its irradiance over π. No ray is spent
+    /// on a surface that faces away.
+    fn add_sunlight(&self, batch: &mut Batch, rays: &mut RayCounts) {
+        let Some(sun) = self.lights.sun() else {
+            return;
+        };
+        let shadows = &mut batch.occlusion;
+        shadows.clear();
+        let cosine = |ray: &Ray, hit: &Hit| facing_normal(ray, hit).dot(sun.direction);
+        for (sample, (ray, hit)) in batch.rays.iter().zip(&batch.hits).enumerate() {
+            if let Some(hit) = hit.as_ref().filter(|hit| cosine(ray, hit) > 0.0) {
+                shadows.push(sample, hit.spawn(sun.direction));
+            }
+        }
+        rays.shadow += shadows.rays.len() as u64;
+        for sample in shadows.free(self.tracer) {
+            if let Some(hit) = &batch.hits[sample] {
+                let cosine = cosine(&batch.rays[sample], hit);
+                batch.colors[sample] += sun.irradiance * cosine * std::f64::consts::FRAC_1_PI;
+            }
+        }
+    }
+
+    /// Adds `radiance` at the hits from which a direction drawn with the sample's
+    /// numbers leaves the scene.
+    fn add_sky(
+        &self,
+        samples: &[Sample],
+        batch: &mut Batch,
+        rays: &mut RayCounts,
+        radiance: DVec3,
+    ) {
+        let openings = &mut batch.occlusion;
+        openings.clear();
+        for (number, (ray, hit)) in batch.rays.iter().zip(&batch.hits).enumerate() {
+            if let Some(hit) = hit {
+                let numbers = samples[number].direction();
+                let direction = cosine_direction(facing_normal(ray, hit), numbers);
+                openings.push(number, hit.spawn(direction));
+            }
+        }
+        rays.ao += openings.rays.len() as u64;
+        for sample in openings.free(self.tracer) {
+            batch.colors[sample] += radiance;
         }
     }
 }

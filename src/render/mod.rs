@@ -26,7 +26,7 @@ pub use output::{Format, Output, OutputError, png_bytes};
 pub use sampler::PixelSampler;
 pub use srgb::encode as srgb_encode;
 
-use crate::scene::{self, AimedCamera, Integrator, Scene};
+use crate::scene::{self, AimedCamera, Integrator, Scene, ViewVolume};
 use crate::tracer::Tracer;
 use integrator::View;
 
@@ -54,6 +54,18 @@ impl Settings {
             integrator: scene.render.integrator,
             seed: 0,
         }
+    }
+
+    /// The part of space that all rays of the picture will be in, where that is
+    /// known before the scene is built: rays of the camera stay in its view,
+    /// and with normals there are no others.
+    #[must_use]
+    pub fn view(&self, scene: &Scene) -> Option<ViewVolume> {
+        let camera = match self.integrator {
+            Integrator::Normal => AimedCamera::stated(&scene.camera, self.film)?,
+            Integrator::Ao | Integrator::Sun => return None,
+        };
+        Some(camera.view_volume())
     }
 
     /// Says whether a picture can be made with these settings.
@@ -109,8 +121,8 @@ pub enum RenderError {
 /// [`crate::tracer::workers`]).
 ///
 /// `progress` is told the number of pixels done since the last call, from any
-/// of the threads. The rendering ends within a pixel of every thread when
-/// `cancelled` becomes true.
+/// of the threads. The rendering ends within some hundred samples of every
+/// thread when `cancelled` becomes true.
 ///
 /// # Errors
 /// When the settings are unusable (see [`Settings::check`]), or the rendering

@@ -14,14 +14,14 @@
 use crate::math::Random;
 
 /// The numbers of one pixel.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct PixelSampler {
     place: PairKey,
     direction: PairKey,
 }
 
 /// The hashes of one pair of dimensions.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct PairKey {
     order: u32,
     first: u32,

@@ -8,12 +8,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::integrator::View;
+use super::integrator::{Batch, Sample, View};
 use super::{Film, PixelSampler, RayCounts, RenderError, Settings};
 
 /// Edge of a tile in pixels: near rays share what they read, and even a small
 /// picture has tiles for many threads.
 const TILE: u32 = 16;
+const _: () = assert!(TILE <= 16, "`every_second_bit` has four bits");
+
+/// Samples that are traced together: enough to fill packets, also of the rays
+/// that only some of them send out, and few enough to stay in the cache.
+const SAMPLES_AT_ONCE: usize = 256;
 
 struct Tile {
     x: u32,
@@ -72,21 +77,55 @@ fn render_tile(
     tile: &Tile,
     cancelled: &AtomicBool,
 ) -> Result<(Vec<[f32; 3]>, RayCounts), RenderError> {
-    let mut colors = Vec::with_capacity((tile.width * tile.height) as usize);
+    let pixels: Vec<_> = tile.pixels_along_curve().collect();
+    let mut sums = vec![DVec3::ZERO; pixels.len()];
     let mut rays = RayCounts::default();
-    for y in tile.y..tile.y + tile.height {
-        for x in tile.x..tile.x + tile.width {
-            if cancelled.load(Ordering::Relaxed) {
-                return Err(RenderError::Cancelled);
+    let (mut batch, mut samples) = (Batch::default(), Vec::new());
+    // Samples of a pixel stand together, and those of its neighbours next to
+    // them.
+    let count = pixels.len() as u64 * u64::from(settings.spp);
+    for first in (0..count).step_by(SAMPLES_AT_ONCE) {
+        if cancelled.load(Ordering::Relaxed) {
+            return Err(RenderError::Cancelled);
+        }
+        let numbers = first..count.min(first + SAMPLES_AT_ONCE as u64);
+        let place = |number: u64| (number / u64::from(settings.spp)) as usize;
+        samples.clear();
+        samples.extend(numbers.clone().map(|number| {
+            let (column, row) = pixels[place(number)];
+            let pixel = (tile.x + column, tile.y + row);
+            let index = u64::from(pixel.1) * u64::from(settings.film.width) + u64::from(pixel.0);
+            Sample {
+                pixel,
+                sampler: PixelSampler::new(settings.seed, index),
+                number: (number % u64::from(settings.spp)) as u32,
             }
-            let pixel = u64::from(y) * u64::from(settings.film.width) + u64::from(x);
-            let sampler = PixelSampler::new(settings.seed, pixel);
-            let sum: DVec3 = (0..settings.spp)
-                .map(|sample| view.sample((x, y), &sampler, sample, &mut rays))
-                .sum();
-            let mean = sum / f64::from(settings.spp);
-            colors.push(mean.as_vec3().to_array());
+        }));
+        view.trace(&samples, &mut batch, &mut rays);
+        for (number, color) in numbers.zip(&batch.colors) {
+            sums[place(number)] += *color;
         }
     }
+    let mut colors = vec![[0.0; 3]; pixels.len()];
+    for (&(column, row), sum) in pixels.iter().zip(sums) {
+        let mean = sum / f64::from(settings.spp);
+        colors[(row * tile.width + column) as usize] = mean.as_vec3().to_array();
+    }
     Ok((colors, rays))
+}
+
+impl Tile {
+    /// Columns and rows of the tile along a curve of Morton's, whose runs of 4,
+    /// 16, 64 are squares.
+    fn pixels_along_curve(&self) -> impl Iterator<Item = (u32, u32)> {
+        let (width, height) = (self.width, self.height);
+        (0..TILE * TILE)
+            .map(|place| (every_second_bit(place), every_second_bit(place >> 1)))
+            .filter(move |&(column, row)| column < width && row < height)
+    }
+}
+
+/// The number whose bits are bits 0, 2, 4 and 6.
+fn every_second_bit(bits: u32) -> u32 {
+    bits & 1 | bits >> 1 & 2 | bits >> 2 & 4 | bits >> 3 & 8
 }

@@ -45,10 +45,11 @@ fn scene() -> Scene {
 fn changed(scene: &Scene, change: impl Fn(&Cylinder) -> Cylinder) -> Tracer {
     let mut scene = scene.clone();
     for prototype in &mut scene.prototypes {
-        for record in &mut prototype.cylinders {
+        let records = prototype.cylinders.iter().map(|record| {
             let cylinder = change(&record.cylinder());
-            *record = CylinderRecord::new(&cylinder, record.primitive(), MaterialIndex(0));
-        }
+            CylinderRecord::new(&cylinder, record.primitive(), MaterialIndex(0))
+        });
+        prototype.cylinders = records.collect();
     }
     tracer(&Arc::new(scene))
 }

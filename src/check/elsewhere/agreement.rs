@@ -212,7 +212,7 @@ fn judge(
             met.push(solid);
         }
     }
-    let frames: Vec<(Frame, &CylinderRecord)> = met
+    let frames: Vec<(Frame, CylinderRecord)> = met
         .iter()
         .filter_map(|(instance, primitive)| find(tracer.scene(), instance, *primitive))
         .map(|(placements, record)| {
@@ -259,7 +259,7 @@ fn find<'a>(
     scene: &'a Scene,
     instance: &[u32],
     primitive: u32,
-) -> Option<(Vec<&'a DAffine3>, &'a CylinderRecord)> {
+) -> Option<(Vec<&'a DAffine3>, CylinderRecord)> {
     let mut prototype = &scene.prototypes[PrototypeIndex::ROOT.0 as usize];
     let mut placements = Vec::new();
     for &number in instance {
@@ -268,8 +268,7 @@ fn find<'a>(
         prototype = &scene.prototypes[placement.of.0 as usize];
     }
     let records = &prototype.cylinders;
-    let found = records.binary_search_by_key(&primitive, CylinderRecord::primitive);
-    Some((placements, &records[found.ok()?]))
+    Some((placements, records.get(records.position(primitive)?)))
 }
 
 /// The exact `t` of the first hit with the solid of a hit, by the oracle;

@@ -283,7 +283,8 @@ impl<'a> Tree<'a> {
         let mut number = random.below(self.root().count);
         loop {
             let prototype = &self.scene.prototypes[index.0 as usize];
-            if let Some(record) = prototype.cylinders.get(number as usize) {
+            if number < prototype.cylinders.len() as u64 {
+                let record = prototype.cylinders.get(number as usize);
                 return PlacedSolid {
                     cylinder: record.cylinder(),
                     frame,

@@ -53,7 +53,7 @@ pub fn figures(
         "listed": listed.chain(told_listed).collect::<Vec<_>>(),
         "windows": outcome.windows,
         "seed": arguments.seed,
-        "cylinders": json::cylinders(tracer.statistics()),
+        "cylinders": json::cylinders(&tracer.statistics()),
         "embree": tracer.statistics().embree_version,
         "isa": tracer.statistics().isa,
         "check_s": elapsed,

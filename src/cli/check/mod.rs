@@ -20,6 +20,7 @@ use cyltrace::scene::Film;
 use cyltrace::tracer::Tracer;
 
 use super::arguments::{CheckArguments, Rays};
+use super::limit::{Limit, Need};
 use super::memory::readable;
 use super::outputs::Files;
 use super::print::print;
@@ -84,7 +85,7 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
     let file = scene::read(&arguments.scene)?;
     files.check_with(&file)?;
     let told = workers.install(|| Told::read(arguments))?;
-    let loaded = Arc::new(scene::load(common, file)?);
+    let loaded = Arc::new(scene::load(common, file, Need::Build, Limit::available())?);
     let tracer = scene::build(common, &loaded)?;
     let settings = settings(arguments);
     if let Some(which) = &arguments.replay {

@@ -62,7 +62,7 @@ pub(in crate::check) fn random_window(random: &mut Random) -> Window {
         });
     }
     prototypes.push(Prototype {
-        cylinders: vec![CylinderRecord::new(&cylinder, 0, MaterialIndex(0))],
+        cylinders: vec![CylinderRecord::new(&cylinder, 0, MaterialIndex(0))].into(),
         ..Prototype::default()
     });
     windows(&Scene::new(prototypes), 100, 0).remove(0)

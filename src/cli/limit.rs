@@ -1,0 +1,155 @@
+//! What a scene may take of memory, and the refusal of one that takes more.
+//!
+//! A scene is refused by its counts, before any record is made: the system
+//! would end the program otherwise, when it is too late for a message.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::anyhow;
+use clap::{Args, ValueEnum};
+use cyltrace::embree::MaxIsa;
+use cyltrace::scene::{Contents, PlacedCount};
+use cyltrace::tracer::{Layout, MemoryEstimate};
+
+use super::memory::{kibibytes_of, parse_size, readable};
+
+/// Most lines about what takes the memory.
+const MOST_SHOWN: usize = 6;
+
+/// What a scene may take.
+#[derive(Args, Debug)]
+pub struct MemoryArguments {
+    /// Refuse a scene that takes more memory than SIZE, such as 500MB or 4GiB
+    /// [default: what the system has available]
+    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+    pub max_memory: Option<u64>,
+    /// How cylinders lie in memory: one a primitive of Embree's, or blocks of
+    /// eight, which is less in Embree and suits rays that have nothing in common
+    #[arg(long, value_name = "NAME", value_enum, default_value_t = LayoutName::Single)]
+    pub layout: LayoutName,
+}
+
+/// A layout by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LayoutName {
+    /// One cylinder a primitive.
+    Single,
+    /// Eight cylinders a primitive.
+    Block,
+}
+
+impl From<LayoutName> for Layout {
+    fn from(name: LayoutName) -> Self {
+        match name {
+            LayoutName::Single => Self::Single,
+            LayoutName::Block => Self::Block,
+        }
+    }
+}
+
+/// What is made of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// Its records.
+    Records,
+    /// Its records, and what is traced.
+    Build,
+}
+
+/// How much memory may be taken.
+#[derive(Clone, Copy, Debug)]
+pub struct Limit {
+    /// None where the system does not say.
+    bytes: Option<u64>,
+    is_stated: bool,
+    /// How cylinders will lie in memory.
+    layout: Layout,
+}
+
+impl Limit {
+    /// The one that `--max-memory` states, else what the system has available.
+    pub fn of(arguments: &MemoryArguments) -> Self {
+        match arguments.max_memory {
+            Some(bytes) => Self {
+                bytes: Some(bytes),
+                is_stated: true,
+                layout: arguments.layout.into(),
+            },
+            None => Self {
+                layout: arguments.layout.into(),
+                ..Self::available()
+            },
+        }
+    }
+
+    /// What the system can give without swapping, where it says so as Linux
+    /// does.
+    pub fn available() -> Self {
+        let told = fs::read_to_string("/proc/meminfo").ok();
+        Self {
+            bytes: told.and_then(|told| kibibytes_of(&told, "MemAvailable:")),
+            is_stated: false,
+            layout: Layout::default(),
+        }
+    }
+
+    /// Refuses a scene that needs more.
+    pub fn check(
+        self,
+        path: &Path,
+        contents: &[Contents],
+        need: Need,
+        max_isa: Option<MaxIsa>,
+    ) -> anyhow::Result<()> {
+        let estimate = MemoryEstimate::of(contents, self.layout, max_isa);
+        let needed = match need {
+            Need::Records => estimate.records_bytes,
+            Need::Build => estimate.peak_bytes(),
+        };
+        let Some(allowed) = self.bytes.filter(|&allowed| needed > allowed) else {
+            return Ok(());
+        };
+        let allowed = readable(allowed);
+        let allowed = match self.is_stated {
+            true => format!("--max-memory allows {allowed}"),
+            false => format!("the system has {allowed} available; --max-memory SIZE allows more"),
+        };
+        Err(anyhow!(
+            "{}: the scene needs up to {} of memory, {allowed}\n{}",
+            path.display(),
+            readable(needed),
+            takers(contents, &estimate, need, needed)
+        ))
+    }
+}
+
+/// What takes at least a hundredth of the memory, the most first.
+fn takers(contents: &[Contents], estimate: &MemoryEstimate, need: Need, needed: u64) -> String {
+    let quoted = |name: &str| match name {
+        "" => "the scene itself".to_owned(),
+        name => format!("\"{name}\""),
+    };
+    let mut lines: Vec<(u64, String)> = Vec::new();
+    for prototype in contents {
+        let (cylinders, name) = (prototype.cylinders, quoted(&prototype.name));
+        let bytes = MemoryEstimate::of_records(cylinders, prototype.records, 0);
+        lines.push((bytes, format!("{cylinders} cylinders in {name}")));
+        for &PlacedCount { of, count } in &prototype.placed {
+            let bytes = MemoryEstimate::of_records(0, prototype.records, count);
+            let of = quoted(&contents[of.0 as usize].name);
+            lines.push((bytes, format!("{count} placements of {of} in {name}")));
+        }
+    }
+    if need == Need::Build {
+        lines.push((estimate.copies_bytes, "cylinders in blocks".to_owned()));
+        lines.push((estimate.embree_bytes, "Embree's trees of them".to_owned()));
+        let building = "Embree, while it builds".to_owned();
+        lines.push((estimate.building_bytes, building));
+    }
+    lines.retain(|(bytes, _)| *bytes > needed / 100);
+    lines.sort_by_key(|(bytes, _)| std::cmp::Reverse(*bytes));
+    let shown = lines.iter().take(MOST_SHOWN);
+    let shown = shown.map(|(bytes, what)| format!("  {:>8}  {what}", readable(*bytes)));
+    shown.collect::<Vec<_>>().join("\n")
+}
