@@ -28,8 +28,9 @@
 //!
 //! **While building**, Embree has one reference of 32 bytes to each primitive of
 //! the scene it builds, in an array whose size is the next power of two. That
-//! is exact in every measurement. Built at once, scenes come one after the other;
-//! the peak is taken to come with the largest, when all others are there.
+//! is exact in every measurement with Embree 3.13.5; Embree 4.4 takes room for just
+//! as many as there are, which is less. Built at once, scenes come one after the
+//! other; the peak is taken to come with the largest, when all others are there.
 
 use super::options::Layout;
 use super::prototype::block_bytes;
@@ -281,7 +282,12 @@ mod tests {
                     }
                     // A device itself has held more than the least scenes need.
                     if count >= 100 {
-                        assert_eq!(peak - bytes, estimate.building_bytes, "{case}");
+                        let references = peak - bytes;
+                        assert!(
+                            references <= estimate.building_bytes,
+                            "{case}: {references}"
+                        );
+                        assert!(references >= REFERENCE * cylinders, "{case}: {references}");
                     }
                 }
             }
