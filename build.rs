@@ -18,19 +18,16 @@ use locate::{Embree, VARIABLES, locate};
 
 /// The C functions that Rust calls itself; all others stay out of the bindings.
 const FUNCTIONS: &str = "cyltrace_.*|rtc(New|Release)(Device|Scene|Geometry)\
-    |rtc(Attach|Commit)Geometry|rtc(Commit|JoinCommit)Scene|rtcGetSceneBounds|rtcSetScene(Flags|BuildQuality)\
+    |rtc(Attach|Commit)Geometry|rtc(Commit|JoinCommit)Scene|rtcGetSceneBounds|rtcSetSceneFlags\
     |rtcGetDevice(Property|Error)|rtcSetDevice(Error|MemoryMonitor)Function\
     |rtcSetGeometry(InstancedScene|Transform|Mask|UserData|UserPrimitiveCount)|rtcSetNewGeometryBuffer\
     |rtcSetGeometry(Bounds|Intersect|Occluded|IntersectFilter)Function";
 
 /// The constants of C enumerations that Rust names.
-const CONSTANTS: [&str; 35] = [
+const CONSTANTS: [&str; 30] = [
     "RTC_BUFFER_TYPE_FLAGS",
     "RTC_BUFFER_TYPE_INDEX",
     "RTC_BUFFER_TYPE_VERTEX",
-    "RTC_BUILD_QUALITY_HIGH",
-    "RTC_BUILD_QUALITY_LOW",
-    "RTC_BUILD_QUALITY_MEDIUM",
     "RTC_DEVICE_PROPERTY_BACKFACE_CULLING_ENABLED",
     "RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED",
     "RTC_DEVICE_PROPERTY_JOIN_COMMIT_SUPPORTED",
@@ -57,8 +54,6 @@ const CONSTANTS: [&str; 35] = [
     "RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE",
     "RTC_GEOMETRY_TYPE_TRIANGLE",
     "RTC_GEOMETRY_TYPE_USER",
-    "RTC_SCENE_FLAG_COMPACT",
-    "RTC_SCENE_FLAG_DYNAMIC",
     "RTC_SCENE_FLAG_ROBUST",
 ];
 

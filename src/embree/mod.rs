@@ -101,5 +101,5 @@ pub use packet::{Coherence, PacketWidth, Rays32};
 pub use query::{NoPackets, Query};
 pub use ray::{Box32, GREATEST_COORDINATE, NativeHit, Ray32};
 pub use ray_set::{GREATEST_PACKET, RayNumbers, RaySet};
-pub use scene::{BuildQuality, GeometryId, Scene, SceneBuilder, SceneKind};
+pub use scene::{GeometryId, Scene, SceneBuilder};
 pub use user::UserGeometry;

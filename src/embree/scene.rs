@@ -78,29 +78,6 @@ pub(super) struct Parts {
     device: Device,
 }
 
-/// How much effort goes into a hierarchy: more of it builds slower, and is
-/// faster to trace.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum BuildQuality {
-    /// Sorted along a space-filling curve.
-    Low,
-    /// Split by the surface area heuristic.
-    Medium,
-    /// That, and primitives may be split, where their kind allows it.
-    High,
-}
-
-/// What a hierarchy is made for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum SceneKind {
-    /// Speed of queries.
-    Fast,
-    /// Little memory.
-    Compact,
-    /// A quick build, as of a scene that changes.
-    Dynamic,
-}
-
 /// A scene that is being put together, for queries with a state of type `Q`.
 ///
 /// Whatever is attached belongs to the scene and is dropped with it, exactly
@@ -127,7 +104,12 @@ impl<Q: Query> SceneBuilder<Q> {
         // SAFETY: invariant 1.
         let handle = SceneHandle(unsafe { sys::rtcNewScene(device.handle()) });
         device.check("make a scene")?;
-        let mut builder = Self {
+        // Meshes are the witness of exact answers, so no ray may slip between
+        // two triangles. User geometry is the same with and without.
+        // SAFETY: invariants 1 and 5.
+        unsafe { sys::rtcSetSceneFlags(handle.0, sys::RTC_SCENE_FLAG_ROBUST) };
+        device.check("set a scene's flags")?;
+        Ok(Self {
             parts: Parts {
                 handle,
                 user_data: Vec::new(),
@@ -136,9 +118,7 @@ impl<Q: Query> SceneBuilder<Q> {
             },
             query: PhantomData,
             unshared: PhantomData,
-        };
-        builder.set_kind(SceneKind::Fast)?;
-        Ok(builder)
+        })
     }
 
     /// Adds a geometry whose primitives `geometry` bounds and intersects.
@@ -207,41 +187,6 @@ impl<Q: Query> SceneBuilder<Q> {
     #[must_use]
     pub fn into_joint(self) -> JointCommit<Q> {
         JointCommit::new(self.parts)
-    }
-
-    /// How much effort goes into the hierarchy; a new builder's is
-    /// [`BuildQuality::Medium`].
-    ///
-    /// # Errors
-    /// When Embree refuses.
-    pub fn set_build_quality(&mut self, quality: BuildQuality) -> Result<(), Error> {
-        let quality = match quality {
-            BuildQuality::Low => sys::RTC_BUILD_QUALITY_LOW,
-            BuildQuality::Medium => sys::RTC_BUILD_QUALITY_MEDIUM,
-            BuildQuality::High => sys::RTC_BUILD_QUALITY_HIGH,
-        };
-        // SAFETY: invariants 1 and 5.
-        unsafe { sys::rtcSetSceneBuildQuality(self.parts.handle.0, quality) };
-        self.device().check("set a scene's build quality")
-    }
-
-    /// What kind of hierarchy is built; a new builder's is
-    /// [`SceneKind::Fast`].
-    ///
-    /// # Errors
-    /// When Embree refuses.
-    pub fn set_kind(&mut self, kind: SceneKind) -> Result<(), Error> {
-        let flag = match kind {
-            SceneKind::Fast => sys::RTCSceneFlags(0),
-            SceneKind::Compact => sys::RTC_SCENE_FLAG_COMPACT,
-            SceneKind::Dynamic => sys::RTC_SCENE_FLAG_DYNAMIC,
-        };
-        // Meshes are the witness of exact answers, so no ray may slip between
-        // two triangles. User geometry is the same with and without.
-        let flags = sys::RTCSceneFlags(flag.0 | sys::RTC_SCENE_FLAG_ROBUST.0);
-        // SAFETY: invariants 1 and 5.
-        unsafe { sys::rtcSetSceneFlags(self.parts.handle.0, flags) };
-        self.device().check("set a scene's flags")
     }
 }
 
