@@ -178,6 +178,7 @@ impl From<&Hit> for CyltraceHit {
                 Part::Side => CYLTRACE_SIDE,
                 Part::Cap0 => CYLTRACE_CAP0,
                 Part::Cap1 => CYLTRACE_CAP1,
+                part => part.not_of_a_cylinder(),
             },
             crossing: match hit.crossing {
                 Crossing::Enter => CYLTRACE_ENTER,

@@ -166,6 +166,7 @@ impl Problem {
             Part::Side => true,
             Part::Cap0 => self.caps.at_p0(),
             Part::Cap1 => self.caps.at_p1(),
+            part => part.not_of_a_cylinder(),
         }
     }
 

@@ -81,6 +81,7 @@ impl PartOf {
             }
             Part::Cap0 => (&self.p0 + &within, self.axis.clone()),
             Part::Cap1 => (&(&self.p0 + &self.axis) + &within, self.axis.clone()),
+            part => part.not_of_a_cylinder(),
         }
     }
 
@@ -112,12 +113,14 @@ impl PartOf {
             }
             Part::Cap0 => -long(&height) / long(&height_rate),
             Part::Cap1 => (exact(1.0) - long(&height)) / long(&height_rate),
+            part => part.not_of_a_cylinder(),
         };
         let reached = point + &direction.times(&step);
         let (height, radial) = self.height_and_radial(&(&reached - &self.p0));
         let is_on_part = match self.part {
             Part::Side => height >= zero() && height <= exact(1.0),
             Part::Cap0 | Part::Cap1 => radial.dot(&radial) <= rr,
+            part => part.not_of_a_cylinder(),
         };
         is_on_part.then_some(reached)
     }

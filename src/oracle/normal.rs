@@ -26,6 +26,7 @@ pub fn outward_normal(cylinder: &Cylinder, ray: &Ray, hit: &TrueHit) -> DVec3 {
             let q = &x + &ExactVector::new(ray.direction).times(&hit.t);
             &q.times(&a.dot(&a)) - &a.times(&a.dot(&q))
         }
+        part => part.not_of_a_cylinder(),
     };
     // Divided by the largest component first, so that squares stay in range.
     let largest = outward.0.iter().fold(zero(), |largest, x| {

@@ -1,6 +1,7 @@
 //! What a solid is, and the solvers that intersect rays with it.
 
 mod chord;
+mod convex;
 mod cylinder;
 pub mod exact;
 pub mod formulations;
@@ -12,6 +13,7 @@ pub mod tessellation;
 pub mod triple_product;
 
 pub use chord::{Chord, ChordEnd, Meeting};
+pub use convex::ConvexSolid;
 pub use cylinder::{Caps, Cylinder, CylinderError};
 pub use spawn::{SpawnMargin, spawned_ray};
 pub use surface::{SurfacePoint, surface_point};
@@ -21,6 +23,16 @@ pub use surface::{SurfacePoint, surface_point};
 pub enum SolidKind {
     /// A circular cylinder, see [`Cylinder`].
     Cylinder,
+    /// A part of a circular cone between two discs.
+    Cone,
+    /// Two spheres and the cone that touches both.
+    RoundedCone,
+    /// A ball.
+    Sphere,
+    /// A box that may be turned.
+    Cuboid,
+    /// A flat disk.
+    Disk,
 }
 
 impl SolidKind {
@@ -29,6 +41,11 @@ impl SolidKind {
     pub fn name(self) -> &'static str {
         match self {
             Self::Cylinder => "cylinder",
+            Self::Cone => "cone",
+            Self::RoundedCone => "rounded_cone",
+            Self::Sphere => "sphere",
+            Self::Cuboid => "cuboid",
+            Self::Disk => "disk",
         }
     }
 }
@@ -36,12 +53,24 @@ impl SolidKind {
 /// The part of a solid's surface that a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Part {
-    /// The curved wall.
+    /// The curved wall; all of a sphere or a disk.
     Side,
-    /// The disc at `p0`, its rim included.
+    /// The disc at `p0`, its rim included; of a rounded cone the sphere there.
     Cap0,
-    /// The disc at `p1`, its rim included.
+    /// The disc at `p1`, its rim included; of a rounded cone the sphere there.
     Cap1,
+    /// The face of a cuboid where its own x is least.
+    XMin,
+    /// Where x is greatest.
+    XMax,
+    /// Where y is least.
+    YMin,
+    /// Where y is greatest.
+    YMax,
+    /// Where z is least.
+    ZMin,
+    /// Where z is greatest.
+    ZMax,
 }
 
 impl Part {
@@ -52,7 +81,19 @@ impl Part {
             Self::Side => "side",
             Self::Cap0 => "cap0",
             Self::Cap1 => "cap1",
+            Self::XMin => "x-",
+            Self::XMax => "x+",
+            Self::YMin => "y-",
+            Self::YMax => "y+",
+            Self::ZMin => "z-",
+            Self::ZMax => "z+",
         }
+    }
+
+    /// The panic of code that knows of cylinders alone.
+    #[cold]
+    pub(crate) fn not_of_a_cylinder(self) -> ! {
+        unreachable!("a cylinder has no part {}", self.name())
     }
 }
 

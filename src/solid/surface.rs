@@ -60,6 +60,7 @@ pub fn surface_point(cylinder: &Cylinder, part: Part, from_p0: DVec3) -> Surface
         Part::Side => (from_p0.dot(a) / a.length_squared()).clamp(0.0, 1.0),
         Part::Cap0 => 0.0,
         Part::Cap1 => 1.0,
+        part => part.not_of_a_cylinder(),
     };
     let from_axis = from_p0 - a * (from_p0.dot(a) / a.length_squared());
     let radial = from_axis - axis * from_axis.dot(axis);
@@ -75,6 +76,7 @@ pub fn surface_point(cylinder: &Cylinder, part: Part, from_p0: DVec3) -> Surface
         Part::Side => (p0 + (a * v + outward * radius), outward),
         Part::Cap0 => (p0 + outward * distance.min(radius), -axis),
         Part::Cap1 => (p1 + outward * distance.min(radius), axis),
+        part => part.not_of_a_cylinder(),
     };
     let along = if part == Part::Side {
         4.0 * a.length()

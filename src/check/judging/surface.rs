@@ -153,6 +153,7 @@ impl<'a> LocalRay<'a> {
                 let rounding = rounding + 4.0 * UNIT_ROUNDOFF * self.length;
                 cylinder.caps().at_p1() && low_height.max(high_height) >= self.length - rounding
             }
+            part => part.not_of_a_cylinder(),
         }
     }
 
@@ -173,6 +174,7 @@ impl<'a> LocalRay<'a> {
                 let rounding = rounding + self.condition * turned;
                 (world(low_off), world(high_off), rounding)
             }
+            part => part.not_of_a_cylinder(),
         };
         let allowed = angle(one, other) + rounding + NORMAL_SLACK;
         let excess = angle(normal, one).max(angle(normal, other)) - allowed;

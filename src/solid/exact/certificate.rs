@@ -276,6 +276,7 @@ impl Certifier<'_> {
             Part::Side => true,
             Part::Cap0 => caps.at_p0(),
             Part::Cap1 => caps.at_p1(),
+            part => part.not_of_a_cylinder(),
         };
         if !is_there | t.below(self.ray.t_min) | t.above(self.ray.t_max) {
             return Some(None);

@@ -329,6 +329,7 @@ impl<N: Number> Case<'_, N> {
             Part::Side => true,
             Part::Cap0 => self.caps.at_p0(),
             Part::Cap1 => self.caps.at_p1(),
+            part => part.not_of_a_cylinder(),
         };
         is_there.then_some(part)
     }

@@ -113,6 +113,7 @@ impl<S: Real> Solver<S> for CrossProduct {
         let outward = match part {
             Part::Side => (ci - record.axis * ci.dot(record.axis)) / record.radius,
             Part::Cap0 | Part::Cap1 => disc_normal::<S>(record.axis, part),
+            part => part.not_of_a_cylinder(),
         };
         match self.facing {
             Facing::Viewer if (ray.origin - i).dot(outward) < S::ZERO => -outward,

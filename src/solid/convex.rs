@@ -1,0 +1,68 @@
+//! What a solid has to know of itself.
+//!
+//! Solids are closed convex sets (a disk is one without an inside), so a line is
+//! inside one in a single closed interval, its [`Chord`]. All that is asked of a
+//! ray follows from that interval and from which parts of the boundary are
+//! there; `chord.rs` has the one step that turns it into hits.
+
+use std::fmt::Debug;
+
+use glam::DVec3;
+
+use super::{Caps, Chord, Meeting, SolidKind, SurfacePoint};
+use crate::math::Bounds;
+
+/// A kind of solid. Adding one is a file with an implementation of this, and its
+/// truth in `oracle`.
+///
+/// Solvers are given a ray's origin as seen from the solid's
+/// [anchor](ConvexSolid::anchor): the difference is taken once, relative to
+/// wherever the caller's numbers are exact. The direction has a largest component
+/// between 2^-100 and 2^100 in size, and with the ranges that constructors enforce
+/// nothing overflows.
+pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
+    /// What it is called.
+    const KIND: SolidKind;
+
+    /// A box that holds it, rounded outward.
+    fn bounds(&self) -> Bounds;
+
+    /// The point that the solver counts from.
+    fn anchor(&self) -> DVec3;
+
+    /// Which discs the surface has; [`Caps::Both`] for solids without open ends.
+    fn caps(&self) -> Caps {
+        Caps::Both
+    }
+
+    /// The interval of `t` in which the line `anchor + from_anchor + t *
+    /// direction` is inside the closed solid, or `None` where it is not. A
+    /// non-finite argument is a miss.
+    fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord>;
+
+    /// The first point of that line on the surface, among those with
+    /// `t_min <= t + shift <= t_max`; see [`Chord::first`].
+    #[inline]
+    fn first(
+        &self,
+        from_anchor: DVec3,
+        direction: DVec3,
+        shift: f64,
+        t_min: f64,
+        t_max: f64,
+    ) -> Option<Meeting> {
+        let chord = self.chord(from_anchor, direction)?;
+        chord.first(self.caps(), shift, t_min, t_max)
+    }
+
+    /// The point of a part of the surface that is nearest to `anchor +
+    /// from_anchor`, its outward unit normal, parameters and error bound.
+    fn surface_point(&self, part: super::Part, from_anchor: DVec3) -> SurfacePoint;
+
+    /// Whether the closed solid holds a point. Exact: the point's numbers and
+    /// the solid's are taken as they are.
+    fn contains(&self, point: DVec3) -> bool;
+
+    /// Bounds the distance of any two of its points.
+    fn size(&self) -> f64;
+}
