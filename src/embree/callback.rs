@@ -15,6 +15,7 @@ use super::query::Query;
 use super::ray_set::{GREATEST_PACKET, RaySet};
 use super::sys::{self, word};
 use super::user::{Registered, UserGeometry};
+use crate::math::{LANES, LaneMask};
 
 /// The callbacks of one geometry type for one instruction set.
 #[derive(Clone, Copy)]
@@ -158,20 +159,14 @@ unsafe fn intersect_lanes<G: UserGeometry, const N: usize>(
     // SAFETY: the caller's promise.
     let lanes = unsafe { Lanes::<N>::read(valid, words) };
     let rays = lanes.rays();
-    let mut t_far = lanes.t_far_of_rays();
+    let mut t_far = [f32::NEG_INFINITY; GREATEST_PACKET];
     let guard = AbortOnPanic::new("intersect_packet");
     let hits = geometry.intersect_packet(primitive, rays, &mut t_far, packet) & rays;
     guard.passed();
 
     // SAFETY: the caller's promise, here and below; alignment is that of words.
     let valid = unsafe { &mut *valid.cast::<[i32; N]>() };
-    if hits.is_empty() {
-        *valid = [0; N];
-        return;
-    }
-    let hit = lanes.masks(hits);
-    let found = lanes.t_far_of_lanes(&t_far);
-    *valid = hit;
+    *valid = [0; N];
     // SAFETY: as above; these are three different components.
     let (ends, primitives, geometries) = unsafe {
         (
@@ -180,16 +175,12 @@ unsafe fn intersect_lanes<G: UserGeometry, const N: usize>(
             &mut *words.add(word::HIT_GEOMETRY * N).cast::<[u32; N]>(),
         )
     };
-    for lane in 0..N {
-        let is_hit = hit[lane] != 0;
-        let is_nearer = is_hit & (found[lane] < ends[lane]);
-        ends[lane] = if is_nearer { found[lane] } else { ends[lane] };
-        primitives[lane] = if is_hit { primitive } else { primitives[lane] };
-        geometries[lane] = if is_hit {
-            geometry_id
-        } else {
-            geometries[lane]
-        };
+    for ray in hits {
+        let lane = lanes.lane(ray);
+        valid[lane] = -1;
+        ends[lane] = ends[lane].min(t_far[ray]);
+        primitives[lane] = primitive;
+        geometries[lane] = geometry_id;
     }
 }
 
@@ -256,18 +247,15 @@ unsafe fn occluded_lanes<G: UserGeometry, const N: usize>(
     let hits = geometry.occluded_packet(primitive, rays, packet) & rays;
     guard.passed();
 
-    let hit = lanes.masks(hits);
     // SAFETY: the caller's promise, as in `intersect_lanes`.
-    unsafe { *valid.cast::<[i32; N]>() = hit };
+    let valid = unsafe { &mut *valid.cast::<[i32; N]>() };
+    *valid = [0; N];
     // SAFETY: as above.
     let ends = unsafe { &mut *words.add(word::RAY_T_FAR * N).cast::<[f32; N]>() };
-    for lane in 0..N {
-        let is_hit = hit[lane] != 0;
-        ends[lane] = if is_hit {
-            f32::NEG_INFINITY
-        } else {
-            ends[lane]
-        };
+    for ray in hits {
+        let lane = lanes.lane(ray);
+        valid[lane] = -1;
+        ends[lane] = f32::NEG_INFINITY;
     }
 }
 
@@ -283,7 +271,6 @@ struct Lanes<const N: usize> {
     /// Bit `i` tells whether lane `i` is active.
     active: u32,
     id: [u32; N],
-    t_far: [f32; N],
     /// Where the lanes are rays in a row, the number of the first one. Embree's
     /// widest code leaves them so, and then there is nothing to move.
     first: Option<usize>,
@@ -297,24 +284,28 @@ impl<const N: usize> Lanes<N> {
         // SAFETY: the caller's promise; alignment is that of words.
         let (valid, t_near, t_far, id) = unsafe {
             (
-                *valid.cast::<[i32; N]>(),
-                *words.add(word::RAY_T_NEAR * N).cast::<[f32; N]>(),
-                *words.add(word::RAY_T_FAR * N).cast::<[f32; N]>(),
-                *words.add(word::RAY_ID * N).cast::<[u32; N]>(),
+                &*valid.cast::<[i32; N]>(),
+                &*words.add(word::RAY_T_NEAR * N).cast::<[f32; N]>(),
+                &*words.add(word::RAY_T_FAR * N).cast::<[f32; N]>(),
+                &*words.add(word::RAY_ID * N).cast::<[u32; N]>(),
             )
         };
-        let (mut active, mut in_a_row) = (0, true);
+        let mut is_active = [LaneMask::splat(false); GREATEST_PACKET / LANES];
         for lane in 0..N {
-            let is_active = (valid[lane] == -1) & (t_far[lane] >= t_near[lane]);
-            active |= u32::from(is_active) << lane;
-            in_a_row &= id[lane] == id[0].wrapping_add(lane as u32);
+            is_active[lane / LANES].0[lane % LANES] =
+                (valid[lane] == -1) & (t_far[lane] >= t_near[lane]);
+        }
+        let bits = is_active.map(|mask| u32::from(mask.bits()));
+        let active = bits[0] | bits[1] << LANES;
+        let mut astray = 0;
+        for lane in 0..N {
+            astray |= id[lane] ^ id[0].wrapping_add(lane as u32);
         }
         let first = id[0] as usize;
         Self {
             active,
-            id,
-            t_far,
-            first: (in_a_row && first <= GREATEST_PACKET - N).then_some(first),
+            id: *id,
+            first: (astray == 0 && first <= GREATEST_PACKET - N).then_some(first),
         }
     }
 
@@ -324,62 +315,28 @@ impl<const N: usize> Lanes<N> {
         self.id[lane] as usize % GREATEST_PACKET
     }
 
-    #[inline(always)]
-    fn is_active(&self, lane: usize) -> bool {
-        self.active >> lane & 1 != 0
-    }
-
     /// The rays of the active lanes.
     #[inline(always)]
     fn rays(&self) -> RaySet {
         if let Some(first) = self.first {
             return RaySet::from_bits((self.active << first) as u16);
         }
-        let of_lane = |lane| u16::from(self.is_active(lane)) << self.ray(lane);
+        let of_lane = |lane| ((self.active >> lane & 1) as u16) << self.ray(lane);
         RaySet::from_bits((0..N).fold(0, |bits, lane| bits | of_lane(lane)))
     }
 
-    /// The ends of the rays, minus infinity for those without an active lane.
+    /// The active lane of a ray that has one.
     #[inline(always)]
-    fn t_far_of_rays(&self) -> [f32; GREATEST_PACKET] {
-        let mut t_far = [f32::NEG_INFINITY; GREATEST_PACKET];
+    fn lane(&self, ray: usize) -> usize {
         if let Some(first) = self.first {
-            t_far[first..first + N].copy_from_slice(&self.t_far);
-            return t_far;
+            return ray - first;
         }
-        for lane in (0..N).filter(|&lane| self.is_active(lane)) {
-            t_far[self.ray(lane)] = self.t_far[lane];
-        }
-        t_far
-    }
-
-    /// The ends of the lanes' rays.
-    #[inline(always)]
-    fn t_far_of_lanes(&self, of_rays: &[f32; GREATEST_PACKET]) -> [f32; N] {
-        let mut t_far = [f32::NEG_INFINITY; N];
-        if let Some(first) = self.first {
-            t_far.copy_from_slice(&of_rays[first..first + N]);
-            return t_far;
-        }
+        let mut found = 0;
         for lane in 0..N {
-            t_far[lane] = of_rays[self.ray(lane)];
+            if self.active >> lane & 1 != 0 && self.ray(lane) == ray {
+                found = lane;
+            }
         }
-        t_far
-    }
-
-    /// Embree's masks of the active lanes whose rays are in `hits`.
-    #[inline(always)]
-    fn masks(&self, hits: RaySet) -> [i32; N] {
-        let bits = u32::from(hits.bits());
-        let mut masks = [0; N];
-        for (lane, mask) in masks.iter_mut().enumerate() {
-            let ray = match self.first {
-                Some(first) => first + lane,
-                None => self.ray(lane),
-            };
-            let is_hit = self.active >> lane & bits >> ray & 1;
-            *mask = -(is_hit as i32);
-        }
-        masks
+        found
     }
 }

@@ -49,9 +49,9 @@ pub trait UserGeometry: Send + Sync + 'static {
     fn occluded(&self, primitive: u32, query: &mut Self::Query) -> bool;
 
     /// Intersects rays of a packet with a primitive, each as
-    /// [`intersect`](Self::intersect) does. `t_far` holds where Embree's rays
-    /// end, by their numbers; a hit is accepted for the rays that are in the
-    /// answer, which end at what `t_far` then holds for them.
+    /// [`intersect`](Self::intersect) does. A hit is accepted for the rays that
+    /// are in the answer, for which `t_far` then holds where they end, by their
+    /// numbers; what it holds before and for others has no meaning.
     ///
     /// `rays` may be any part of the packet. It need not hold all rays that may
     /// meet the box: for the others this is called again. And it may hold rays

@@ -8,6 +8,7 @@
 mod bounds;
 mod double_double;
 mod lanes;
+mod morton;
 mod placement;
 mod random;
 mod ray;
@@ -17,6 +18,7 @@ mod rounding;
 pub use bounds::Bounds;
 pub use double_double::DoubleDouble;
 pub use lanes::{LANES, LaneMask, LaneVectors, Lanes};
+pub use morton::{morton_code_2, morton_code_3};
 pub use placement::{ChildFromParent, PlacementErrors, frobenius_norm};
 pub use random::Random;
 pub use ray::{Ray, RayOf};

@@ -18,7 +18,10 @@
 //! become the same point, a radius that becomes zero and a number beyond f32 make
 //! no cylinder, and are refused.
 
+mod arrangement;
+
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3};
 
@@ -99,10 +102,13 @@ impl CylinderRecord32 {
     }
 }
 
-/// The cylinders of a prototype, in the order of their primitive numbers.
+/// The cylinders of a prototype. Each has its primitive number with it, whatever
+/// its position.
 #[derive(Clone, Debug)]
 pub struct CylinderList {
     kept: Kept,
+    /// The positions in the order of the primitive numbers, once it was asked for.
+    by_primitive: OnceLock<Vec<u32>>,
 }
 
 #[derive(Clone, Debug)]
@@ -160,7 +166,14 @@ impl CylinderList {
             Records::F64 => Kept::F64(Vec::new()),
             Records::F32 => Kept::F32(Rounded::default()),
         };
-        Self { kept }
+        Self::of(kept)
+    }
+
+    fn of(kept: Kept) -> Self {
+        Self {
+            kept,
+            by_primitive: OnceLock::new(),
+        }
     }
 
     /// Adds a cylinder at the end.
@@ -172,6 +185,7 @@ impl CylinderList {
             Kept::F64(records) => records.push(record),
             Kept::F32(rounded) => rounded.push(&record)?,
         }
+        self.by_primitive.take();
         Ok(())
     }
 
@@ -251,20 +265,18 @@ impl CylinderList {
         }
     }
 
-    /// The position of a primitive number in a list whose numbers ascend, as
-    /// those of scene files do.
+    /// The position of a primitive number. The first time all are sorted, which
+    /// takes 4 bytes a cylinder from then on.
     #[must_use]
     pub fn position(&self, primitive: u32) -> Option<usize> {
-        let (mut low, mut high) = (0, self.len());
-        while low < high {
-            let middle = low + (high - low) / 2;
-            if self.primitive(middle) < primitive {
-                low = middle + 1;
-            } else {
-                high = middle;
-            }
-        }
-        (low < self.len() && self.primitive(low) == primitive).then_some(low)
+        let by_primitive = self.by_primitive.get_or_init(|| {
+            let mut positions: Vec<u32> = (0..self.len() as u32).collect();
+            positions.sort_by_key(|&position| self.primitive(position as usize));
+            positions
+        });
+        let number = |&position: &u32| self.primitive(position as usize);
+        let place = by_primitive.binary_search_by_key(&primitive, number).ok()?;
+        Some(by_primitive[place] as usize)
     }
 
     /// All of them in order.
@@ -334,9 +346,7 @@ impl Default for CylinderList {
 
 impl From<Vec<CylinderRecord>> for CylinderList {
     fn from(records: Vec<CylinderRecord>) -> Self {
-        Self {
-            kept: Kept::F64(records),
-        }
+        Self::of(Kept::F64(records))
     }
 }
 

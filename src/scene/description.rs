@@ -68,7 +68,7 @@ pub struct MaterialIndex(pub u16);
 pub struct Prototype {
     /// The name in the scene file; empty for the root.
     pub name: String,
-    /// The cylinders, in the order of their primitive numbers.
+    /// The cylinders, in an order that suits tracing.
     pub cylinders: CylinderList,
     /// The placements, in the order of their instance numbers.
     pub placements: Vec<Placement>,

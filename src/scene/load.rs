@@ -165,6 +165,7 @@ impl Loader<'_> {
         placements.add_scatters(source, &scatters.collect::<Result<Vec<_>, _>>()?)?;
 
         solids.records.trim();
+        solids.records.arrange();
         placements.list.shrink_to_fit();
         Ok(Lowered {
             prototype: Prototype {

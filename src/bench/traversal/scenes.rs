@@ -97,10 +97,12 @@ pub fn sticks(count: usize, seed: u64) -> Scene {
         let cylinder = cylinder.expect("a stick is longer than f32 rounds");
         CylinderRecord::new(&cylinder, number, MaterialIndex::default())
     };
-    let sticks = Prototype {
+    let mut sticks = Prototype {
         cylinders: (0..count as u32).map(stick).collect(),
         ..Prototype::default()
     };
+    // As a scene file's are when they are loaded.
+    sticks.cylinders.arrange();
     Scene {
         camera: CAMERA,
         film: FILM,

@@ -81,3 +81,55 @@ fn cylinders_that_f32_does_not_hold_are_refused() {
         }
     );
 }
+
+/// A cylinder somewhere in a cube, far shorter than that is wide.
+fn short_record(random: &mut Random, primitive: u32) -> CylinderRecord {
+    let p0 = 100.0 * DVec3::new(random.unit(), random.unit(), random.unit());
+    let cylinder = Cylinder::new(p0, p0 + random.direction(), 0.1, Caps::Both);
+    CylinderRecord::new(&cylinder.expect("a cylinder"), primitive, MaterialIndex(0))
+}
+
+/// The mean distance of neighbours' first ends.
+fn mean_jump(list: &CylinderList) -> f64 {
+    let ends: Vec<DVec3> = list.iter().map(|record| record.cylinder().p0()).collect();
+    let jumps = ends.windows(2).map(|pair| (pair[1] - pair[0]).length());
+    jumps.sum::<f64>() / (ends.len() - 1) as f64
+}
+
+#[test]
+fn arranged_list_holds_the_same_with_neighbours_near() {
+    let mut random = Random::new(63, 0);
+    let stated: Vec<_> = (0..10_000).map(|n| short_record(&mut random, n)).collect();
+    let mut list = CylinderList::from(stated.clone());
+    let before = mean_jump(&list);
+    list.arrange();
+    assert!(mean_jump(&list) * 4.0 < before);
+    let mut records: Vec<_> = list.iter().collect();
+    records.sort_by_key(CylinderRecord::primitive);
+    assert_eq!(records, stated);
+    for position in 0..10_000 {
+        let primitive = list.get(position).primitive();
+        assert_eq!(list.primitive(position), primitive);
+        assert_eq!(list.position(primitive), Some(position));
+    }
+
+    let arranged: Vec<_> = list.iter().collect();
+    list.arrange();
+    assert!(list.iter().eq(arranged), "it was in order");
+}
+
+#[test]
+fn few_cylinders_and_those_at_one_place_stay_as_they_are() {
+    let mut random = Random::new(64, 0);
+    let few: Vec<_> = (0..4095).map(|n| short_record(&mut random, n)).collect();
+    let one = record(&mut random, 0).cylinder();
+    let at_one_place = (0..5000).rev();
+    let same: Vec<_> = at_one_place
+        .map(|n| CylinderRecord::new(&one, n, MaterialIndex(0)))
+        .collect();
+    for stated in [few, same] {
+        let mut list = CylinderList::from(stated.clone());
+        list.arrange();
+        assert_eq!(list.as_f64(), Some(stated.as_slice()));
+    }
+}

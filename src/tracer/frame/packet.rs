@@ -142,15 +142,27 @@ impl Kernel for Enter<'_> {
         };
         let (mut inside, mut far) = ([false; GREATEST_PACKET], [false; GREATEST_PACKET]);
         for row in 0..ROWS {
+            // Numbers of a row's own: what the loop reads it does not write.
+            let rays = RowOfRays {
+                origin: self.rays.origin[row],
+                direction: self.rays.direction[row],
+                base: self.rays.base[row],
+                shift: self.rays.shift[row],
+                t_min: self.t_min[row],
+                t_max: self.t_max[row],
+            };
+            let mut entries = RowOfEntries::NOWHERE;
             for lane in 0..LANES {
-                let ray = self.rays.ray(row, lane);
+                let ray = rays.ray(lane);
                 let passing = self.frame.passing(&ray);
-                let (t_min, t_max) = (self.t_min[row].0[lane], self.t_max[row].0[lane]);
-                let one = self.frame.entry(&ray, &passing, t_min, t_max);
-                entry.set(row, lane, &one);
-                inside[row * LANES + lane] = one.is_inside;
-                far[row * LANES + lane] = passing.is_far;
+                let one = self
+                    .frame
+                    .entry(&ray, &passing, rays.t_min.0[lane], rays.t_max.0[lane]);
+                entries.set(lane, &one, passing.is_far);
             }
+            entry.set_row(row, &entries);
+            inside[row * LANES..][..LANES].copy_from_slice(&entries.is_inside);
+            far[row * LANES..][..LANES].copy_from_slice(&entries.is_far);
         }
         let far = RaySet::of(&far) & self.wanted;
         entry.entered = (RaySet::of(&inside) & self.wanted) - far;
@@ -158,6 +170,67 @@ impl Kernel for Enter<'_> {
             self.enter_from_afar(far, &mut entry);
         }
         entry
+    }
+}
+
+/// Eight rays and what is asked of them.
+struct RowOfRays {
+    origin: LaneVectors,
+    direction: LaneVectors,
+    base: LaneVectors,
+    shift: Lanes,
+    t_min: Lanes,
+    t_max: Lanes,
+}
+
+impl RowOfRays {
+    #[inline(always)]
+    fn ray(&self, lane: usize) -> LocalRay {
+        LocalRay {
+            origin: self.origin.lane(lane),
+            direction: self.direction.lane(lane),
+            base: self.base.lane(lane),
+            shift: self.shift.0[lane],
+        }
+    }
+}
+
+/// Where eight rays enter.
+struct RowOfEntries {
+    nearest: Lanes,
+    start: Lanes,
+    rate: Lanes,
+    origin: [[f32; LANES]; 3],
+    direction: [[f32; LANES]; 3],
+    t_far: [f32; LANES],
+    is_inside: [bool; LANES],
+    is_far: [bool; LANES],
+}
+
+impl RowOfEntries {
+    const NOWHERE: Self = Self {
+        nearest: Lanes([0.0; LANES]),
+        start: Lanes([0.0; LANES]),
+        rate: Lanes([0.0; LANES]),
+        origin: [[0.0; LANES]; 3],
+        direction: [[0.0; LANES]; 3],
+        t_far: [0.0; LANES],
+        is_inside: [false; LANES],
+        is_far: [false; LANES],
+    };
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, entry: &Entry, is_far: bool) {
+        self.nearest.0[lane] = entry.window.nearest;
+        self.start.0[lane] = entry.window.start;
+        self.rate.0[lane] = entry.window.rate;
+        for axis in 0..3 {
+            self.origin[axis][lane] = entry.ray32.origin[axis];
+            self.direction[axis][lane] = entry.ray32.direction[axis];
+        }
+        self.t_far[lane] = entry.ray32.t_far;
+        self.is_inside[lane] = entry.is_inside;
+        self.is_far[lane] = is_far;
     }
 }
 
@@ -181,6 +254,21 @@ impl Enter<'_> {
 }
 
 impl PacketEntry {
+    #[inline(always)]
+    fn set_row(&mut self, row: usize, entries: &RowOfEntries) {
+        let windows = &mut self.level.windows;
+        windows.shift[row] = self.level.rays.shift[row];
+        windows.nearest[row] = entries.nearest;
+        windows.start[row] = entries.start;
+        windows.rate[row] = entries.rate;
+        let lanes = row * LANES..(row + 1) * LANES;
+        for axis in 0..3 {
+            self.rays32.origin[axis][lanes.clone()].copy_from_slice(&entries.origin[axis]);
+            self.rays32.direction[axis][lanes.clone()].copy_from_slice(&entries.direction[axis]);
+        }
+        self.rays32.t_far[lanes].copy_from_slice(&entries.t_far);
+    }
+
     #[inline(always)]
     fn set(&mut self, row: usize, lane: usize, entry: &Entry) {
         let windows = &mut self.level.windows;

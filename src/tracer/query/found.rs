@@ -20,6 +20,19 @@ pub(crate) struct Place {
     pub path: InstancePath,
 }
 
+impl Place {
+    /// The place of a record in the prototype that is reached along a path.
+    #[inline(always)]
+    pub fn new(prototype: PrototypeIndex, record: u32, path: &InstancePath) -> Self {
+        Self {
+            prototype,
+            record,
+            // Copied as bytes; `clone` would go number by number.
+            path: InstancePath::from_slice(path),
+        }
+    }
+}
+
 /// The first hit of a ray, as far as a query works it out.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Nearest {

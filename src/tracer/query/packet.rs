@@ -211,11 +211,7 @@ impl Packet {
         if is_first {
             *nearest = Some(Nearest {
                 t,
-                place: Place {
-                    prototype: cylinders.prototype(),
-                    record,
-                    path: path.clone(),
-                },
+                place: Place::new(cylinders.prototype(), record, path),
             });
             set_lane(&mut self.bound, ray, t);
         }

@@ -131,11 +131,8 @@ impl Query {
         };
         let (prototype, primitive) = (cylinders.prototype(), cylinders.primitive(record));
         for meeting in chord.meetings(cylinder.caps(), shift, self.t_min, bound) {
-            next.offer(meeting, &self.path, primitive, || Place {
-                prototype,
-                record,
-                path: self.path.clone(),
-            });
+            let place = || Place::new(prototype, record, &self.path);
+            next.offer(meeting, &self.path, primitive, place);
         }
     }
 
@@ -152,11 +149,7 @@ impl Query {
         if is_first {
             *nearest = Some(Nearest {
                 t,
-                place: Place {
-                    prototype: cylinders.prototype(),
-                    record,
-                    path: path.clone(),
-                },
+                place: Place::new(cylinders.prototype(), record, path),
             });
         }
     }

@@ -1,0 +1,132 @@
+//! Many rays at a time.
+//!
+//! Rays that go the same way are traced sixteen together, as a packet: Embree
+//! walks its tree once for all of them, and the solver takes eight to a row.
+//! Others are traced one by one, for a packet visits whatever any of its rays
+//! has to. Rays that start at many places are first put in an order in which
+//! neighbours have most in common. Answers do not depend on any of it.
+
+mod habit;
+mod order;
+mod usual;
+
+use super::prototype::Prototype;
+use super::{FirstHit, Hit, Tracer};
+use crate::embree::GREATEST_PACKET;
+use crate::math::Ray;
+use habit::Habit;
+use order::{order, split};
+use usual::Usual;
+
+/// Rays are alike if the cosine between each direction and the first one is at
+/// least this, which is an angle of 8 degrees: a pixel's neighbours in most
+/// pictures, or all rays to a sun.
+const LEAST_COSINE: f64 = 0.99;
+
+/// Fewer rays than this are traced one by one.
+const LEAST_RAYS: usize = 4;
+
+impl Tracer {
+    /// The first hits of many rays, in their order, as [`Tracer::first_hit`]
+    /// finds them. The more rays there are the more have something in common;
+    /// rays of one point that are neighbours in the slice are traced together.
+    pub fn first_hits(&self, rays: &[Ray], hits: &mut Vec<Option<FirstHit>>) {
+        hits.clear();
+        hits.reserve(rays.len());
+        let alone = |ray: &Ray| self.first_hit_and_callbacks(ray);
+        self.answer_all(rays, hits, alone, |root, usual, hits| {
+            root.search_packet(usual.all, &usual.local, &mut usual.packet);
+            for ray in usual.all {
+                let nearest = usual.packet.take_nearest(ray);
+                hits.push(nearest.map(|nearest| FirstHit::new(nearest, usual.factors[ray])));
+            }
+        });
+    }
+
+    /// The hits of many rays, in their order, as [`Tracer::closest`] finds
+    /// them.
+    pub fn closest_batch(&self, rays: &[Ray], hits: &mut Vec<Option<Hit>>) {
+        let mut first = Vec::new();
+        self.first_hits(rays, &mut first);
+        let pairs = rays.iter().zip(first);
+        hits.clear();
+        hits.extend(pairs.map(|(ray, first)| Some(self.hit(ray, &first?))));
+    }
+
+    /// Whether each of many rays meets any surface, in their order, as
+    /// [`Tracer::occluded`] says.
+    pub fn occluded_batch(&self, rays: &[Ray], blocked: &mut Vec<bool>) {
+        blocked.clear();
+        blocked.reserve(rays.len());
+        let alone = |ray: &Ray| self.occluded_and_callbacks(ray);
+        self.answer_all(rays, blocked, alone, |root, usual, blocked| {
+            let hit = root.occluded_packet(usual.all, &usual.local, &mut usual.packet);
+            blocked.extend(usual.all.into_iter().map(|ray| hit.contains(ray)));
+        });
+    }
+
+    /// Adds the answer of each ray to `answers`: of rays that should be a packet
+    /// by `together`, of others by `alone`, which also says how often Embree
+    /// called back.
+    fn answer_all<T: Default>(
+        &self,
+        rays: &[Ray],
+        answers: &mut Vec<T>,
+        alone: impl Fn(&Ray) -> (T, u32),
+        together: impl Fn(&Prototype, &mut Usual, &mut Vec<T>),
+    ) {
+        let (mut habit, mut usual) = (Habit::default(), Usual::new());
+        let mut answer = |rays: &[Ray], answers: &mut Vec<T>| match &self.root {
+            Some(root) if self.are_packet(rays, &mut habit) && usual.fill(rays) => {
+                together(root, &mut usual, answers);
+                habit.traced_packet(&usual);
+            }
+            _ => answers.extend(rays.iter().map(|ray| {
+                let (answer, callbacks) = alone(ray);
+                habit.traced_one(callbacks);
+                answer
+            })),
+        };
+        let mut few = Vec::with_capacity(GREATEST_PACKET);
+        let mut rest = rays;
+        while !rest.is_empty() {
+            let rays;
+            (rays, rest) = split(rest);
+            let Some(order) = order(rays) else {
+                for rays in rays.chunks(GREATEST_PACKET) {
+                    answer(rays, answers);
+                }
+                continue;
+            };
+            let first = answers.len();
+            answers.resize_with(first + rays.len(), T::default);
+            for numbers in order.chunks(GREATEST_PACKET) {
+                let mut in_order = [rays[0]; GREATEST_PACKET];
+                for (ray, &number) in in_order.iter_mut().zip(numbers) {
+                    *ray = rays[number as usize];
+                }
+                answer(&in_order[..numbers.len()], &mut few);
+                for (&number, answer) in numbers.iter().zip(few.drain(..)) {
+                    answers[first + number as usize] = answer;
+                }
+            }
+        }
+    }
+
+    /// Whether the rays should be a packet.
+    fn are_packet(&self, rays: &[Ray], habit: &mut Habit) -> bool {
+        rays.len() >= LEAST_RAYS && self.traces_packets && are_alike(rays) && habit.wants_packet()
+    }
+}
+
+/// Whether all rays go about the same way. Where they start does not matter as
+/// much: it is near together for rays of a picture, and where it is not the
+/// directions still say that the boxes they meet are met in the same order.
+fn are_alike(rays: &[Ray]) -> bool {
+    let first = rays[0].direction;
+    rays.iter().all(|ray| {
+        let product = ray.direction.dot(first);
+        let squares = ray.direction.length_squared() * first.length_squared();
+        product > 0.0 && product * product >= LEAST_COSINE * LEAST_COSINE * squares
+    })
+}
