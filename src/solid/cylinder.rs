@@ -103,7 +103,7 @@ impl Cylinder {
     /// When a number is not finite or out of range, or the ends coincide.
     pub fn new(p0: DVec3, p1: DVec3, radius: f64, caps: Caps) -> Result<Self, CylinderError> {
         for (which, point) in [("p0", p0), ("p1", p1)] {
-            if !(point.abs().max_element() <= Self::GREATEST) || !point.is_finite() {
+            if !Self::is_in_range(point) {
                 return Err(CylinderError::Endpoint { which, point });
             }
         }
@@ -120,6 +120,12 @@ impl Cylinder {
             radius,
             caps,
         })
+    }
+
+    /// Whether every coordinate is a number of at most [`Cylinder::GREATEST`] in
+    /// size.
+    pub(crate) fn is_in_range(point: DVec3) -> bool {
+        point.is_finite() && point.abs().max_element() <= Self::GREATEST
     }
 
     /// The cylinder of numbers that [`Cylinder::new`] accepted before.

@@ -1,11 +1,13 @@
 //! What a solid is, and the solvers that intersect rays with it.
 
 mod chord;
+mod cone;
 mod convex;
 mod cylinder;
 pub mod exact;
 pub mod formulations;
 pub mod lanes;
+mod rounded_cone;
 mod slab;
 mod spawn;
 mod surface;
@@ -13,8 +15,10 @@ pub mod tessellation;
 pub mod triple_product;
 
 pub use chord::{Chord, ChordEnd, Meeting};
+pub use cone::{Cone, ConeError};
 pub use convex::ConvexSolid;
 pub use cylinder::{Caps, Cylinder, CylinderError};
+pub use rounded_cone::{RoundedCone, RoundedConeError};
 pub use spawn::{SpawnMargin, spawned_ray};
 pub use surface::{SurfacePoint, surface_point};
 
