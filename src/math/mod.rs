@@ -8,17 +8,23 @@
 mod bounds;
 mod double_double;
 mod lanes;
+mod orientation;
 mod placement;
+mod pose;
 mod random;
 mod ray;
 mod real;
+mod rotation;
 mod rounding;
 
 pub use bounds::Bounds;
 pub use double_double::DoubleDouble;
 pub use lanes::{LANES, LaneMask, LaneVectors, Lanes};
+pub use orientation::Orientation;
 pub use placement::{ChildFromParent, PlacementErrors, frobenius_norm};
+pub use pose::Pose;
 pub use random::Random;
 pub use ray::{Ray, RayOf};
 pub use real::{Real, RealVector, Wide, wide_cross, wide_square};
+pub use rotation::{rotation, sin_cos_degrees, unit};
 pub use rounding::{UNIT_ROUNDOFF, f32_above, f32_below, power_of_two, power_of_two_below};

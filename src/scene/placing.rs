@@ -15,8 +15,9 @@ use super::settings::vector;
 use super::solids::three;
 use super::source::Source;
 use super::table::{Column, Table};
-use super::transform::{Reach, checked, quaternion_rotation, rotation, sin_cos_degrees, unit};
+use super::transform::{Reach, checked, quaternion_rotation};
 use super::values::{Keys, NameOrList, NumberOrList};
+use crate::math::{rotation, sin_cos_degrees, unit};
 
 /// The placements of one prototype.
 #[derive(Default)]

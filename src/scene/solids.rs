@@ -10,8 +10,8 @@ use super::error::SceneError;
 use super::settings::vector;
 use super::source::Source;
 use super::table::{Column, Table};
-use super::transform::unit;
 use super::values::Keys;
+use crate::math::unit;
 use crate::solid::{Caps, Cylinder, CylinderError};
 
 /// What to say about rows that `degenerate = "skip"` would leave out.
