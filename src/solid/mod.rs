@@ -1,5 +1,6 @@
 //! What a solid is, and the solvers that intersect rays with it.
 
+mod any;
 mod chord;
 mod cone;
 mod convex;
@@ -17,6 +18,7 @@ mod surface;
 pub mod tessellation;
 pub mod triple_product;
 
+pub use any::AnySolid;
 pub use chord::{Chord, ChordEnd, Meeting};
 pub use cone::{Cone, ConeError};
 pub use convex::ConvexSolid;

@@ -24,7 +24,7 @@ pub struct RoundedCone {
 /// [`Cone`](super::Cone)'s have, or both radii are zero.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(transparent)]
-pub struct RoundedConeError(#[from] ConeError);
+pub struct RoundedConeError(#[from] pub ConeError);
 
 impl RoundedCone {
     /// The hull of the balls around `p0` and `p1`.
