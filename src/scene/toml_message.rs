@@ -3,12 +3,21 @@
 use super::names::{quoted, suggestion};
 
 /// Keys of the scene that hold many tables, `[[...]]`.
-const LISTS: [&str; 8] = [
+const LISTS: [&str; 17] = [
     "material",
     "prototype",
     "cylinder",
     "cylinder_table",
     "swc",
+    "beam_lattice",
+    "sphere",
+    "cuboid",
+    "cone",
+    "rounded_cone",
+    "disk",
+    "union",
+    "intersection",
+    "difference",
     "instance",
     "instance_table",
     "scatter",
