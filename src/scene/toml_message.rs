@@ -32,6 +32,9 @@ const LONGEST_PART: usize = 300;
 /// What is wrong, and what to do about it where that is known, for a message
 /// of the parser about a place in `line`.
 pub(super) fn explain(message: &str, line: &str) -> (String, Option<String>) {
+    if message.contains("max recursion depth met") {
+        return ("the values here are nested too deeply".to_owned(), None);
+    }
     if let Some((key, expected)) = unknown_field(message) {
         return unknown_key(key, &expected, line);
     }
