@@ -48,11 +48,29 @@ const LEAST_CONSTANT_TERM: f64 = power_of_two(-20);
 /// ball, with both ends on `part`; `None` where it is not. A ball of radius zero is
 /// its centre. A non-finite argument is a miss.
 pub(super) fn chord(x: DVec3, d: DVec3, radius: f64, part: Part) -> Option<Chord> {
+    chord_about(DVec3::ZERO, x, d, radius, part)
+}
+
+/// The same of the line `origin + t d` and the ball around `centre`; their
+/// difference need not be a number of f64.
+pub(super) fn chord_about(
+    centre: DVec3,
+    origin: DVec3,
+    d: DVec3,
+    radius: f64,
+    part: Part,
+) -> Option<Chord> {
+    let from = FromBall {
+        point: origin,
+        centre,
+        radius,
+    };
+    let x = origin - centre;
     if !(x.is_finite() && d.is_finite()) {
         return None;
     }
     let dd = d.dot(d);
-    let discriminant = discriminant(x, d, radius, dd);
+    let discriminant = from.discriminant(x, d, dd);
     if discriminant < 0.0 {
         return None;
     }
@@ -60,7 +78,7 @@ pub(super) fn chord(x: DVec3, d: DVec3, radius: f64, part: Part) -> Option<Chord
     let (first, second) = (-b - s, s - b);
     let root = |sum: f64, other: f64| {
         if sum.abs() < 0.5 * b.abs() {
-            constant_term(x, radius) / other
+            from.constant_term(x) / other
         } else {
             sum / dd
         }
@@ -79,73 +97,76 @@ pub(super) fn chord(x: DVec3, d: DVec3, radius: f64, part: Part) -> Option<Chord
     })
 }
 
-/// `D` of (2).
-fn discriminant(x: DVec3, d: DVec3, radius: f64, dd: f64) -> f64 {
-    let across = x.cross(d);
-    let (squared, reach) = (across.dot(across), radius * radius * dd);
-    let rounded = reach - squared;
-    // With |l'| - |l| <= 3 u |x| |d|, squares within 3 u and 5 u of themselves,
-    // and u³ for what is of second order: below 8 u of each term.
-    let error = 8.0
-        * UNIT_ROUNDOFF
-        * (reach + squared + (squared * x.dot(x) * dd).sqrt() + UNIT_ROUNDOFF * x.dot(x) * dd);
-    if GOOD * rounded.abs() < error {
-        return quotient(&Discriminant { x, d, radius }, 1.0);
-    }
-    rounded
-}
-
-/// `C` of (1).
-fn constant_term(x: DVec3, radius: f64) -> f64 {
-    let rr = radius * radius;
-    let rounded = x.dot(x) - rr;
-    if rounded.abs() < LEAST_CONSTANT_TERM * rr {
-        let term = ConstantTerm {
-            point: x,
-            centre: DVec3::ZERO,
-            radius,
-        };
-        return quotient(&term, 1.0);
-    }
-    rounded
-}
-
-struct Discriminant {
-    x: DVec3,
-    d: DVec3,
-    radius: f64,
-}
-
-impl Expression for Discriminant {
-    fn value<N: Number>(&self) -> N {
-        let (x, d) = (vector::<N>(self.x), vector(self.d));
-        let (across, r) = (cross(&x, &d), N::of(self.radius));
-        let reach = r.times(&r).times(&dot(&d, &d));
-        reach.minus(&dot(&across, &across))
-    }
-}
-
 /// Whether the closed ball holds a point, exactly.
 pub(super) fn holds(centre: DVec3, radius: f64, point: DVec3) -> bool {
-    let outside = ConstantTerm {
+    let from = FromBall {
         point,
         centre,
         radius,
     };
-    point.is_finite() && sign(&outside) != Ordering::Greater
+    point.is_finite() && sign(&from) != Ordering::Greater
 }
 
-/// `|point - centre|² - radius²`.
-struct ConstantTerm {
+/// A point and a ball; as an expression `|point - centre|² - radius²`.
+#[derive(Clone, Copy, Debug)]
+struct FromBall {
     point: DVec3,
     centre: DVec3,
     radius: f64,
 }
 
-impl Expression for ConstantTerm {
+impl FromBall {
+    /// `D` of (2), of the line through the point; `x` is the rounded difference.
+    fn discriminant(&self, x: DVec3, d: DVec3, dd: f64) -> f64 {
+        let across = x.cross(d);
+        let (squared, reach) = (across.dot(across), self.radius * self.radius * dd);
+        let rounded = reach - squared;
+        // The length of `x × d` is off by 4 u |x| |d| at most, squares round by 3 u and
+        // 5 u of themselves; the last term is for what is of second order.
+        let spread = x.dot(x) * dd;
+        let error = 8.0
+            * UNIT_ROUNDOFF
+            * (reach + squared + (squared * spread).sqrt() + 2.0 * UNIT_ROUNDOFF * spread);
+        if GOOD * rounded.abs() < error {
+            return quotient(&Discriminant { from: *self, d }, 1.0);
+        }
+        rounded
+    }
+
+    /// `C` of (1); `x` is the rounded difference.
+    fn constant_term(&self, x: DVec3) -> f64 {
+        let rr = self.radius * self.radius;
+        let rounded = x.dot(x) - rr;
+        if rounded.abs() < LEAST_CONSTANT_TERM * rr {
+            return quotient(self, 1.0);
+        }
+        rounded
+    }
+}
+
+impl Expression for FromBall {
     fn value<N: Number>(&self) -> N {
         let (x, r) = (difference::<N>(self.point, self.centre), N::of(self.radius));
         dot(&x, &x).minus(&r.times(&r))
+    }
+}
+
+struct Discriminant {
+    from: FromBall,
+    d: DVec3,
+}
+
+impl Expression for Discriminant {
+    fn value<N: Number>(&self) -> N {
+        let FromBall {
+            point,
+            centre,
+            radius,
+        } = self.from;
+        let (x, d) = (difference::<N>(point, centre), vector(self.d));
+        let (across, r) = (cross(&x, &d), N::of(radius));
+        let reach = r.times(&r).times(&dot(&d, &d));
+        reach.minus(&dot(&across, &across))
     }
 }
 

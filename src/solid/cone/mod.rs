@@ -1,6 +1,7 @@
 //! The truncated cone as users state it.
 
-mod solver;
+pub(super) mod heights;
+pub(super) mod solver;
 mod surface;
 pub(super) mod wall;
 

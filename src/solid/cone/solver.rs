@@ -1,24 +1,19 @@
 //! Ray against cone: the wall's interval, cut by the discs.
 //!
-//! `wall.rs` finds where the line is inside the infinite wall, `slab.rs` overlaps
-//! that with the slab between the discs: the other nappe lies beyond the apex, so
-//! outside of the slab. A cone with equal radii is left to the triple-product
-//! solver, whose answers it has bit for bit.
-//!
-//! Where a radius is zero the disc is the apex, a point of every line of the
-//! wall. Rounded heights cannot tell whether a line goes through it, so that is
-//! decided exactly: by `|x × d|² = 0`, `x` as seen from the apex. It is asked only
-//! where `E` of the wall is zero, which tangents and such lines have in common.
+//! `wall.rs` finds where the line is inside the infinite wall; that is overlapped
+//! with the slab between the discs by where the roots lie to the discs' planes
+//! (`heights.rs`). The other nappe lies beyond the apex, so outside of the slab. A
+//! cone with equal radii is left to the triple-product solver, whose answers it has
+//! bit for bit.
 
-use std::cmp::Ordering;
+use std::cmp::Ordering::{Equal, Greater, Less};
 
 use glam::DVec3;
 
 use super::Cone;
+use super::heights::{End, Heights, Root};
 use super::wall::{Fit, Inside, Meets, Taper};
 use crate::solid::chord::{Chord, ChordEnd};
-use crate::solid::exact::{Expression, Number, cross, dot, sign, vector};
-use crate::solid::slab::{Question, WholeChord};
 use crate::solid::{Caps, Cylinder, Part, triple_product};
 
 /// The interval in which the line `p0 + x + t d` is inside the closed cone.
@@ -27,77 +22,127 @@ pub(super) fn chord(cone: &Cone, x: DVec3, d: DVec3) -> Option<Chord> {
         let cylinder = Cylinder::from_valid(cone.p0, cone.p1, cone.radius0, Caps::Both);
         return triple_product::chord(&cylinder, x, d);
     }
-    let taper = cone.taper();
-    let slab = taper.slab(x, d);
-    match taper.meets(x, d)? {
-        Meets::Along => slab.along(true),
-        Meets::Inside(inside) => match apex(cone, x, d, &inside) {
-            Some(end) if inside.enter.is_finite() && inside.leave.is_finite() => Some(Chord {
-                enter: end,
-                leave: end,
-                lies_on: None,
-            }),
-            Some(end) => Some(from_apex(end, slab.along(false)?)),
-            None => WholeChord.of_overlap(&slab.overlap(inside)),
-        },
-    }
-}
-
-/// The chord of a line through both discs, of which one is the apex.
-fn from_apex(apex: ChordEnd, chord: Chord) -> Chord {
-    if chord.enter.part == apex.part {
-        Chord {
-            enter: apex,
-            ..chord
-        }
-    } else {
-        Chord {
-            leave: apex,
-            ..chord
-        }
-    }
-}
-
-/// Where the line goes through the apex, if it is an end of the cone.
-fn apex(cone: &Cone, x: DVec3, d: DVec3, inside: &Inside) -> Option<ChordEnd> {
-    if !inside.is_single {
-        return None;
-    }
-    let (x, part) = if cone.radius0 == 0.0 {
-        (x, Part::Cap0)
-    } else if cone.radius1 == 0.0 {
-        (x - (cone.p1 - cone.p0), Part::Cap1)
-    } else {
-        return None;
+    let taper = Taper {
+        a: cone.p1 - cone.p0,
+        radius0: cone.radius0,
+        radius1: cone.radius1,
+        fit: Fit::Discs,
     };
-    (sign(&PassesZero { x, d }) == Ordering::Equal).then(|| ChordEnd {
-        t: -x.dot(d) / d.dot(d),
-        part,
+    let meets = taper.meets(x, d)?;
+    let heights = Heights::new(&taper, x, d);
+    match meets {
+        Meets::Along => Some(along(&heights, Part::Side)),
+        Meets::Inside(inside) if heights.slope == 0.0 => across(&heights, inside),
+        Meets::Inside(inside) => oblique(&heights, inside),
+    }
+}
+
+/// The part at an end.
+fn part_at(end: End) -> Part {
+    match end {
+        End::First => Part::Cap0,
+        End::Second => Part::Cap1,
+    }
+}
+
+/// The ends in the order in which the line comes through their planes.
+fn in_order(heights: &Heights) -> (End, End) {
+    if heights.slope > 0.0 {
+        (End::First, End::Second)
+    } else {
+        (End::Second, End::First)
+    }
+}
+
+/// The chord of a line of the wall, from end to end; it lies on `part`.
+pub(in crate::solid) fn along(heights: &Heights, part: Part) -> Chord {
+    let (near, far) = in_order(heights);
+    let rim = |end| ChordEnd {
+        t: heights.at(end),
+        part: part_at(end),
         on_rim: true,
+    };
+    Chord {
+        enter: rim(near),
+        leave: rim(far),
+        lies_on: Some(part),
+    }
+}
+
+/// The chord of a line across the axis: from wall to wall at one height, which may
+/// be that of a disc.
+fn across(heights: &Heights, inside: Inside) -> Option<Chord> {
+    let [above0, above1] = heights.above;
+    if above0 < 0.0 || above1 > 0.0 {
+        return None;
+    }
+    let disc = if above0 == 0.0 {
+        Some(Part::Cap0)
+    } else if above1 == 0.0 {
+        Some(Part::Cap1)
+    } else {
+        None
+    };
+    let end = |t| ChordEnd {
+        t,
+        part: disc.unwrap_or(Part::Side),
+        on_rim: disc.is_some(),
+    };
+    Some(Chord {
+        enter: end(inside.enter),
+        leave: end(inside.leave.max(inside.enter)),
+        lies_on: disc,
     })
 }
 
-/// `|x × d|²`.
-struct PassesZero {
-    x: DVec3,
-    d: DVec3,
-}
-
-impl Expression for PassesZero {
-    fn value<N: Number>(&self) -> N {
-        let l = cross::<N>(&vector(self.x), &vector(self.d));
-        dot(&l, &l)
-    }
-}
-
-impl Cone {
-    /// Its wall.
-    fn taper(&self) -> Taper {
-        Taper {
-            a: self.p1 - self.p0,
-            radius0: self.radius0,
-            radius1: self.radius1,
-            fit: Fit::Discs,
+/// The chord of any other line.
+fn oblique(heights: &Heights, inside: Inside) -> Option<Chord> {
+    let (near, far) = in_order(heights);
+    // How far the line has come, as seen in its own direction.
+    let passed = |root, t, end| {
+        let above = heights.compare(root, t, end);
+        if heights.slope > 0.0 {
+            above
+        } else {
+            above.reverse()
         }
+    };
+    let enter = |end| passed(Root::Enter, inside.enter, end);
+    let leave = |end| passed(Root::Leave, inside.leave, end);
+    if enter(far) == Greater || leave(near) == Less {
+        return None;
     }
+    let on_disc = |end, on_rim| ChordEnd {
+        t: heights.at(end),
+        part: part_at(end),
+        on_rim,
+    };
+    // A root that is not cut off is on the wall, or on the rim of the disc through
+    // which the line would otherwise go the other way.
+    let on_wall = |t, other, is_at_other| ChordEnd {
+        t,
+        part: if is_at_other {
+            part_at(other)
+        } else {
+            Part::Side
+        },
+        on_rim: is_at_other,
+    };
+    let enter = match enter(near) {
+        Greater => on_wall(inside.enter, far, enter(far) == Equal),
+        to_rim => on_disc(near, to_rim == Equal),
+    };
+    let leave = match leave(far) {
+        Less => on_wall(inside.leave, near, leave(near) == Equal),
+        to_rim => on_disc(far, to_rim == Equal),
+    };
+    Some(Chord {
+        enter,
+        // At an edge the two may come out in the wrong order by a rounding.
+        leave: ChordEnd {
+            t: leave.t.max(enter.t),
+            ..leave
+        },
+        lies_on: None,
+    })
 }

@@ -54,7 +54,6 @@ use glam::DVec3;
 
 use crate::math::{UNIT_ROUNDOFF, power_of_two};
 use crate::solid::exact::{Expression, Number, cross, dot, quotient, vector};
-use crate::solid::slab::{Slab, Wall};
 
 /// The relative error up to which rounded products will do: a root then has less
 /// than 2^-11 of an ulp of f32.
@@ -86,18 +85,6 @@ pub(in crate::solid) struct Inside {
     pub enter: f64,
     /// Where it goes out.
     pub leave: f64,
-    /// Whether it only touches, or goes through the apex.
-    pub is_single: bool,
-}
-
-impl Wall<f64> for Inside {
-    fn enter(&self) -> f64 {
-        self.enter
-    }
-
-    fn leave(&self) -> f64 {
-        self.leave
-    }
 }
 
 /// How a line lies to the wall.
@@ -110,15 +97,6 @@ pub(in crate::solid) enum Meets {
 }
 
 impl Taper {
-    /// The line as seen along the axis, with the height of a cone of discs.
-    pub fn slab(&self, x: DVec3, d: DVec3) -> Slab<f64> {
-        Slab {
-            height: self.a.dot(self.a),
-            position: x.dot(self.a),
-            slope: d.dot(self.a),
-        }
-    }
-
     /// `β`.
     pub fn beta(&self) -> f64 {
         match self.fit {
@@ -179,7 +157,6 @@ impl Taper {
             } else {
                 root(plus)
             },
-            is_single: e == 0.0,
         }))
     }
 
@@ -202,8 +179,36 @@ impl Taper {
         quotient(&Exactly { taper, x, d, term }, divisor)
     }
 
-    fn measures<N: Number>(&self, a: &[N; 3]) -> Measures<N> {
+    pub fn measures<N: Number>(&self, a: &[N; 3]) -> Measures<N> {
         Measures::new(a, self.radius0, self.radius1, self.fit)
+    }
+
+    /// A term as numbers `N`.
+    pub fn term<N: Number>(&self, x: &[N; 3], d: &[N; 3], term: Term) -> N {
+        let a = vector::<N>(self.a);
+        let measures = self.measures(&a);
+        let Measures {
+            aa, delta, beta, ..
+        } = &measures;
+        if term == Term::C {
+            return measures.outside(&a, x);
+        }
+        let (n, h) = (cross(&a, d), delta.times(&dot(d, &a)));
+        match term {
+            Term::A => beta.times(&dot(&n, &n)).minus(&h.times(&h)),
+            Term::E => {
+                let (l, w) = (cross(x, d), dot(x, &n));
+                let k: [N; 3] = std::array::from_fn(|i| {
+                    measures.radius0.times(&n[i]).plus(&delta.times(&l[i]))
+                });
+                let tilt = beta.plus(&delta.times(delta));
+                aa.times(&dot(&k, &k)).minus(&w.times(&w).times(&tilt))
+            }
+            _ => {
+                let (m, g) = (cross(&a, x), measures.g(&dot(x, &a)));
+                beta.times(&dot(&m, &n)).minus(&g.times(&h))
+            }
+        }
     }
 }
 
@@ -356,15 +361,16 @@ impl Expression for Beta<'_> {
     }
 }
 
+/// A term of (2) times `β`, or `E` times `|a|²`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Term {
+pub(in crate::solid) enum Term {
     A,
     B,
     C,
     E,
 }
 
-/// A term of (2) times `β`, or `E` times `|a|²`.
+/// One of them.
 struct Exactly<'a> {
     taper: &'a Taper,
     x: DVec3,
@@ -374,29 +380,6 @@ struct Exactly<'a> {
 
 impl Expression for Exactly<'_> {
     fn value<N: Number>(&self) -> N {
-        let (a, x, d) = (vector::<N>(self.taper.a), vector(self.x), vector(self.d));
-        let measures = self.taper.measures(&a);
-        let Measures {
-            aa, delta, beta, ..
-        } = &measures;
-        if self.term == Term::C {
-            return measures.outside(&a, &x);
-        }
-        let (n, h) = (cross(&a, &d), delta.times(&dot(&d, &a)));
-        match self.term {
-            Term::A => beta.times(&dot(&n, &n)).minus(&h.times(&h)),
-            Term::E => {
-                let (l, w) = (cross(&x, &d), dot(&x, &n));
-                let k: [N; 3] = std::array::from_fn(|i| {
-                    measures.radius0.times(&n[i]).plus(&delta.times(&l[i]))
-                });
-                let tilt = beta.plus(&delta.times(delta));
-                aa.times(&dot(&k, &k)).minus(&w.times(&w).times(&tilt))
-            }
-            _ => {
-                let (m, g) = (cross(&a, &x), measures.g(&dot(&x, &a)));
-                beta.times(&dot(&m, &n)).minus(&g.times(&h))
-            }
-        }
+        self.taper.term(&vector(self.x), &vector(self.d), self.term)
     }
 }
