@@ -158,6 +158,10 @@ impl Target {
 }
 
 impl Aim {
+    pub fn new(point: DVec3, heading: DVec3) -> Self {
+        Self { point, heading }
+    }
+
     /// The ray on the line that starts `distance` before the point, with a
     /// direction of length about `speed`.
     pub fn ray(&self, distance: f64, speed: f64, inputs: Inputs) -> Option<Ray> {
@@ -167,7 +171,7 @@ impl Aim {
     }
 }
 
-fn valid(origin: DVec3, direction: DVec3) -> Option<Ray> {
+pub(super) fn valid(origin: DVec3, direction: DVec3) -> Option<Ray> {
     let ray = Ray::new(origin, direction);
     ray.is_valid().then_some(ray)
 }

@@ -9,8 +9,10 @@
 mod aiming;
 mod families;
 mod shapes;
+mod tapers;
 
 pub use families::{Family, UnknownFamily};
+pub use tapers::{TaperCase, TaperFamily, TaperSolid};
 
 use glam::DVec3;
 

@@ -1,6 +1,7 @@
 //! What a solid is, and the solvers that intersect rays with it.
 
 mod any;
+mod ball;
 mod chord;
 mod cone;
 mod convex;
