@@ -1,5 +1,6 @@
 //! What a solid is, and the solvers that intersect rays with it.
 
+mod ball;
 mod chord;
 mod cone;
 mod convex;
