@@ -170,25 +170,32 @@ impl Cylinder {
     }
 
     /// The least box that holds the solid, rounded outward by a few ulps.
-    ///
-    /// Along axis `i` a disc reaches `radius √(1 - aᵢ²/|a|²)` from its middle;
-    /// written as `radius √((aⱼ² + aₖ²)/|a|²)` nothing cancels, and the relative
-    /// error is below 8 roundings, which the factor on the radius covers.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
-        let a = self.p1 - self.p0;
-        let squared = a * a;
-        let others = DVec3::new(
-            squared.y + squared.z,
-            squared.z + squared.x,
-            squared.x + squared.y,
-        );
-        let sine = (others / a.length_squared()).map(f64::sqrt).min(DVec3::ONE);
-        let reach = sine * (self.radius * (1.0 + 10.0 * UNIT_ROUNDOFF));
+        let reach = disc_reach(self.p1 - self.p0, self.radius);
         Bounds {
             lower: self.p0.min(self.p1) - reach,
             upper: self.p0.max(self.p1) + reach,
         }
         .rounded_outward()
     }
+}
+
+/// How far a disc reaches from its middle along each coordinate axis, rounded up;
+/// `axis` is across it, of any length.
+///
+/// Along axis `i` it is `radius √(1 - aᵢ²/|a|²)`; written as `radius √((aⱼ² +
+/// aₖ²)/|a|²)` nothing cancels, and the relative error is below 8 roundings, which
+/// the factor on the radius covers.
+pub(super) fn disc_reach(axis: DVec3, radius: f64) -> DVec3 {
+    let squared = axis * axis;
+    let others = DVec3::new(
+        squared.y + squared.z,
+        squared.z + squared.x,
+        squared.x + squared.y,
+    );
+    let sine = (others / axis.length_squared())
+        .map(f64::sqrt)
+        .min(DVec3::ONE);
+    sine * (radius * (1.0 + 10.0 * UNIT_ROUNDOFF))
 }

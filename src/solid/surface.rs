@@ -84,16 +84,22 @@ pub fn surface_point(cylinder: &Cylinder, part: Part, from_p0: DVec3) -> Surface
         0.0
     };
     let error = UNIT_ROUNDOFF * (point.length() + along + 16.0 * radius);
-    let turn = libm::atan2(outward.dot(across), outward.dot(reference)) / std::f64::consts::TAU;
-    let turn = if turn < 0.0 { turn + 1.0 } else { turn };
-    let on_axis = distance == 0.0 || turn >= 1.0;
     SurfacePoint {
         point,
         error,
         normal,
-        u: if on_axis { 0.0 } else { turn },
+        u: turn(outward, reference, across),
         v,
     }
+}
+
+/// The angle of `outward` from `reference` towards `across`, in turns, in [0, 1).
+pub(super) fn turn(outward: DVec3, reference: DVec3, across: DVec3) -> f64 {
+    // A zero of either sign is the same direction.
+    let (y, x) = (outward.dot(across) + 0.0, outward.dot(reference) + 0.0);
+    let turn = libm::atan2(y, x) / std::f64::consts::TAU;
+    let turn = if turn < 0.0 { turn + 1.0 } else { turn };
+    if turn >= 1.0 { 0.0 } else { turn }
 }
 
 /// The two unit vectors perpendicular to `axis` from which angles are counted:
