@@ -1,19 +1,27 @@
-//! Exact truth about rays and cylinders.
+//! Exact truth about rays and solids.
 //!
 //! Everything here is computed in exact binary arithmetic of any length, with
 //! formulas that the solvers do not use, and shares no code with them. It is
 //! some thousand times slower than a solver and decides what is right.
 
 mod affine;
+mod chord;
+mod cuboid;
 mod cylinder;
+mod disk;
 mod distance;
 mod gap;
 mod normal;
 mod number;
+mod sphere;
 
 pub use affine::{ExactAffine, ExactMatrix};
+pub use chord::TrueChord;
+pub use cuboid::{cuboid_chord, cuboid_holds};
 pub use cylinder::{CylinderTruth, TrueHit, first_hit, placed_first_hit};
+pub use disk::{disk_chord, disk_holds};
 pub use distance::distance_to_part;
 pub use gap::gap;
 pub use normal::outward_normal;
 pub use number::{Exact, ExactVector, exact, to_f64};
+pub use sphere::{sphere_chord, sphere_holds};

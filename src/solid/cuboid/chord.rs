@@ -206,14 +206,23 @@ fn exact_chord(cuboid: Cuboid, x: DVec3, d: DVec3, slabs: [Slab; 3]) -> Option<C
         Slab::Within(part) => Some(part),
         Slab::Crossed { .. } | Slab::Along => None,
     });
-    Some(Chord {
-        enter: end(enter.t, part_at(enter)),
-        leave: if order == Ordering::Equal {
-            end(enter.t, part_at(enter))
+    // Told alike from either side: that of the first axis, or the middle where
+    // two that are next to each other come out in the wrong order.
+    let [t_enter, t_leave] = if order == Ordering::Equal {
+        [if enter.axis < leave.axis {
+            enter
         } else {
-            // Two that are next to each other may come out in the wrong order.
-            end(leave.t.max(enter.t), part_at(leave))
-        },
+            leave
+        }
+        .t; 2]
+    } else if enter.t > leave.t {
+        [0.5 * (enter.t + leave.t); 2]
+    } else {
+        [enter.t, leave.t]
+    };
+    Some(Chord {
+        enter: end(t_enter, part_at(enter)),
+        leave: end(t_leave, part_at(leave)),
         lies_on,
     })
 }
