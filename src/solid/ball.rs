@@ -48,10 +48,12 @@ const LEAST_CONSTANT_TERM: f64 = power_of_two(-20);
 /// ball, with both ends on `part`; `None` where it is not. A ball of radius zero is
 /// its centre. A non-finite argument is a miss.
 pub(super) fn chord(x: DVec3, d: DVec3, radius: f64, part: Part) -> Option<Chord> {
+    if !(x.is_finite() && d.is_finite()) {
+        return None;
+    }
     let dd = d.dot(d);
     let discriminant = discriminant(x, d, radius, dd);
-    // Written so that NaN is a miss.
-    if !(discriminant >= 0.0) {
+    if discriminant < 0.0 {
         return None;
     }
     let (b, s) = (x.dot(d), discriminant.sqrt());

@@ -181,21 +181,18 @@ impl Cylinder {
     }
 }
 
-/// How far a disc reaches from its middle along each coordinate axis, rounded up;
-/// `axis` is across it, of any length.
+/// How far a disc across the axis `a` reaches from its middle, rounded up.
 ///
-/// Along axis `i` it is `radius √(1 - aᵢ²/|a|²)`; written as `radius √((aⱼ² +
-/// aₖ²)/|a|²)` nothing cancels, and the relative error is below 8 roundings, which
-/// the factor on the radius covers.
-pub(super) fn disc_reach(axis: DVec3, radius: f64) -> DVec3 {
-    let squared = axis * axis;
+/// Along axis `i` that is `radius √(1 - aᵢ²/|a|²)`; written as `radius √((aⱼ² +
+/// aₖ²)/|a|²)` nothing cancels, and the relative error is below 8 roundings,
+/// which the factor on the radius covers.
+pub(super) fn disc_reach(a: DVec3, radius: f64) -> DVec3 {
+    let squared = a * a;
     let others = DVec3::new(
         squared.y + squared.z,
         squared.z + squared.x,
         squared.x + squared.y,
     );
-    let sine = (others / axis.length_squared())
-        .map(f64::sqrt)
-        .min(DVec3::ONE);
+    let sine = (others / a.length_squared()).map(f64::sqrt).min(DVec3::ONE);
     sine * (radius * (1.0 + 10.0 * UNIT_ROUNDOFF))
 }

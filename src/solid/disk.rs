@@ -24,9 +24,9 @@ use glam::DVec3;
 
 use super::cylinder::disc_reach;
 use super::exact::{Expression, Number, cross, difference, dot, sign, vector};
-use super::surface::{angle_frame, turn};
+use super::surface::Around;
 use super::{Chord, ChordEnd, ConvexSolid, Cylinder, Part, SolidKind, SurfacePoint, ball, linear};
-use crate::math::{Bounds, UNIT_ROUNDOFF, unit};
+use crate::math::{Bounds, UNIT_ROUNDOFF};
 
 /// A flat disk: its centre, a normal of any length and its radius, taken as
 /// exact numbers.
@@ -170,23 +170,14 @@ impl ConvexSolid for Disk {
     /// plane by 6 u of its length, which is at most the radius within 5 u; the product
     /// and the sum with the centre round by u of theirs.
     fn surface_point(&self, _: Part, from_anchor: DVec3) -> SurfacePoint {
-        let normal = unit(self.normal).expect("the normal is finite and not zero");
-        let (reference, across) = angle_frame(normal);
-        let once = from_anchor - normal * from_anchor.dot(normal);
-        let radial = once - normal * once.dot(normal);
-        let distance = radial.length();
-        let outward = if distance > 0.0 {
-            radial / distance
-        } else {
-            reference
-        };
-        let point = self.centre + outward * distance.min(self.radius);
+        let around = Around::new(self.normal, from_anchor);
+        let point = self.centre + around.outward * around.distance.min(self.radius);
         SurfacePoint {
             point,
             error: UNIT_ROUNDOFF * (point.length() + 16.0 * self.radius),
-            normal,
-            u: turn(outward, reference, across),
-            v: (distance / self.radius).min(1.0),
+            normal: around.axis,
+            u: around.u,
+            v: (around.distance / self.radius).min(1.0),
         }
     }
 

@@ -1,8 +1,18 @@
 //! The truncated cone as users state it.
 
+mod solver;
+mod surface;
+pub(super) mod wall;
+
+use std::cmp::Ordering;
+
 use glam::DVec3;
 
-use super::{Caps, Cylinder};
+use super::cylinder::disc_reach;
+use super::exact::{self, Expression, Number, difference, dot};
+use super::{Caps, Chord, ConvexSolid, Cylinder, Part, SolidKind, SurfacePoint};
+use crate::math::Bounds;
+use wall::{Fit, Measures};
 
 /// The surface of a part of a circular cone: two endpoints, the radius at
 /// either and its caps, all taken as exact numbers.
@@ -144,4 +154,81 @@ pub(super) fn check_ends(
         return Err(ConeError::NoRadius);
     }
     Ok(())
+}
+
+impl ConvexSolid for Cone {
+    const KIND: SolidKind = SolidKind::Cone;
+
+    fn bounds(&self) -> Bounds {
+        let a = self.p1 - self.p0;
+        let (reach0, reach1) = (disc_reach(a, self.radius0), disc_reach(a, self.radius1));
+        Bounds {
+            lower: (self.p0 - reach0).min(self.p1 - reach1),
+            upper: (self.p0 + reach0).max(self.p1 + reach1),
+        }
+        .rounded_outward()
+    }
+
+    fn anchor(&self) -> DVec3 {
+        self.p0
+    }
+
+    fn caps(&self) -> Caps {
+        self.caps
+    }
+
+    fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
+        solver::chord(self, from_anchor, direction)
+    }
+
+    fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {
+        surface::surface_point(self, part, from_anchor)
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        let is_within = |limit| {
+            let cone = self;
+            exact::sign(&Beyond { cone, point, limit }) != Ordering::Greater
+        };
+        // The other nappe begins where the slab has ended.
+        point.is_finite()
+            && [Limit::Disc0, Limit::Disc1, Limit::Wall]
+                .into_iter()
+                .all(is_within)
+    }
+
+    fn size(&self) -> f64 {
+        (self.p1 - self.p0).length() + 2.0 * self.radius0.max(self.radius1)
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Limit {
+    Disc0,
+    Disc1,
+    Wall,
+}
+
+/// Positive if the point is beyond a limit of the solid.
+struct Beyond<'a> {
+    cone: &'a Cone,
+    point: DVec3,
+    limit: Limit,
+}
+
+impl Expression for Beyond<'_> {
+    fn value<N: Number>(&self) -> N {
+        let cone = self.cone;
+        let (a, x) = (
+            difference::<N>(cone.p1, cone.p0),
+            difference(self.point, cone.p0),
+        );
+        match self.limit {
+            Limit::Disc0 => N::of(0.0).minus(&dot(&x, &a)),
+            Limit::Disc1 => dot(&x, &a).minus(&dot(&a, &a)),
+            Limit::Wall => {
+                Measures::new(&a, cone.radius0, cone.radius1, Fit::Discs).outside(&a, &x)
+            }
+        }
+    }
 }

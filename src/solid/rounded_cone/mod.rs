@@ -1,9 +1,17 @@
 //! The rounded cone as users state it.
 
+mod solver;
+mod surface;
+
+use std::cmp::Ordering;
+
 use glam::DVec3;
 
-use super::ConeError;
 use super::cone::check_ends;
+use super::cone::wall::{Fit, Measures};
+use super::exact::{self, Expression, Number, difference, dot};
+use super::{Chord, ConeError, ConvexSolid, Part, SolidKind, SurfacePoint, ball};
+use crate::math::Bounds;
 
 /// The surface of the convex hull of two balls: two centres and a radius each,
 /// all taken as exact numbers.
@@ -71,5 +79,85 @@ impl RoundedCone {
     #[must_use]
     pub fn radius1(&self) -> f64 {
         self.radius1
+    }
+}
+
+impl ConvexSolid for RoundedCone {
+    const KIND: SolidKind = SolidKind::RoundedCone;
+
+    fn bounds(&self) -> Bounds {
+        Bounds {
+            lower: (self.p0 - self.radius0).min(self.p1 - self.radius1),
+            upper: (self.p0 + self.radius0).max(self.p1 + self.radius1),
+        }
+        .rounded_outward()
+    }
+
+    fn anchor(&self) -> DVec3 {
+        self.p0
+    }
+
+    fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
+        solver::chord(self, from_anchor, direction)
+    }
+
+    fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {
+        surface::surface_point(self, part, from_anchor)
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        let beyond = |limit| {
+            let solid = self;
+            exact::sign(&Beyond {
+                solid,
+                point,
+                limit,
+            })
+        };
+        // The discs at the seams are within the balls, so that the first need not
+        // be asked for; and where one ball holds the other, no height is beyond
+        // it and not beyond the other.
+        ball::holds(self.p0, self.radius0, point)
+            || ball::holds(self.p1, self.radius1, point)
+            || point.is_finite()
+                && beyond(Limit::Seam0) == Ordering::Less
+                && beyond(Limit::Seam1) != Ordering::Greater
+                && beyond(Limit::Wall) != Ordering::Greater
+    }
+
+    fn size(&self) -> f64 {
+        (self.p1 - self.p0).length() + 2.0 * self.radius0.max(self.radius1)
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Limit {
+    Seam0,
+    Seam1,
+    Wall,
+}
+
+/// Positive if the point is beyond a limit of the wall's part of the solid.
+struct Beyond<'a> {
+    solid: &'a RoundedCone,
+    point: DVec3,
+    limit: Limit,
+}
+
+impl Expression for Beyond<'_> {
+    fn value<N: Number>(&self) -> N {
+        let solid = self.solid;
+        let (a, x) = (
+            difference::<N>(solid.p1, solid.p0),
+            difference(self.point, solid.p0),
+        );
+        let (r0, r1) = (solid.radius0, solid.radius1);
+        let measures = Measures::new(&a, r0, r1, Fit::Balls);
+        let z = || dot(&x, &a).plus(&N::of(r0).times(&measures.delta));
+        match self.limit {
+            Limit::Seam0 => N::of(0.0).minus(&z()),
+            Limit::Seam1 => z().minus(&measures.beta),
+            Limit::Wall => measures.outside(&a, &x),
+        }
     }
 }
