@@ -1,6 +1,7 @@
 //! Spheres, cuboids and disks against exact arithmetic, family by family.
 //!
-//! `CYLTRACE_CASES` sets the number of cases of a family.
+//! `CYLTRACE_CASES` sets the number of cases of a family with f32 inputs; with f64
+//! inputs there are a tenth of them.
 
 use std::fmt::Debug;
 use std::ops::AddAssign;
@@ -24,6 +25,8 @@ trait Judged: ConvexSolid {
     fn around_zero(&self) -> Self;
     fn true_chord(&self, ray: &Ray) -> Option<TrueChord>;
     fn truly_holds(&self, point: DVec3) -> bool;
+    /// The least relative change after which the answer may be another.
+    fn gap(&self, ray: &Ray) -> f64;
     /// How far a point, told to be of `part`, is at least from it.
     fn distance(&self, part: Part, point: DVec3) -> f64;
 }
@@ -39,6 +42,10 @@ impl Judged for Sphere {
 
     fn truly_holds(&self, point: DVec3) -> bool {
         oracle::sphere_holds(self, point)
+    }
+
+    fn gap(&self, ray: &Ray) -> f64 {
+        oracle::sphere_gap(self, ray)
     }
 
     fn distance(&self, part: Part, point: DVec3) -> f64 {
@@ -61,6 +68,10 @@ impl Judged for Cuboid {
 
     fn truly_holds(&self, point: DVec3) -> bool {
         oracle::cuboid_holds(self, point)
+    }
+
+    fn gap(&self, ray: &Ray) -> f64 {
+        oracle::cuboid_gap(self, ray)
     }
 
     fn distance(&self, part: Part, point: DVec3) -> f64 {
@@ -100,6 +111,10 @@ impl Judged for Disk {
 
     fn truly_holds(&self, point: DVec3) -> bool {
         oracle::disk_holds(self, point)
+    }
+
+    fn gap(&self, ray: &Ray) -> f64 {
+        oracle::disk_gap(self, ray)
     }
 
     fn distance(&self, part: Part, point: DVec3) -> f64 {
@@ -185,7 +200,16 @@ fn judge<S: Judged>(stated: &S, ray: &Ray) -> Tally {
         ..Tally::default()
     };
     let stated_truth = stated.true_chord(ray);
-    tally.wrong += u64::from(!agrees(stated, ray, stated_truth.as_ref()));
+    if !agrees(stated, ray, stated_truth.as_ref()) {
+        // The difference of origin and anchor is rounded, which changes no number
+        // by more than half an ulp; the rest is what is of second order.
+        let gap = stated.gap(ray);
+        assert!(
+            gap <= UNIT_ROUNDOFF * (1.0 + 1e-6),
+            "{stated:?} {ray:?}: {gap:e}"
+        );
+        tally.wrong += 1;
+    }
 
     // What the solver is given, as exact numbers: no exception.
     let solid = stated.around_zero();
@@ -259,7 +283,11 @@ fn judge_family<S: Judged>(
     inputs: Inputs,
     case: impl Fn(u64) -> Option<(S, Ray)> + Sync,
 ) -> Tally {
-    let mut tally = (0..case_count())
+    let count = match inputs {
+        Inputs::F32 => case_count(),
+        Inputs::F64 => case_count() / 10,
+    };
+    let mut tally = (0..count)
         .into_par_iter()
         .filter_map(|index| case(index).map(|(solid, ray)| judge(&solid, &ray)))
         .reduce(Tally::default, |mut sum, other| {
@@ -279,7 +307,7 @@ fn judge_family<S: Judged>(
         tally.share
     );
     assert!(
-        10 * tally.cases > 9 * case_count(),
+        10 * tally.cases > 9 * count,
         "{name:?}: {} cases",
         tally.cases
     );

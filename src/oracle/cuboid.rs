@@ -8,8 +8,9 @@
 
 use std::cmp::Ordering;
 
+use super::change::least_change;
 use super::chord::{TrueChord, TrueEnd};
-use super::number::{Exact, ExactVector, Surd, exact, sign, zero};
+use super::number::{Exact, ExactVector, Surd, exact, sign, vector_of, zero};
 use crate::math::Ray;
 use crate::solid::{Cuboid, Part};
 
@@ -65,6 +66,50 @@ pub fn cuboid_holds(cuboid: &Cuboid, point: glam::DVec3) -> bool {
         .iter()
         .zip(half_widths)
         .all(|(own, half_width)| -&half_width <= *own && *own <= half_width)
+}
+
+/// The least change, the same relative change for every number of the case, after
+/// which its answer may be another: to first order, that which makes the line go
+/// through an edge's line or brings the origin to a face's plane. Events that are out of the ray's range count too, so
+/// that it is a lower bound.
+///
+/// # Panics
+/// When the ray is not valid.
+#[must_use]
+pub fn cuboid_gap(cuboid: &Cuboid, ray: &Ray) -> f64 {
+    assert!(ray.is_valid(), "the gap was asked for of {ray:?}");
+    let vectors = [
+        cuboid.half_widths(),
+        cuboid.centre(),
+        ray.origin,
+        ray.direction,
+    ];
+    let numbers = vectors.map(|vector| vector.to_array()).concat();
+    let is_along =
+        along_axes(cuboid, &ExactVector::new(ray.direction)).map(|slope| slope == zero());
+    least_change(&numbers, |numbers: &[Exact]| {
+        let [half_widths, centre, origin, d] =
+            [0, 3, 6, 9].map(|first| vector_of(&numbers[first..]));
+        let start = along_axes(cuboid, &(&origin - &centre));
+        let slope = along_axes(cuboid, &d);
+        let planes: [[Exact; 2]; 3] = std::array::from_fn(|axis| {
+            let (start, half_width) = (&start[axis], &half_widths.0[axis]);
+            [start + half_width, start - half_width]
+        });
+        let mut conditions = planes.concat();
+        for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+            // A line along both of the planes keeps its distance to their edges.
+            if is_along[i] && is_along[j] {
+                continue;
+            }
+            for one in &planes[i] {
+                for other in &planes[j] {
+                    conditions.push(one * &slope[j] - other * &slope[i]);
+                }
+            }
+        }
+        conditions
+    })
 }
 
 fn along_axes(cuboid: &Cuboid, vector: &ExactVector) -> [Exact; 3] {
@@ -170,5 +215,18 @@ mod tests {
             answer([2.0, 0.0, 2.0], [0.0, 1.0, 0.0]),
             Some(([(-3.0, XMax), (3.0, XMax)], Some(XMax)))
         );
+    }
+
+    #[test]
+    fn gap_at_an_edge_is_the_distance_to_it() {
+        let cuboid = Cuboid::new(DVec3::ONE, DVec3::splat(0.5), Orientation::IDENTITY).unwrap();
+        let gap = |x: f64| {
+            let ray = Ray::new(DVec3::new(x, 1.25, -7.0), DVec3::new(0.0, 0.0, 1.0));
+            cuboid_gap(&cuboid, &ray)
+        };
+        assert_eq!(gap(1.5), 0.0);
+        let near = gap(1.5 + 1e-9);
+        assert!(2e-10 < near && near < 1e-9, "{near:e}");
+        assert!(gap(1.1) > 0.02);
     }
 }

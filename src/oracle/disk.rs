@@ -6,8 +6,9 @@
 
 use std::cmp::Ordering;
 
+use super::change::least_change;
 use super::chord::{TrueChord, TrueEnd, in_ball};
-use super::number::{ExactVector, Surd, exact, sign, zero};
+use super::number::{Exact, ExactVector, Surd, exact, sign, vector_of, zero};
 use crate::math::Ray;
 use crate::solid::{Disk, Part};
 
@@ -63,6 +64,30 @@ pub fn disk_holds(disk: &Disk, point: glam::DVec3) -> bool {
     ExactVector::new(disk.normal()).dot(&x) == zero() && x.dot(&x) <= &radius * &radius
 }
 
+/// The least change, the same relative change for every number of the case, after
+/// which its answer may be another: to first order, that which makes the line go
+/// through the rim or brings the origin to the plane. Events that are out of the ray's range count too, so
+/// that it is a lower bound.
+///
+/// # Panics
+/// When the ray is not valid.
+#[must_use]
+pub fn disk_gap(disk: &Disk, ray: &Ray) -> f64 {
+    assert!(ray.is_valid(), "the gap was asked for of {ray:?}");
+    let mut numbers = vec![disk.radius()];
+    for vector in [disk.centre(), disk.normal(), ray.origin, ray.direction] {
+        numbers.extend(vector.to_array());
+    }
+    least_change(&numbers, |numbers: &[Exact]| {
+        let [centre, n, origin, d] = [1, 4, 7, 10].map(|first| vector_of(&numbers[first..]));
+        let x = &origin - &centre;
+        let (height, slope) = (n.dot(&x), n.dot(&d));
+        let point = &x.times(&slope) - &d.times(&height);
+        let reach = &numbers[0] * slope;
+        vec![point.dot(&point) - &reach * &reach, height]
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -81,6 +106,14 @@ mod tests {
         assert_eq!(ends(rim + DVec3::X * 1e-15, slope), None);
         assert_eq!(ends(rim - DVec3::X * 13.0, DVec3::X), Some([7.0, 13.0]));
         assert_eq!(ends(rim + DVec3::Z * 1e-15, DVec3::X), None);
+        let gap = |y| {
+            let ray = Ray::new(DVec3::new(0.5, y, -3.0), DVec3::Z);
+            disk_gap(&Disk::new(DVec3::Z, DVec3::Z, 5.0).unwrap(), &ray)
+        };
+        assert!(gap(0.5 * 99.0_f64.sqrt()) < 1e-15);
+        let near = gap(0.5 * 99.0_f64.sqrt() + 1e-8);
+        assert!(2e-10 < near && near < 2e-9, "{near:e}");
+        assert!(gap(3.0) > 0.02);
         assert!(disk_holds(&disk, rim));
         assert!(!disk_holds(&disk, rim + DVec3::Z * 1e-15));
         assert!(!disk_holds(&disk, rim.with_x(3.0_f64.next_up())));
