@@ -7,12 +7,18 @@
 //! are the case, and a solver is never blamed for a rounding of the family.
 
 mod aiming;
+mod cuboids;
+mod disks;
 mod families;
 mod shapes;
 mod tapers;
+mod spheres;
 
+pub use cuboids::CuboidFamily;
+pub use disks::DiskFamily;
 pub use families::{Family, UnknownFamily};
 pub use tapers::{TaperCase, TaperFamily, TaperSolid};
+pub use spheres::SphereFamily;
 
 use glam::DVec3;
 

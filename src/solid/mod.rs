@@ -11,6 +11,7 @@ mod disk;
 pub mod exact;
 pub mod formulations;
 pub mod lanes;
+mod linear;
 mod rounded_cone;
 mod slab;
 mod spawn;

@@ -114,16 +114,22 @@ impl Around {
         } else {
             reference
         };
-        let turn = libm::atan2(outward.dot(across), outward.dot(reference)) / std::f64::consts::TAU;
-        let turn = if turn < 0.0 { turn + 1.0 } else { turn };
-        let on_axis = distance == 0.0 || turn >= 1.0;
         Self {
             axis,
             outward,
             distance,
-            u: if on_axis { 0.0 } else { turn },
+            u: turn(outward, reference, across),
         }
     }
+}
+
+/// The angle of `outward` from `reference` towards `across`, in turns, in [0, 1).
+pub(super) fn turn(outward: DVec3, reference: DVec3, across: DVec3) -> f64 {
+    // A zero of either sign is the same direction.
+    let (y, x) = (outward.dot(across) + 0.0, outward.dot(reference) + 0.0);
+    let turn = libm::atan2(y, x) / std::f64::consts::TAU;
+    let turn = if turn < 0.0 { turn + 1.0 } else { turn };
+    if turn >= 1.0 { 0.0 } else { turn }
 }
 
 /// The two unit vectors perpendicular to `axis` from which angles are counted:
