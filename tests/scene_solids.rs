@@ -256,3 +256,39 @@ fn neurons_have_cylinders_or_cones_or_rounded_cones() {
     ];
     assert_eq!(found, expected);
 }
+
+#[test]
+fn census_counts_other_solids_and_their_box_holds_them() {
+    let text = "[[prototype]]\nname = \"a\"\n[[prototype.sphere]]\ncenter = [0, 0, 0]\nradius = 1\n\
+         [[prototype.difference]]\nof = [{ cuboid = { center = [5, 0, 0], half_widths = [1, 2, 1] } }, { sphere = { center = [9, 0, 0], radius = 4 } }]\n\
+         [[instance]]\nof = \"a\"\n[[instance]]\nof = \"a\"\ntranslate = [100, 0, 0]\n";
+    let census = scene(text).census();
+    assert_eq!(
+        (census.other_solids_unique, census.other_solids_instanced),
+        (2, 4)
+    );
+    assert_eq!(census.cylinders_unique, 0);
+    let (lower, upper) = (census.bounds.lower, census.bounds.upper);
+    // Boxes are rounded outward, by next to nothing.
+    assert!(
+        lower.abs_diff_eq(at(-1.0, -2.0, -1.0), 1e-12) && lower.cmple(at(-1.0, -2.0, -1.0)).all()
+    );
+    assert!(
+        upper.abs_diff_eq(at(106.0, 2.0, 1.0), 1e-12) && upper.cmpge(at(106.0, 2.0, 1.0)).all()
+    );
+}
+
+#[test]
+fn boxes_of_set_operations_follow_their_meaning() {
+    let ball = |x: f64| leaf(sphere(at(x, 0.0, 0.0), 1.0));
+    let (near, far) = (|| vec![ball(0.0), ball(1.0)], || vec![ball(0.0), ball(5.0)]);
+    let across = |composition: Composition| {
+        let bounds = composition.bounds();
+        (bounds.lower.x.round(), bounds.upper.x.round())
+    };
+    assert_eq!(across(Composition::Union(near())), (-1.0, 2.0));
+    assert_eq!(across(Composition::Intersection(near())), (0.0, 1.0));
+    assert_eq!(across(Composition::Difference(near())), (-1.0, 1.0));
+    assert!(Composition::Intersection(far()).bounds().is_empty());
+    assert!(Composition::Union(Vec::new()).bounds().is_empty());
+}

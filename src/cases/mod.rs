@@ -11,14 +11,14 @@ mod cuboids;
 mod disks;
 mod families;
 mod shapes;
-mod tapers;
 mod spheres;
+mod tapers;
 
 pub use cuboids::CuboidFamily;
 pub use disks::DiskFamily;
 pub use families::{Family, UnknownFamily};
-pub use tapers::{TaperCase, TaperFamily, TaperSolid};
 pub use spheres::SphereFamily;
+pub use tapers::{TaperCase, TaperFamily, TaperSolid};
 
 use glam::DVec3;
 

@@ -7,6 +7,7 @@ use super::description::{CylinderRecord, MaterialIndex};
 use super::error::SceneError;
 use super::solid_lists::{Composition, SolidRecord, Solids};
 use super::source::Source;
+use crate::math::Bounds;
 use crate::solid::{AnySolid, Caps, ConeError, Cylinder, CylinderError};
 
 /// What to say about rows that `degenerate = "skip"` would leave out.
@@ -123,7 +124,7 @@ impl Gathered {
             return self.push(cylinder, material);
         }
         let primitive = self.number()?;
-        self.reach = self.reach.max(solid.reach());
+        self.reach_to(&solid.bounds());
         let others = &mut self.others;
         match *solid {
             AnySolid::Cylinder(_) => {}
@@ -153,11 +154,18 @@ impl Gathered {
         material: MaterialIndex,
     ) -> Result<(), Refusal> {
         let primitive = self.number()?;
-        let reaches = solid.solids().into_iter().map(|solid| solid.reach());
-        self.reach = reaches.fold(self.reach, f64::max);
+        // What an operation leaves may be nothing: all of its parts count.
+        for part in solid.solids() {
+            self.reach_to(&part.bounds());
+        }
         let record = SolidRecord::new(solid, primitive, material);
         self.others.compositions.push(record);
         Ok(())
+    }
+
+    fn reach_to(&mut self, bounds: &Bounds) {
+        let corner = bounds.lower.abs().max(bounds.upper.abs());
+        self.reach = self.reach.max(corner.max_element());
     }
 
     /// Leaves a row out; it keeps its primitive number.

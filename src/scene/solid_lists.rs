@@ -1,7 +1,8 @@
 //! The solids of a prototype that are no cylinders, one list a kind.
 
 use super::description::MaterialIndex;
-use crate::solid::{AnySolid, Cone, Cuboid, Disk, RoundedCone, Sphere};
+use crate::math::Bounds;
+use crate::solid::{AnySolid, Cone, ConvexSolid, Cuboid, Disk, RoundedCone, Sphere};
 
 /// The solids of a prototype that are no cylinders, each list in the order of
 /// the primitive numbers.
@@ -82,6 +83,26 @@ impl Solids {
         self.len() == 0
     }
 
+    /// A box around all of them.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        fn all<S: ConvexSolid>(list: &[SolidRecord<S>]) -> Bounds {
+            let boxes = list.iter().map(|record| record.solid.bounds());
+            boxes.fold(Bounds::EMPTY, |sum, bounds| sum.union(&bounds))
+        }
+        let compositions = self.compositions.iter();
+        let compositions = compositions.map(|record| record.solid.bounds());
+        let singles = [
+            all(&self.spheres),
+            all(&self.cuboids),
+            all(&self.cones),
+            all(&self.rounded_cones),
+            all(&self.disks),
+        ];
+        let boxes = singles.into_iter().chain(compositions);
+        boxes.fold(Bounds::EMPTY, |sum, bounds| sum.union(&bounds))
+    }
+
     /// Gives back the memory beyond what the lists hold.
     pub(super) fn trim(&mut self) {
         self.spheres.shrink_to_fit();
@@ -108,5 +129,30 @@ impl Composition {
             }
         }
         solids
+    }
+
+    /// A box that holds it: of a union the box of all boxes, of an intersection what
+    /// is in all of them, of a difference the first. [`Bounds::EMPTY`] where that
+    /// shows that nothing is left.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        let boxes = |parts: &[Self]| parts.iter().map(Self::bounds).collect::<Vec<_>>();
+        match self {
+            Self::Solid(solid) => solid.bounds(),
+            Self::Union(parts) => {
+                let boxes = boxes(parts).into_iter();
+                boxes.fold(Bounds::EMPTY, |sum, bounds| sum.union(&bounds))
+            }
+            Self::Intersection(parts) => {
+                let common = boxes(parts).into_iter().reduce(|one, other| Bounds {
+                    lower: one.lower.max(other.lower),
+                    upper: one.upper.min(other.upper),
+                });
+                common
+                    .filter(|bounds| bounds.lower.cmple(bounds.upper).all())
+                    .unwrap_or(Bounds::EMPTY)
+            }
+            Self::Difference(parts) => parts.first().map_or(Bounds::EMPTY, Self::bounds),
+        }
     }
 }

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::{Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, SolidKind, Sphere};
+use super::{Caps, Cone, ConvexSolid, Cuboid, Cylinder, Disk, RoundedCone, SolidKind, Sphere};
+use crate::math::Bounds;
 
 /// A solid of whichever kind, where kinds are mixed and few: each list of a scene
 /// is of one kind.
@@ -63,20 +64,16 @@ impl AnySolid {
         }
     }
 
-    /// At least the size of every coordinate of its points, but for roundings.
+    /// A box that holds it, rounded outward.
     #[must_use]
-    pub fn reach(&self) -> f64 {
-        let size = |point: DVec3| point.abs().max_element();
-        let along = |p0, p1, radius: f64| size(p0).max(size(p1)) + radius;
+    pub fn bounds(&self) -> Bounds {
         match self {
-            Self::Cylinder(cylinder) => along(cylinder.p0(), cylinder.p1(), cylinder.radius()),
-            Self::Cone(cone) => along(cone.p0(), cone.p1(), cone.radius0().max(cone.radius1())),
-            Self::RoundedCone(cone) => {
-                along(cone.p0(), cone.p1(), cone.radius0().max(cone.radius1()))
-            }
-            Self::Sphere(sphere) => size(sphere.centre()) + sphere.radius(),
-            Self::Cuboid(cuboid) => size(cuboid.centre()) + cuboid.half_widths().length(),
-            Self::Disk(disk) => size(disk.centre()) + disk.radius(),
+            Self::Cylinder(cylinder) => cylinder.bounds(),
+            Self::Cone(cone) => cone.bounds(),
+            Self::RoundedCone(cone) => cone.bounds(),
+            Self::Sphere(sphere) => sphere.bounds(),
+            Self::Cuboid(cuboid) => cuboid.bounds(),
+            Self::Disk(disk) => disk.bounds(),
         }
     }
 }
