@@ -1,5 +1,8 @@
 //! Every key of `docs/scene-file.md` does what it says there.
 
+#[path = "support/three_mf.rs"]
+mod three_mf;
+
 use std::fs;
 use std::path::Path;
 
@@ -12,6 +15,10 @@ use glam::{DAffine3, DMat3, DVec3};
 const SOLID: &str = "[[cylinder]]\np0 = [0, 0, 0]\np1 = [0, 0, 1]\nradius = 1\n";
 const TREE: &str = "[[prototype]]\nname = \"tree\"\n[[prototype.cylinder]]\np0 = [0, 0, 0]\np1 = [0, 0, 1]\nradius = 1\n";
 const BARK: &str = "[[material]]\nname = \"bark\"\ncolor = [0.1, 0.2, 0.3]\n";
+const LATTICE: &str = "<resources><object id=\"1\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/>\
+     <vertex x=\"0\" y=\"0\" z=\"9\"/></vertices><b:beamlattice radius=\"1\" minlength=\"0\"><b:beams>\
+     <b:beam v1=\"0\" v2=\"1\"/></b:beams></b:beamlattice></mesh></object></resources>\
+     <build><item objectid=\"1\"/></build>";
 const FILES: [(&str, &str); 3] = [
     (
         "tree.csv",
@@ -35,6 +42,8 @@ fn scene(text: &str) -> Scene {
     for (name, text) in FILES {
         fs::write(folder.path().join(name), text).expect("writing a table");
     }
+    let lattice = three_mf::three_mf(&three_mf::model("", LATTICE));
+    fs::write(folder.path().join("lattice.3mf"), lattice).expect("writing a lattice");
     let path = folder.path().join("scene.toml");
     fs::write(&path, text).expect("writing the scene");
     load(&path).unwrap_or_else(|error| panic!("{text}\n{error}"))

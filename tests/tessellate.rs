@@ -136,6 +136,7 @@ fn random_scene(seed: u64) -> Scene {
             .iter()
             .map(|&of| placement(&mut random, of))
             .collect(),
+        ..Prototype::default()
     };
     let root = prototype("", 4, &[1, 2, 1]);
     let tree = prototype("my tree/1", 3, &[2, 2]);
@@ -345,6 +346,7 @@ fn deviation_of_unplaced_solids_is_the_sagitta_and_of_placed_ones_stretched() {
         name: "leaf".into(),
         cylinders: vec![record].into(),
         placements: Vec::new(),
+        ..Prototype::default()
     };
     let root = |of: u32, factors: DVec3| Prototype {
         name: String::new(),
@@ -353,6 +355,7 @@ fn deviation_of_unplaced_solids_is_the_sagitta_and_of_placed_ones_stretched() {
             of: PrototypeIndex(of),
             parent_from_child: DAffine3::from_scale(factors),
         }],
+        ..Prototype::default()
     };
     let angle = std::f64::consts::PI / 8.0;
     for (fit, expected) in [
@@ -412,12 +415,14 @@ fn meshes_too_large_or_interrupted_are_refused() {
                 };
                 10
             ],
+            ..Prototype::default()
         })
         .collect();
     prototypes.push(Prototype {
         name: "leaf".into(),
         cylinders: records(&mut Random::new(1, 1), 1).into(),
         placements: Vec::new(),
+        ..Prototype::default()
     });
     let scene = Scene::new(prototypes);
     let plan = Plan::new(&scene, 3, Fit::Inscribed).unwrap();

@@ -158,6 +158,11 @@ impl Target {
 }
 
 impl Aim {
+    /// A line through a point along a unit vector.
+    pub fn new(point: DVec3, heading: DVec3) -> Self {
+        Self { point, heading }
+    }
+
     /// The ray on the line that starts `distance` before the point, with a
     /// direction of length about `speed`.
     pub fn ray(&self, distance: f64, speed: f64, inputs: Inputs) -> Option<Ray> {
@@ -165,9 +170,16 @@ impl Aim {
         let direction = (self.point - origin).normalize() * speed;
         valid(origin, inputs.vector(direction))
     }
+
+    /// The ray that starts there in the line's direction, not aimed anew from its
+    /// rounded origin.
+    pub fn unaimed_ray(&self, distance: f64, speed: f64, inputs: Inputs) -> Option<Ray> {
+        let origin = inputs.vector(self.point - self.heading * distance);
+        valid(origin, inputs.vector(self.heading * speed))
+    }
 }
 
-fn valid(origin: DVec3, direction: DVec3) -> Option<Ray> {
+pub(super) fn valid(origin: DVec3, direction: DVec3) -> Option<Ray> {
     let ray = Ray::new(origin, direction);
     ray.is_valid().then_some(ray)
 }
@@ -175,4 +187,10 @@ fn valid(origin: DVec3, direction: DVec3) -> Option<Ray> {
 /// 1 or -1.
 pub(super) fn sign(random: &mut Random) -> f64 {
     if random.below(2) == 0 { 1.0 } else { -1.0 }
+}
+
+/// A vector of whole numbers up to `greatest` in size.
+pub(super) fn whole(random: &mut Random, greatest: u64) -> DVec3 {
+    let mut number = || random.below(2 * greatest + 1) as f64 - greatest as f64;
+    DVec3::new(number(), number(), number())
 }

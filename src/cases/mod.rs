@@ -7,10 +7,18 @@
 //! are the case, and a solver is never blamed for a rounding of the family.
 
 mod aiming;
+mod cuboids;
+mod disks;
 mod families;
 mod shapes;
+mod spheres;
+mod tapers;
 
+pub use cuboids::CuboidFamily;
+pub use disks::DiskFamily;
 pub use families::{Family, UnknownFamily};
+pub use spheres::SphereFamily;
+pub use tapers::{TaperCase, TaperFamily, TaperSolid};
 
 use glam::DVec3;
 

@@ -53,6 +53,10 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
                 "unique": census.cylinders_unique,
                 "instanced": json::count(census.cylinders_instanced),
             },
+            "other_solids": {
+                "unique": census.other_solids_unique,
+                "instanced": json::count(census.other_solids_instanced),
+            },
             "skipped_rows": scene.skipped_rows,
             "bounds": { "lower": lower.to_array(), "upper": upper.to_array() },
             "memory_estimate": {
@@ -82,6 +86,12 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
         "cylinders: {} unique, {} instanced\n",
         census.cylinders_unique, census.cylinders_instanced
     );
+    if census.other_solids_unique > 0 {
+        text += &format!(
+            "other solids: {} unique, {} instanced\n",
+            census.other_solids_unique, census.other_solids_instanced
+        );
+    }
     text += &text::skipped_rows(scene.skipped_rows);
     text += &format!("bounds: {} to {}\n", text::point(lower), text::point(upper));
     text += &format!(

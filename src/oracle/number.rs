@@ -176,6 +176,11 @@ impl ExactVector {
     }
 }
 
+/// The vector of the first three numbers.
+pub(super) fn vector_of(numbers: &[Exact]) -> ExactVector {
+    ExactVector(std::array::from_fn(|i| numbers[i].clone()))
+}
+
 impl ExactVector {
     /// The vector product.
     #[must_use]

@@ -8,7 +8,7 @@ use super::document::{CameraKeys, Triple};
 use super::error::SceneError;
 use super::settings::vector;
 use super::source::Source;
-use super::transform::unit;
+use crate::math::unit;
 use crate::solid::Cylinder;
 
 /// Least sine of the angle between `up` and the view: below it, the picture's

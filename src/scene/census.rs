@@ -17,10 +17,14 @@ pub struct Census {
     pub placements: u64,
     /// Cylinders as they are stored.
     pub cylinders_unique: u64,
+    /// Solids of other kinds as they are stored.
+    pub other_solids_unique: u64,
     /// Placements with those within placed prototypes counted each time.
     pub instances: u128,
     /// Cylinders with every placement counted.
     pub cylinders_instanced: u128,
+    /// Solids of other kinds with every placement counted.
+    pub other_solids_instanced: u128,
     /// Levels of placements: 0 when the root places nothing.
     pub depth: u32,
     /// A box around everything. Boxes of placements are boxes of transformed
@@ -33,6 +37,7 @@ pub struct Census {
 struct Whole {
     instances: u128,
     cylinders: u128,
+    other_solids: u128,
     depth: u32,
     bounds: Bounds,
 }
@@ -44,6 +49,7 @@ impl Whole {
     const NOTHING: Self = Self {
         instances: 0,
         cylinders: 0,
+        other_solids: 0,
         depth: 0,
         bounds: Bounds::EMPTY,
     };
@@ -53,6 +59,7 @@ impl Whole {
         Self {
             instances: self.instances.saturating_add(other.instances),
             cylinders: self.cylinders.saturating_add(other.cylinders),
+            other_solids: self.other_solids.saturating_add(other.other_solids),
             depth: self.depth.max(other.depth),
             bounds: self.bounds.union(&other.bounds),
         }
@@ -75,8 +82,10 @@ impl Scene {
             prototypes_used: used().count() as u64 - 1,
             placements: used().map(|p| p.placements.len() as u64).sum(),
             cylinders_unique: used().map(|p| p.cylinders.len() as u64).sum(),
+            other_solids_unique: used().map(|p| p.solids.len() as u64).sum(),
             instances: root.instances,
             cylinders_instanced: root.cylinders,
+            other_solids_instanced: root.other_solids,
             depth: root.depth,
             bounds: root.bounds,
         }
@@ -108,11 +117,17 @@ impl Scene {
                 .reduce(|| Bounds::EMPTY, |sum, bounds| sum.union(&bounds)),
             ..Whole::NOTHING
         };
+        let others = Whole {
+            other_solids: prototype.solids.len() as u128,
+            bounds: prototype.solids.bounds(),
+            ..Whole::NOTHING
+        };
         let placements = prototype.placements.par_iter().with_min_len(LEAST_SHARE);
         let whole = placements
             .map(placed)
             .reduce(|| Whole::NOTHING, Whole::and)
-            .and(cylinders);
+            .and(cylinders)
+            .and(others);
         wholes[index.0 as usize] = Some(whole);
         whole
     }

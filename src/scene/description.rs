@@ -4,6 +4,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::cylinder_list::{CylinderList, Records};
+use super::solid_lists::Solids;
 use crate::solid::{Caps, Cylinder};
 
 /// A whole scene. What it holds has been checked when it was loaded.
@@ -70,6 +71,8 @@ pub struct Prototype {
     pub name: String,
     /// The cylinders, in an order that suits tracing.
     pub cylinders: CylinderList,
+    /// The solids of other kinds.
+    pub solids: Solids,
     /// The placements, in the order of their instance numbers.
     pub placements: Vec<Placement>,
 }

@@ -5,6 +5,10 @@
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::solid_keys::{
+    BeamLatticeKeys, CompositionKeys, ConeKeys, CuboidKeys, CylinderKeys, CylinderTableKeys,
+    DiskKeys, RotationKeys, RoundedConeKeys, SphereKeys, SwcKeys,
+};
 use super::values::{Keys, List, NameOrList, Number, NumberOrList, Whole};
 
 /// Three numbers and their place.
@@ -12,90 +16,96 @@ pub(super) type Triple = Spanned<List<Number, 3>>;
 /// The names of three columns, each with its place.
 pub(super) type ThreeNames = List<Spanned<String>, 3>;
 
-/// The whole file.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Document {
-    pub background: Option<Triple>,
-    pub records: Option<Spanned<String>>,
-    pub camera: Option<Keys<CameraKeys>>,
-    pub film: Option<Keys<FilmKeys>>,
-    pub render: Option<Keys<RenderKeys>>,
-    pub sun: Option<Keys<SunKeys>>,
-    pub sky: Option<Keys<SkyKeys>>,
-    #[serde(default)]
-    pub material: Vec<Keys<MaterialKeys>>,
-    #[serde(default)]
-    pub prototype: Vec<Keys<PrototypeKeys>>,
-    #[serde(default)]
-    pub cylinder: Vec<Keys<CylinderKeys>>,
-    #[serde(default)]
-    pub cylinder_table: Vec<Keys<CylinderTableKeys>>,
-    #[serde(default)]
-    pub swc: Vec<Keys<SwcKeys>>,
-    #[serde(default)]
-    pub instance: Vec<Keys<InstanceKeys>>,
-    #[serde(default)]
-    pub instance_table: Vec<Keys<InstanceTableKeys>>,
-    #[serde(default)]
-    pub scatter: Vec<Keys<ScatterKeys>>,
+/// Declares the tables that hold solids and placements, each with the lists of
+/// those behind its own keys, because serde cannot refuse unknown keys in a flattened
+/// struct; and [`Body`], which borrows the lists.
+macro_rules! holders {
+    ($lists:tt $($(#[$meta:meta])* $name:ident $keys:tt)*) => {
+        $(holder!($lists $(#[$meta])* $name $keys);)*
+        body!($lists);
+    };
 }
 
-/// What the root and every prototype hold.
-#[derive(Clone, Copy)]
-pub(super) struct Body<'a> {
-    pub name: &'a str,
-    pub cylinder: &'a [Keys<CylinderKeys>],
-    pub cylinder_table: &'a [Keys<CylinderTableKeys>],
-    pub swc: &'a [Keys<SwcKeys>],
-    pub instance: &'a [Keys<InstanceKeys>],
-    pub instance_table: &'a [Keys<InstanceTableKeys>],
-    pub scatter: &'a [Keys<ScatterKeys>],
+macro_rules! holder {
+    ([$($list:ident: $entry:ident,)*]
+     $(#[$meta:meta])* $name:ident {
+        $($(#[$attribute:meta])* pub $key:ident: $kind:ty,)*
+     }) => {
+        $(#[$meta])*
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub(super) struct $name {
+            $($(#[$attribute])* pub $key: $kind,)*
+            $(#[serde(default)] $list: Vec<Keys<$entry>>,)*
+        }
+
+        impl $name {
+            /// What it holds, under a name.
+            fn body<'a>(&'a self, name: &'a str) -> Body<'a> {
+                Body { name, $($list: &self.$list,)* }
+            }
+        }
+    };
+}
+
+macro_rules! body {
+    ([$($list:ident: $entry:ident,)*]) => {
+        /// What the root and every prototype hold.
+        #[derive(Clone, Copy)]
+        pub(super) struct Body<'a> {
+            pub name: &'a str,
+            $(pub $list: &'a [Keys<$entry>],)*
+        }
+    };
+}
+
+holders! {
+    [
+        cylinder: CylinderKeys,
+        cylinder_table: CylinderTableKeys,
+        swc: SwcKeys,
+        beam_lattice: BeamLatticeKeys,
+        sphere: SphereKeys,
+        cuboid: CuboidKeys,
+        cone: ConeKeys,
+        rounded_cone: RoundedConeKeys,
+        disk: DiskKeys,
+        union: CompositionKeys,
+        intersection: CompositionKeys,
+        difference: CompositionKeys,
+        instance: InstanceKeys,
+        instance_table: InstanceTableKeys,
+        scatter: ScatterKeys,
+    ]
+
+    /// The whole file.
+    Document {
+        pub background: Option<Triple>,
+        pub records: Option<Spanned<String>>,
+        pub camera: Option<Keys<CameraKeys>>,
+        pub film: Option<Keys<FilmKeys>>,
+        pub render: Option<Keys<RenderKeys>>,
+        pub sun: Option<Keys<SunKeys>>,
+        pub sky: Option<Keys<SkyKeys>>,
+        #[serde(default)]
+        pub material: Vec<Keys<MaterialKeys>>,
+        #[serde(default)]
+        pub prototype: Vec<Keys<PrototypeKeys>>,
+    }
+
+    /// `[[prototype]]`
+    PrototypeKeys {
+        pub name: Spanned<String>,
+    }
 }
 
 impl Document {
     /// The root and the prototypes, in the order of their numbers.
     pub fn bodies(&self) -> impl Iterator<Item = Body<'_>> {
-        let root = Body {
-            name: "",
-            cylinder: &self.cylinder,
-            cylinder_table: &self.cylinder_table,
-            swc: &self.swc,
-            instance: &self.instance,
-            instance_table: &self.instance_table,
-            scatter: &self.scatter,
-        };
-        let prototypes = self.prototype.iter().map(|Keys(keys)| Body {
-            name: keys.name.get_ref(),
-            cylinder: &keys.cylinder,
-            cylinder_table: &keys.cylinder_table,
-            swc: &keys.swc,
-            instance: &keys.instance,
-            instance_table: &keys.instance_table,
-            scatter: &keys.scatter,
-        });
-        std::iter::once(root).chain(prototypes)
+        let prototypes = self.prototype.iter();
+        let prototypes = prototypes.map(|Keys(keys)| keys.body(keys.name.get_ref()));
+        std::iter::once(self.body("")).chain(prototypes)
     }
-}
-
-/// `[[prototype]]`. Its lists repeat those of [`Document`] because serde
-/// cannot refuse unknown keys in a flattened struct.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct PrototypeKeys {
-    pub name: Spanned<String>,
-    #[serde(default)]
-    pub cylinder: Vec<Keys<CylinderKeys>>,
-    #[serde(default)]
-    pub cylinder_table: Vec<Keys<CylinderTableKeys>>,
-    #[serde(default)]
-    pub swc: Vec<Keys<SwcKeys>>,
-    #[serde(default)]
-    pub instance: Vec<Keys<InstanceKeys>>,
-    #[serde(default)]
-    pub instance_table: Vec<Keys<InstanceTableKeys>>,
-    #[serde(default)]
-    pub scatter: Vec<Keys<ScatterKeys>>,
 }
 
 /// `[camera]`
@@ -155,68 +165,18 @@ pub(super) struct MaterialKeys {
     pub color: Triple,
 }
 
-/// `[[cylinder]]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct CylinderKeys {
-    pub p0: Triple,
-    pub p1: Triple,
-    pub radius: Spanned<Number>,
-    pub caps: Option<Spanned<String>>,
-    pub material: Option<Spanned<String>>,
-}
-
-/// `[[cylinder_table]]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct CylinderTableKeys {
-    pub file: Spanned<String>,
-    pub columns: Spanned<Keys<CylinderColumns>>,
-    pub degenerate: Option<Spanned<String>>,
-    pub caps: Option<Spanned<String>>,
-    pub material: Option<Spanned<String>>,
-}
-
-/// `columns` of `[[cylinder_table]]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct CylinderColumns {
-    #[serde(alias = "start")]
-    pub p0: ThreeNames,
-    pub p1: Option<ThreeNames>,
-    pub axis: Option<ThreeNames>,
-    pub length: Option<Spanned<String>>,
-    pub radius: Option<Spanned<String>>,
-    pub diameter: Option<Spanned<String>>,
-}
-
-/// `[[swc]]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct SwcKeys {
-    pub file: Spanned<String>,
-    pub degenerate: Option<Spanned<String>>,
-    pub caps: Option<Spanned<String>>,
-    pub material: Option<Spanned<String>>,
-}
-
 /// `[[instance]]`
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct InstanceKeys {
     pub of: Spanned<String>,
     pub scale: Option<Spanned<NumberOrList<3>>>,
+    pub rotate_x: Option<Number>,
+    pub rotate_y: Option<Number>,
+    pub rotate_z: Option<Number>,
     pub rotate: Option<Vec<Keys<RotationKeys>>>,
     pub translate: Option<Triple>,
     pub matrix: Option<Spanned<List<List<Number, 4>, 3>>>,
-}
-
-/// One rotation of `rotate`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RotationKeys {
-    pub axis: Triple,
-    pub degrees: Number,
 }
 
 /// `[[instance_table]]`

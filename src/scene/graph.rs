@@ -21,6 +21,10 @@ pub(super) struct Node<'a> {
 }
 
 impl Node<'_> {
+    fn has_solids(&self) -> bool {
+        !self.prototype.cylinders.is_empty() || !self.prototype.solids.is_empty()
+    }
+
     /// Why it holds no solids, where rows were left out; all of them then.
     fn emptied(&self) -> String {
         match self.skipped {
@@ -57,7 +61,7 @@ pub(super) fn check(source: &Source, nodes: &[Node]) -> Result<(), SceneError> {
                 "the scene is empty: it holds no solids{}",
                 nodes.first().map_or_else(String::new, Node::emptied)
             ),
-            "add a [[cylinder]], a [[cylinder_table]] or an [[swc]], or place a prototype with an [[instance]]",
+            "add a [[cylinder]] or another solid, a [[cylinder_table]] or an [[swc]], or place a prototype with an [[instance]]",
         ));
     }
     Ok(())
@@ -71,7 +75,7 @@ fn summary(
 ) -> Result<Summary, SceneError> {
     let node = &nodes[index];
     let mut total = Summary {
-        has_solids: !node.prototype.cylinders.is_empty(),
+        has_solids: node.has_solids(),
         levels: 0,
         reach: node.reach,
         stretch: 1.0,

@@ -1,27 +1,32 @@
 //! From a scene file to a checked description.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::path::Path;
 
 use toml::Spanned;
 
+use super::beam_lattice::{BeamLattice, UNITS, add_beam_lattice};
 use super::camera::camera;
 use super::cylinder_list::Records;
+use super::cylinder_table::add_table;
 use super::description::{Prototype, PrototypeIndex, Scene};
 use super::document::{Body, Document, PrototypeKeys, ScatterKeys};
 use super::error::SceneError;
+use super::gathered::{Degenerate, Gathered, Look, Refusal};
 use super::graph::{self, Node};
 use super::names::{quoted, suggestion};
 use super::placing::{Edge, Placements};
 use super::scatter::{Pattern, Scatter};
 use super::scene_file::SceneFile;
+use super::set_operations::Operation;
 use super::settings::{Materials, check_names, film, lights, render};
-use super::solids::{Degenerate, Look, Solids};
+use super::solid_keys::{BeamLatticeKeys, CompositionKeys, SolidTable};
+use super::solids::{SolidKeys, caps};
 use super::source::Source;
-use super::swc::add_swc;
+use super::swc::{add_swc, joints};
 use super::transform::GREATEST_ENTRY;
 use super::values::{Keys, NumberOrList};
-use crate::solid::Caps;
 
 /// Reads a scene file and the tables it names, and checks everything.
 ///
@@ -135,21 +140,15 @@ impl Loader<'_> {
     /// The solids and placements, in the order of their numbers.
     fn body(&self, body: &Body) -> Result<Lowered, SceneError> {
         let source = self.source;
-        let mut solids = Solids::new(self.records);
-        for Keys(keys) in body.cylinder {
-            let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
-            solids.add_cylinder(source, keys, look)?;
-        }
-        for Keys(keys) in body.cylinder_table {
-            let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
-            let degenerate = self.degenerate(keys.degenerate.as_ref())?;
-            solids.add_table(source, keys, look, degenerate)?;
-        }
-        for Keys(keys) in body.swc {
-            let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
-            let degenerate = self.degenerate(keys.degenerate.as_ref())?;
-            add_swc(&mut solids, source, keys, look, degenerate)?;
-        }
+        let mut solids = self.files_and_cylinders(body)?;
+        self.add_solids(&mut solids, body.sphere)?;
+        self.add_solids(&mut solids, body.cuboid)?;
+        self.add_solids(&mut solids, body.cone)?;
+        self.add_solids(&mut solids, body.rounded_cone)?;
+        self.add_solids(&mut solids, body.disk)?;
+        self.add_compositions(&mut solids, Operation::Union, body.union)?;
+        self.add_compositions(&mut solids, Operation::Intersection, body.intersection)?;
+        self.add_compositions(&mut solids, Operation::Difference, body.difference)?;
 
         let mut placements = Placements::default();
         for Keys(keys) in body.instance {
@@ -166,11 +165,13 @@ impl Loader<'_> {
 
         solids.records.trim();
         solids.records.arrange();
+        solids.others.trim();
         placements.list.shrink_to_fit();
         Ok(Lowered {
             prototype: Prototype {
                 name: body.name.to_owned(),
                 cylinders: solids.records,
+                solids: solids.others,
                 placements: placements.list,
             },
             edges: placements.edges,
@@ -179,22 +180,89 @@ impl Loader<'_> {
         })
     }
 
+    /// The cylinders and what comes from files, in the order of their numbers.
+    fn files_and_cylinders(&self, body: &Body) -> Result<Gathered, SceneError> {
+        let source = self.source;
+        let mut solids = Gathered::new(self.records);
+        self.add_solids(&mut solids, body.cylinder)?;
+        for Keys(keys) in body.cylinder_table {
+            let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
+            let degenerate = self.degenerate(keys.degenerate.as_ref())?;
+            add_table(&mut solids, source, keys, look, degenerate)?;
+        }
+        for Keys(keys) in body.swc {
+            let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
+            let degenerate = self.degenerate(keys.degenerate.as_ref())?;
+            let joints = joints(source, keys)?;
+            add_swc(&mut solids, source, keys, look, joints, degenerate)?;
+        }
+        for Keys(keys) in body.beam_lattice {
+            let lattice = self.beam_lattice(keys)?;
+            add_beam_lattice(&mut solids, source, &keys.file, &lattice)?;
+        }
+        Ok(solids)
+    }
+
+    /// Adds solids of one kind.
+    fn add_solids<K: SolidKeys>(
+        &self,
+        solids: &mut Gathered,
+        tables: &[Keys<K>],
+    ) -> Result<(), SceneError> {
+        for Keys(keys) in tables {
+            let solid = keys.solid(self.source)?;
+            let material = self.materials.find(self.source, keys.material())?;
+            let pushed = solids.push_any(&solid, material);
+            pushed.map_err(|refusal| self.refused(keys.place(), &refusal))?;
+        }
+        Ok(())
+    }
+
+    /// Adds solids composed by one set operation.
+    fn add_compositions(
+        &self,
+        solids: &mut Gathered,
+        operation: Operation,
+        tables: &[Keys<CompositionKeys>],
+    ) -> Result<(), SceneError> {
+        for Keys(keys) in tables {
+            let solid = operation.of(self.source, keys)?;
+            let material = self.materials.find(self.source, keys.material())?;
+            let pushed = solids.push_composition(solid, material);
+            pushed.map_err(|refusal| self.refused(keys.of.span(), &refusal))?;
+        }
+        Ok(())
+    }
+
+    /// That the solid at a place is not added.
+    fn refused(&self, place: Range<usize>, refusal: &Refusal) -> SceneError {
+        let (message, help) = refusal.told();
+        match help {
+            Some(help) => self.source.error_with_help(place, message, help),
+            None => self.source.error(place, message),
+        }
+    }
+
+    fn beam_lattice(&self, keys: &BeamLatticeKeys) -> Result<BeamLattice, SceneError> {
+        const MESHES: [(&str, bool); 2] = [("error", false), ("skip", true)];
+        let (source, unit, meshes) = (self.source, keys.unit.as_ref(), keys.meshes.as_ref());
+        let unit = unit.map(|word| source.choose("unit", word, &UNITS));
+        let meshes = meshes.map(|word| source.choose("meshes", word, &MESHES));
+        Ok(BeamLattice {
+            unit: unit.transpose()?,
+            skips_meshes: meshes.transpose()?.unwrap_or(false),
+            material: self.materials.find(self.source, keys.material.as_ref())?,
+            degenerate: self.degenerate(keys.degenerate.as_ref())?,
+        })
+    }
+
     fn look(
         &self,
         caps: Option<&Spanned<String>>,
         material: Option<&Spanned<String>>,
     ) -> Result<Look, SceneError> {
-        const CAPS: [(&str, Caps); 4] = [
-            ("none", Caps::None),
-            ("p0", Caps::P0),
-            ("p1", Caps::P1),
-            ("both", Caps::Both),
-        ];
         Ok(Look {
-            caps: match caps {
-                Some(word) => self.source.choose("caps", word, &CAPS)?,
-                None => Caps::default(),
-            },
+            caps: self::caps(self.source, caps)?,
             material: self.materials.find(self.source, material)?,
         })
     }

@@ -2,32 +2,41 @@
 //!
 //! [`load`] reads a scene file in TOML (`docs/scene-file.md`) in three steps:
 //! `document` holds the keys as they stand there, with their places; the
-//! entries are lowered one kind a file (`solids`, `swc`, `placing`, `scatter`,
-//! `camera`, `settings`), streaming the rows of `table`s; `graph` checks
-//! how prototypes place each other. `scene_file` knows the file between the two
+//! entries are lowered one kind a file (`solids`, with their `pose`,
+//! `set_operations`, `cylinder_table`, `swc`, `beam_lattice`, `placing`, `scatter`,
+//! `camera`, `settings`), streaming the rows of `table`s; `gathered` collects the
+//! solids of a prototype and numbers them; `graph` checks how prototypes place each
+//! other. `scene_file` knows the file between the two
 //! first steps, and `contents` what it will hold, so that a scene which is too
-//! large is refused early. `cylinder_list` keeps cylinders in f64 or f32;
-//! `aimed_camera` aims the camera. The result is a [`Scene`] that needs no
+//! large is refused early. `cylinder_list` keeps cylinders in f64 or f32,
+//! `solid_lists` the other kinds; `aimed_camera` aims the camera. The result is a [`Scene`] that needs no
 //! further checks and knows nothing of files.
 
 mod aimed_camera;
+mod beam_lattice;
 mod camera;
 mod census;
 mod contents;
 mod cylinder_list;
+mod cylinder_table;
 mod defaults;
 mod description;
 mod document;
 mod error;
+mod gathered;
 mod graph;
 mod limits;
 mod lines;
 mod load;
 mod names;
 mod placing;
+mod pose;
 mod scatter;
 mod scene_file;
+mod set_operations;
 mod settings;
+mod solid_keys;
+mod solid_lists;
 mod solids;
 mod source;
 mod swc;
@@ -49,4 +58,5 @@ pub use error::{SceneError, Statement};
 pub use limits::{GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_PIXELS, GREATEST_STRETCH};
 pub use load::load;
 pub use scene_file::SceneFile;
+pub use solid_lists::{Composition, CompositionRecord, SolidRecord, Solids};
 pub use view_volume::ViewVolume;

@@ -7,16 +7,18 @@ use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 use toml::Spanned;
 
+use super::cylinder_table::three;
 use super::description::{Placement, PrototypeIndex};
-use super::document::{InstanceColumns, InstanceKeys, InstanceTableKeys, RotationKeys};
+use super::document::{InstanceColumns, InstanceKeys, InstanceTableKeys};
 use super::error::SceneError;
+use super::pose;
 use super::scatter::Scatter;
 use super::settings::vector;
-use super::solids::three;
 use super::source::Source;
 use super::table::{Column, Table};
-use super::transform::{Reach, checked, quaternion_rotation, rotation, sin_cos_degrees, unit};
+use super::transform::{Reach, checked, quaternion_rotation};
 use super::values::{Keys, NameOrList, NumberOrList};
+use crate::math::{rotation, sin_cos_degrees, unit};
 
 /// The placements of one prototype.
 #[derive(Default)]
@@ -153,11 +155,13 @@ impl Placements {
 
 /// The placement that an `[[instance]]` states.
 fn composed(source: &Source, keys: &InstanceKeys) -> Result<DAffine3, SceneError> {
+    let about_axes = [keys.rotate_x, keys.rotate_y, keys.rotate_z];
     if let Some(matrix) = &keys.matrix {
-        if keys.scale.is_some() || keys.rotate.is_some() || keys.translate.is_some() {
+        let turns = keys.rotate.is_some() || about_axes.iter().any(Option::is_some);
+        if keys.scale.is_some() || turns || keys.translate.is_some() {
             return Err(source.error(
                 matrix.span(),
-                "matrix excludes scale, rotate and translate: state one or the others",
+                "matrix excludes scale, rotate, rotate_x, rotate_y, rotate_z and translate: state one or the others",
             ));
         }
         let rows = &matrix.get_ref().0;
@@ -177,22 +181,13 @@ fn composed(source: &Source, keys: &InstanceKeys) -> Result<DAffine3, SceneError
             NumberOrList::One(scale) => DVec3::splat(*scale),
             NumberOrList::Many(scale) => DVec3::from(*scale),
         });
-    let mut matrix = DMat3::from_diagonal(scale);
+    let mut matrix = pose::about_axes(about_axes).world_from_object() * DMat3::from_diagonal(scale);
     for Keys(turn) in keys.rotate.iter().flatten() {
-        matrix = turned(source, turn)? * matrix;
+        let axis = pose::axis(source, turn)?;
+        matrix = rotation(axis, sin_cos_degrees(turn.degrees.0)) * matrix;
     }
     let translation = keys.translate.as_ref().map_or(DVec3::ZERO, vector);
     Ok(DAffine3::from_mat3_translation(matrix, translation))
-}
-
-fn turned(source: &Source, turn: &RotationKeys) -> Result<DMat3, SceneError> {
-    let axis = unit(vector(&turn.axis)).ok_or_else(|| {
-        source.error(
-            turn.axis.span(),
-            "the rotation axis is zero: it needs a direction, of any length",
-        )
-    })?;
-    Ok(rotation(axis, sin_cos_degrees(turn.degrees.0)))
 }
 
 /// Where a placement's numbers stand in a row.

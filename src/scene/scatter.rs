@@ -9,8 +9,8 @@ use std::f64::consts::{PI, TAU};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::transform::{Reach, rotation};
-use crate::math::Random;
+use super::transform::Reach;
+use crate::math::{Random, rotation};
 
 /// 2^64 divided by the square of the golden ratio, rounded: the golden angle
 /// as a fraction of a turn.

@@ -52,6 +52,7 @@ impl SceneFile {
         for body in self.document.bodies() {
             names.extend(body.cylinder_table.iter().map(|Keys(keys)| &keys.file));
             names.extend(body.swc.iter().map(|Keys(keys)| &keys.file));
+            names.extend(body.beam_lattice.iter().map(|Keys(keys)| &keys.file));
             names.extend(body.instance_table.iter().map(|Keys(keys)| &keys.file));
         }
         let paths = names.iter().map(|name| self.source.resolve(name.get_ref()));
@@ -133,6 +134,11 @@ fn other_kind(path: &Path) -> Option<SceneError> {
             "a neuron in SWC",
             TO_READ,
             format!("[[swc]]\nfile = {}", file("neuron.swc")),
+        ),
+        "3mf" => (
+            "a model in 3MF",
+            TO_READ,
+            format!("[[beam_lattice]]\nfile = {}", file("lattice.3mf")),
         ),
         "png" | "exr" | "jpg" | "jpeg" => (
             "a picture",

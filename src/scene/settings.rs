@@ -12,8 +12,8 @@ use super::error::SceneError;
 use super::limits::GREATEST_PIXELS;
 use super::names::{quoted, suggestion};
 use super::source::Source;
-use super::transform::{sin_cos_degrees, unit};
 use super::values::{Keys, Number, Whole};
+use crate::math::{sin_cos_degrees, unit};
 
 /// Most pixels across and down.
 const GREATEST_SIDE: u32 = 65_536;

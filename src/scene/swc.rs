@@ -1,6 +1,7 @@
 //! Neurons in SWC: one sample a line (`id type x y z radius parent`), and a
-//! cylinder for every sample that has a parent, from the parent's point to the
-//! sample's own, with the sample's radius.
+//! solid for every sample that has a parent, from the parent's point to the
+//! sample's own: a cylinder with the sample's radius or, where joints are asked for,
+//! a cone or a rounded cone with the radii of both.
 //!
 //! That holds for the soma too: segments between its samples are made like all
 //! others, so a soma of one sample has no segment of its own and is not drawn.
@@ -12,12 +13,12 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
-use super::document::SwcKeys;
 use super::error::SceneError;
+use super::gathered::{Degenerate, Gathered, Look, SKIP_HELP, is_degenerate, is_degenerate_cone};
 use super::names::quoted;
-use super::solids::{Degenerate, Look, SKIP_HELP, Solids, is_degenerate};
+use super::solid_keys::SwcKeys;
 use super::source::Source;
-use crate::solid::{Cylinder, CylinderError};
+use crate::solid::{AnySolid, Cone, ConeError, Cylinder, CylinderError, RoundedCone};
 
 const COLUMNS: [&str; 7] = ["id", "type", "x", "y", "z", "radius", "parent"];
 /// The parent of a sample that has none.
@@ -33,12 +34,80 @@ struct Sample {
     parent: i64,
 }
 
+/// What the segments are, and so how they meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Joints {
+    /// Cylinders, of the radius of the segment's own sample.
+    Steps,
+    /// Cones, which end flat.
+    Flat,
+    /// Rounded cones, which end in balls.
+    Round,
+}
+
+/// The joints that an `[[swc]]` asks for.
+pub(super) fn joints(source: &Source, keys: &SwcKeys) -> Result<Joints, SceneError> {
+    const JOINTS: [(&str, Joints); 2] = [("flat", Joints::Flat), ("round", Joints::Round)];
+    let joints = match &keys.joints {
+        Some(word) => source.choose("joints", word, &JOINTS)?,
+        None => Joints::Steps,
+    };
+    match &keys.caps {
+        Some(caps) if joints == Joints::Round => Err(source.error(
+            caps.span(),
+            "caps are for flat ends: with joints = \"round\" segments end in balls",
+        )),
+        _ => Ok(joints),
+    }
+}
+
+/// Why a segment is no solid.
+struct Fault {
+    message: String,
+    is_of_radius: bool,
+    is_degenerate: bool,
+}
+
+impl Joints {
+    /// The segment between a sample and its parent.
+    fn segment(self, parent: &Sample, sample: &Sample, look: Look) -> Result<AnySolid, Fault> {
+        let (p0, p1) = (parent.point, sample.point);
+        let (radius0, radius1) = (parent.radius, sample.radius);
+        match self {
+            Self::Steps => Cylinder::new(p0, p1, radius1, look.caps)
+                .map(AnySolid::from)
+                .map_err(|error| Fault {
+                    message: error.to_string(),
+                    is_of_radius: matches!(error, CylinderError::Radius { .. }),
+                    is_degenerate: is_degenerate(&error),
+                }),
+            Self::Flat => Cone::new(p0, p1, radius0, radius1, look.caps)
+                .map(AnySolid::from)
+                .map_err(Fault::of_cone),
+            Self::Round => RoundedCone::new(p0, p1, radius0, radius1)
+                .map(AnySolid::from)
+                .map_err(|error| Fault::of_cone(error.0)),
+        }
+    }
+}
+
+impl Fault {
+    fn of_cone(error: ConeError) -> Self {
+        Self {
+            message: error.to_string(),
+            is_of_radius: matches!(error, ConeError::Radius { .. } | ConeError::NoRadius),
+            is_degenerate: is_degenerate_cone(&error),
+        }
+    }
+}
+
 /// Adds the segments of an `[[swc]]`, in the order of their samples.
 pub(super) fn add_swc(
-    solids: &mut Solids,
+    solids: &mut Gathered,
     source: &Source,
     keys: &SwcKeys,
     look: Look,
+    joints: Joints,
     degenerate: Degenerate,
 ) -> Result<(), SceneError> {
     let file = SwcFile {
@@ -54,13 +123,13 @@ pub(super) fn add_swc(
         let Some(parent) = parent.map(|place| &samples[place]) else {
             continue;
         };
-        match Cylinder::new(parent.point, sample.point, sample.radius, look.caps) {
-            Ok(cylinder) => solids.push(&cylinder, look.material),
-            Err(error) if is_degenerate(&error) && degenerate == Degenerate::Skip => solids.skip(),
-            Err(error) => {
-                let column = matches!(error, CylinderError::Radius { .. }).then_some("radius");
-                let help = is_degenerate(&error).then_some(SKIP_HELP);
-                return Err(file.error(sample.line, column, error.to_string(), help));
+        match joints.segment(parent, sample, look) {
+            Ok(solid) => solids.push_any(&solid, look.material),
+            Err(fault) if fault.is_degenerate && degenerate == Degenerate::Skip => solids.skip(),
+            Err(fault) => {
+                let column = fault.is_of_radius.then_some("radius");
+                let help = fault.is_degenerate.then_some(SKIP_HELP);
+                return Err(file.error(sample.line, column, fault.message, help));
             }
         }
         .map_err(|refusal| {

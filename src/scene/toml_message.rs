@@ -3,12 +3,21 @@
 use super::names::{quoted, suggestion};
 
 /// Keys of the scene that hold many tables, `[[...]]`.
-const LISTS: [&str; 8] = [
+const LISTS: [&str; 17] = [
     "material",
     "prototype",
     "cylinder",
     "cylinder_table",
     "swc",
+    "beam_lattice",
+    "sphere",
+    "cuboid",
+    "cone",
+    "rounded_cone",
+    "disk",
+    "union",
+    "intersection",
+    "difference",
     "instance",
     "instance_table",
     "scatter",
@@ -23,6 +32,9 @@ const LONGEST_PART: usize = 300;
 /// What is wrong, and what to do about it where that is known, for a message
 /// of the parser about a place in `line`.
 pub(super) fn explain(message: &str, line: &str) -> (String, Option<String>) {
+    if message.contains("max recursion depth met") {
+        return ("the values here are nested too deeply".to_owned(), None);
+    }
     if let Some((key, expected)) = unknown_field(message) {
         return unknown_key(key, &expected, line);
     }

@@ -150,12 +150,11 @@ impl<S: Real> ChordEnd<S> {
     }
 }
 
-/// Whether a surface with these caps has this part.
+/// Whether a surface with these caps has this part: all are there but for discs
+/// that are not named.
 #[inline]
 fn exists(part: Part, caps: Caps) -> bool {
-    (part == Part::Side)
-        | ((part == Part::Cap0) & caps.at_p0())
-        | ((part == Part::Cap1) & caps.at_p1())
+    ((part != Part::Cap0) | caps.at_p0()) & ((part != Part::Cap1) | caps.at_p1())
 }
 
 #[cfg(test)]

@@ -103,7 +103,7 @@ impl Cylinder {
     /// When a number is not finite or out of range, or the ends coincide.
     pub fn new(p0: DVec3, p1: DVec3, radius: f64, caps: Caps) -> Result<Self, CylinderError> {
         for (which, point) in [("p0", p0), ("p1", p1)] {
-            if !(point.abs().max_element() <= Self::GREATEST) || !point.is_finite() {
+            if !Self::is_in_range(point) {
                 return Err(CylinderError::Endpoint { which, point });
             }
         }
@@ -120,6 +120,12 @@ impl Cylinder {
             radius,
             caps,
         })
+    }
+
+    /// Whether every coordinate is a number of at most [`Cylinder::GREATEST`] in
+    /// size.
+    pub(crate) fn is_in_range(point: DVec3) -> bool {
+        point.is_finite() && point.abs().max_element() <= Self::GREATEST
     }
 
     /// The cylinder of numbers that [`Cylinder::new`] accepted before.
@@ -164,25 +170,29 @@ impl Cylinder {
     }
 
     /// The least box that holds the solid, rounded outward by a few ulps.
-    ///
-    /// Along axis `i` a disc reaches `radius √(1 - aᵢ²/|a|²)` from its middle;
-    /// written as `radius √((aⱼ² + aₖ²)/|a|²)` nothing cancels, and the relative
-    /// error is below 8 roundings, which the factor on the radius covers.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
-        let a = self.p1 - self.p0;
-        let squared = a * a;
-        let others = DVec3::new(
-            squared.y + squared.z,
-            squared.z + squared.x,
-            squared.x + squared.y,
-        );
-        let sine = (others / a.length_squared()).map(f64::sqrt).min(DVec3::ONE);
-        let reach = sine * (self.radius * (1.0 + 10.0 * UNIT_ROUNDOFF));
+        let reach = disc_reach(self.p1 - self.p0, self.radius);
         Bounds {
             lower: self.p0.min(self.p1) - reach,
             upper: self.p0.max(self.p1) + reach,
         }
         .rounded_outward()
     }
+}
+
+/// How far a disc across the axis `a` reaches from its middle, rounded up.
+///
+/// Along axis `i` that is `radius √(1 - aᵢ²/|a|²)`; written as `radius √((aⱼ² +
+/// aₖ²)/|a|²)` nothing cancels, and the relative error is below 8 roundings,
+/// which the factor on the radius covers.
+pub(super) fn disc_reach(a: DVec3, radius: f64) -> DVec3 {
+    let squared = a * a;
+    let others = DVec3::new(
+        squared.y + squared.z,
+        squared.z + squared.x,
+        squared.x + squared.y,
+    );
+    let sine = (others / a.length_squared()).map(f64::sqrt).min(DVec3::ONE);
+    sine * (radius * (1.0 + 10.0 * UNIT_ROUNDOFF))
 }

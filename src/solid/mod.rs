@@ -1,21 +1,35 @@
 //! What a solid is, and the solvers that intersect rays with it.
 
+mod any;
+mod ball;
 mod chord;
+mod cone;
 mod convex;
+mod cuboid;
 mod cylinder;
+mod disk;
 pub mod exact;
 pub mod formulations;
 pub mod lanes;
+mod linear;
+mod rounded_cone;
 mod slab;
 mod spawn;
+mod sphere;
 mod surface;
 pub mod tessellation;
 pub mod triple_product;
 
+pub use any::AnySolid;
 pub use chord::{Chord, ChordEnd, Meeting};
+pub use cone::{Cone, ConeError};
 pub use convex::ConvexSolid;
+pub use cuboid::{Cuboid, CuboidError};
 pub use cylinder::{Caps, Cylinder, CylinderError};
+pub use disk::{Disk, DiskError};
+pub use rounded_cone::{RoundedCone, RoundedConeError};
 pub use spawn::{SpawnMargin, spawned_ray};
+pub use sphere::{Sphere, SphereError};
 pub use surface::{SurfacePoint, surface_point};
 
 /// The kinds of solids; [`SolidKind::name`] is the `solid` column of `trace`.

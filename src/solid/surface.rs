@@ -53,8 +53,12 @@ pub struct SurfacePoint {
 pub fn surface_point(cylinder: &Cylinder, part: Part, from_p0: DVec3) -> SurfacePoint {
     let (p0, p1, radius) = (cylinder.p0(), cylinder.p1(), cylinder.radius());
     let a = p1 - p0;
-    let axis = a.normalize();
-    let (reference, across) = angle_frame(axis);
+    let Around {
+        axis,
+        outward,
+        distance,
+        u,
+    } = Around::new(a, from_p0);
 
     let v = match part {
         Part::Side => (from_p0.dot(a) / a.length_squared()).clamp(0.0, 1.0),
@@ -62,16 +66,6 @@ pub fn surface_point(cylinder: &Cylinder, part: Part, from_p0: DVec3) -> Surface
         Part::Cap1 => 1.0,
         part => part.not_of_a_cylinder(),
     };
-    let from_axis = from_p0 - a * (from_p0.dot(a) / a.length_squared());
-    let radial = from_axis - axis * from_axis.dot(axis);
-    let distance = radial.length();
-    // A wall has no point nearest to the axis; any direction will do there.
-    let outward = if distance > 0.0 {
-        radial / distance
-    } else {
-        reference
-    };
-
     let (point, normal) = match part {
         Part::Side => (p0 + (a * v + outward * radius), outward),
         Part::Cap0 => (p0 + outward * distance.min(radius), -axis),
@@ -84,16 +78,58 @@ pub fn surface_point(cylinder: &Cylinder, part: Part, from_p0: DVec3) -> Surface
         0.0
     };
     let error = UNIT_ROUNDOFF * (point.length() + along + 16.0 * radius);
-    let turn = libm::atan2(outward.dot(across), outward.dot(reference)) / std::f64::consts::TAU;
-    let turn = if turn < 0.0 { turn + 1.0 } else { turn };
-    let on_axis = distance == 0.0 || turn >= 1.0;
     SurfacePoint {
         point,
         error,
         normal,
-        u: if on_axis { 0.0 } else { turn },
+        u,
         v,
     }
+}
+
+/// How a point lies around an axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Around {
+    /// Unit vector along the axis.
+    pub axis: DVec3,
+    /// Unit vector from the axis to the point.
+    pub outward: DVec3,
+    /// The distance from the axis.
+    pub distance: f64,
+    /// The angle divided by 2π, in [0, 1), and 0 on the axis.
+    pub u: f64,
+}
+
+impl Around {
+    /// Of the point `from_p0` and the axis `a`, which starts at `p0`.
+    pub fn new(a: DVec3, from_p0: DVec3) -> Self {
+        let axis = a.normalize();
+        let (reference, across) = angle_frame(axis);
+        let from_axis = from_p0 - a * (from_p0.dot(a) / a.length_squared());
+        let radial = from_axis - axis * from_axis.dot(axis);
+        let distance = radial.length();
+        // A wall has no point nearest to the axis; any direction will do there.
+        let outward = if distance > 0.0 {
+            radial / distance
+        } else {
+            reference
+        };
+        Self {
+            axis,
+            outward,
+            distance,
+            u: turn(outward, reference, across),
+        }
+    }
+}
+
+/// The angle of `outward` from `reference` towards `across`, in turns, in [0, 1).
+pub(super) fn turn(outward: DVec3, reference: DVec3, across: DVec3) -> f64 {
+    // A zero of either sign is the same direction.
+    let (y, x) = (outward.dot(across) + 0.0, outward.dot(reference) + 0.0);
+    let turn = libm::atan2(y, x) / std::f64::consts::TAU;
+    let turn = if turn < 0.0 { turn + 1.0 } else { turn };
+    if turn >= 1.0 { 0.0 } else { turn }
 }
 
 /// The two unit vectors perpendicular to `axis` from which angles are counted:

@@ -10,8 +10,13 @@ use tempfile::TempDir;
 
 mod files;
 mod keys;
+mod lattices;
 mod prototypes;
 mod rows;
+mod set_operations;
+mod solids;
+#[path = "../support/three_mf.rs"]
+mod three_mf;
 mod values;
 
 /// More than any message needs, in bytes.
@@ -52,7 +57,7 @@ impl Case {
         self
     }
 
-    fn with_bytes(mut self, file: &'static str, bytes: &'static [u8]) -> Self {
+    fn with_bytes(mut self, file: &'static str, bytes: impl Into<Cow<'static, [u8]>>) -> Self {
         self.files.push((file, bytes.into()));
         self
     }
@@ -102,6 +107,9 @@ fn cases() -> Vec<Case> {
         values::cases(),
         prototypes::cases(),
         rows::cases(),
+        solids::cases(),
+        set_operations::cases(),
+        lattices::cases(),
     ]
     .into_iter()
     .flatten()
@@ -165,6 +173,14 @@ fn load_of_data_or_a_picture_shows_the_scene_that_it_needs() {
             "n.SWC",
             b"1 1 0 0 0 1 -1\n",
             ["this is a neuron", "[[swc]]\nfile = \"n.SWC\""],
+        ),
+        (
+            "l.3mf",
+            b"PK\x03\x04",
+            [
+                "this is a model in 3MF",
+                "[[beam_lattice]]\nfile = \"l.3mf\"",
+            ],
         ),
         (
             "p.png",

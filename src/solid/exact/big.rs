@@ -11,6 +11,16 @@ use super::Number;
 #[derive(Clone, Debug)]
 pub(super) struct Big(pub FBig<HalfEven, 2>);
 
+impl Big {
+    /// The quotient, rounded to f64.
+    pub fn over(&self, divisor: f64) -> f64 {
+        let long = |x: &FBig<HalfEven, 2>| x.clone().with_precision(128).value();
+        (long(&self.0) / long(&Self::of(divisor).0))
+            .to_f64()
+            .value()
+    }
+}
+
 impl Number for Big {
     fn of(x: f64) -> Self {
         let x = FBig::try_from(x).expect("the inputs are finite");

@@ -11,9 +11,7 @@
 
 use std::cmp::Ordering::{self, Equal, Greater, Less};
 
-use glam::DVec3;
-
-use super::Number;
+use super::{Number, cross, difference, dot};
 use crate::math::Ray;
 use crate::solid::{Caps, Crossing, Cylinder, Part};
 
@@ -55,10 +53,7 @@ pub(super) struct Terms<N> {
 
 impl<N: Number> Terms<N> {
     pub fn new(cylinder: &Cylinder, ray: &Ray) -> Self {
-        let difference = |one: DVec3, other: DVec3| -> [N; 3] {
-            std::array::from_fn(|i| N::difference(one[i], other[i]))
-        };
-        let a = difference(cylinder.p1(), cylinder.p0());
+        let a: [N; 3] = difference(cylinder.p1(), cylinder.p0());
         let x = difference(ray.origin, cylinder.p0());
         let d = ray.direction.to_array().map(N::of);
         let r = N::of(cylinder.radius());
@@ -333,15 +328,4 @@ impl<N: Number> Case<'_, N> {
         };
         is_there.then_some(part)
     }
-}
-
-fn dot<N: Number>(a: &[N; 3], b: &[N; 3]) -> N {
-    a[0].times(&b[0])
-        .plus(&a[1].times(&b[1]))
-        .plus(&a[2].times(&b[2]))
-}
-
-fn cross<N: Number>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
-    let term = |i: usize, j: usize| a[i].times(&b[j]).minus(&a[j].times(&b[i]));
-    [term(1, 2), term(2, 0), term(0, 1)]
 }

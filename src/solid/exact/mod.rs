@@ -21,6 +21,7 @@ mod big;
 mod bounded;
 mod certificate;
 mod decide;
+mod expression;
 mod root;
 
 use std::cmp::Ordering;
@@ -31,6 +32,7 @@ use crate::solid::Crossing;
 use big::Big;
 use bounded::Bounded;
 use decide::At;
+pub(super) use expression::{Expression, cross, difference, dot, quotient, sign, vector};
 pub use root::Target;
 
 /// The stage that settled an answer.
@@ -59,7 +61,7 @@ pub struct ExactHit {
 }
 
 /// A number type in which the decisions are made.
-trait Number: Clone {
+pub(super) trait Number: Clone {
     /// A number as it is.
     fn of(x: f64) -> Self;
     /// `a - b`, exactly.

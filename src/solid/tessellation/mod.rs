@@ -31,6 +31,12 @@
 //! corners to f32 moves them by at most √3/2 ulp of their largest coordinate
 //! more.
 
+mod flat;
+mod round;
+
+pub use flat::{cuboid_corner_error, cuboid_mesh, disk_corner_error, disk_deviation, disk_polygon};
+pub use round::{sphere_corner_error, sphere_deviation, sphere_inner_factor, sphere_mesh};
+
 use glam::DVec3;
 
 use super::surface::angle_frame;

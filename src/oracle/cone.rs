@@ -1,0 +1,90 @@
+//! All hits of a cone, exactly.
+//!
+//! All points of the boundary that the line goes through are listed: roots of the
+//! wall (`taper.rs`) at heights from 0 to `a·a`, and where the line crosses the
+//! plane of a disc, if the radius there reaches it. At either height a point of the
+//! wall is on the rim and belongs to the disc, if there is one. A line along the
+//! wall is on it from disc to disc, one in the plane of a disc from rim to rim.
+
+use std::cmp::Ordering;
+
+use super::change::least_change;
+use super::cylinder::TrueHit;
+use super::ends::{TrueEnd, hits};
+use super::number::{Exact, Surd, exact, sign, zero};
+use super::taper::{Taper, numbers_of};
+use crate::math::Ray;
+use crate::solid::{Cone, Part};
+
+/// All points in the ray's range in which it meets the surface, in order; a
+/// tangent is an entry and an exit.
+///
+/// # Panics
+/// When the ray is not valid ([`Ray::is_valid`]).
+#[must_use]
+pub fn cone_hits(cone: &Cone, ray: &Ray) -> Vec<TrueHit> {
+    assert!(ray.is_valid(), "the oracle was asked about {ray:?}");
+    let taper = Taper::new(&numbers(cone, ray).map(exact), false);
+    let (ax, ad, aa) = (&taper.ax, &taper.ad, &taper.aa);
+    let along = taper.is_along();
+    let mut points = Vec::new();
+    let disc_at = |to_p0: Ordering, to_p1: Ordering| match (to_p0, to_p1) {
+        (Ordering::Less, _) | (_, Ordering::Greater) => None,
+        (Ordering::Equal, _) => Some(Some(Part::Cap0)),
+        (_, Ordering::Equal) => Some(Some(Part::Cap1)),
+        _ => Some(None),
+    };
+    for t in taper.wall_points() {
+        let (to_p0, to_p1) = (t.sign_of_line(ax, ad), t.sign_of_line(&(ax - aa), ad));
+        if let Some(cap) = disc_at(to_p0, to_p1) {
+            points.push(TrueEnd {
+                t,
+                cap,
+                on_side: true,
+            });
+        }
+    }
+    if sign(ad) == Ordering::Equal {
+        let lies_on = disc_at(sign(ax), ax.cmp(aa)).flatten();
+        return hits(&points, lies_on, cone.caps(), ray);
+    }
+    for (part, height) in [(Part::Cap0, zero()), (Part::Cap1, aa.clone())] {
+        let to_rim = sign(&taper.wall_at(&height));
+        if to_rim != Ordering::Greater {
+            points.push(TrueEnd {
+                t: Surd::quotient(height - ax, ad.clone()),
+                cap: Some(part),
+                on_side: to_rim == Ordering::Equal,
+            });
+        }
+    }
+    hits(&points, along.then_some(Part::Side), cone.caps(), ray)
+}
+
+/// The least change, the same relative change for every number of the case, after
+/// which its answer may be another: to first order, that which makes the line touch
+/// the wall, go through a rim or the apex, or brings the origin to the surface.
+/// Events that are out of the ray's range count too, so that it is a lower bound.
+///
+/// # Panics
+/// When the ray is not valid.
+#[must_use]
+pub fn cone_gap(cone: &Cone, ray: &Ray) -> f64 {
+    assert!(ray.is_valid(), "the gap was asked for of {ray:?}");
+    least_change(&numbers(cone, ray), |numbers: &[Exact]| {
+        let taper = Taper::new(numbers, false);
+        let wall = taper.wall();
+        let (rim0, rim1) = (taper.wall_at(&zero()), taper.wall_at(&taper.aa));
+        let over_p1 = &taper.ax - &taper.aa;
+        vec![wall.discriminant(), rim0, rim1, wall.c, taper.ax, over_p1]
+    })
+}
+
+/// The numbers of a case, as `Taper::new` takes them.
+fn numbers(cone: &Cone, ray: &Ray) -> [f64; 14] {
+    numbers_of(
+        [cone.p0(), cone.p1()],
+        [cone.radius0(), cone.radius1()],
+        ray,
+    )
+}

@@ -1,0 +1,175 @@
+//! The lattice in a mesh: vertices, beams between them, and balls at them.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+use super::element::Element;
+use crate::scene::error::SceneError;
+
+/// How a beam ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Cap {
+    /// With a ball of the end's radius.
+    Sphere,
+    /// With the outer half of that ball.
+    Hemisphere,
+    /// Flat.
+    Butt,
+}
+
+const CAPS: [(&str, Cap); 3] = [
+    ("sphere", Cap::Sphere),
+    ("hemisphere", Cap::Hemisphere),
+    ("butt", Cap::Butt),
+];
+
+/// A part of a cone between two vertices.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beam {
+    /// Where it stands in the file, in bytes.
+    pub place: usize,
+    /// The numbers of its vertices.
+    pub vertices: [usize; 2],
+    pub radii: [f64; 2],
+    pub caps: [Cap; 2],
+    /// Whether it is shorter than the lattice's `minlength`: then it is not there.
+    pub is_short: bool,
+}
+
+/// A lattice, in the file's own coordinates and lengths.
+pub(super) struct Lattice {
+    pub vertices: Vec<DVec3>,
+    pub beams: Vec<Beam>,
+    /// The radii of the balls that are stated, by the numbers of their vertices.
+    pub balls: BTreeMap<usize, f64>,
+}
+
+/// Which vertices have balls.
+#[derive(Clone, Copy, PartialEq)]
+enum BallMode {
+    None,
+    /// Those of which a ball is stated.
+    Mixed,
+    /// All at which a beam ends.
+    All,
+}
+
+impl Lattice {
+    /// The lattice of a `<mesh>`, where there is one. `with_meshes` says whether
+    /// triangles are an error.
+    pub fn new(mesh: &Element, skips_meshes: bool) -> Result<Option<Self>, SceneError> {
+        let refused = |what: &Element, message: &str| match skips_meshes {
+            true => Ok(()),
+            false => Err(what.error_with_help(
+                message,
+                "cyltrace traces no triangles; meshes = \"skip\" in the scene file leaves them out",
+            )),
+        };
+        if let Some(triangles) = mesh.first("triangles")
+            && triangles.first("triangle").is_some()
+        {
+            refused(&triangles, "this object has triangles")?;
+        }
+        let Some(keys) = mesh.all_of_lattice("beamlattice").next() else {
+            return Ok(None);
+        };
+        // The drafts called it `clipping`, and their files are still about.
+        let clipping = keys.attribute("clippingmode");
+        let clipping = clipping.or_else(|| keys.attribute("clipping"));
+        if clipping.is_some_and(|mode| mode != "none") {
+            refused(&keys, "this lattice is clipped by a mesh")?;
+        }
+        let vertices = mesh.first("vertices");
+        let vertices = vertices.iter().flat_map(|vertices| vertices.all("vertex"));
+        let vertices = vertices.map(|vertex| vertex.point());
+        let vertices = vertices.collect::<Result<Vec<_>, _>>()?;
+        let beams = beams(&keys, &vertices)?;
+        let balls = balls(&keys, vertices.len(), &beams)?;
+        Ok(Some(Self {
+            vertices,
+            beams,
+            balls,
+        }))
+    }
+}
+
+fn beams(keys: &Element, vertices: &[DVec3]) -> Result<Vec<Beam>, SceneError> {
+    let radius = keys.required_length("radius")?;
+    let least = keys.required_length("minlength")?;
+    let cap = keys.choose("cap", &CAPS)?.unwrap_or(Cap::Sphere);
+    let lists = keys.all_of_lattice("beams");
+    let beams = lists.flat_map(|list| list.all_of_lattice("beam"));
+    let beam = |element: Element| {
+        let vertex = |name| element.vertex(name, vertices.len());
+        let ends = [vertex("v1")?, vertex("v2")?];
+        if ends[0] == ends[1] {
+            let message = format!(
+                "v1 and v2 of <beam> are both {}: a beam needs two vertices",
+                ends[0]
+            );
+            return Err(element.error(message));
+        }
+        let radii = match (element.length("r1")?, element.length("r2")?) {
+            (Some(r1), Some(r2)) => [r1, r2],
+            (Some(r1), None) => [r1; 2],
+            (None, None) => [radius; 2],
+            (None, Some(_)) => {
+                return Err(element.error("<beam> has an r2 but no r1: state both, or r1, or none"));
+            }
+        };
+        let cap = |name| Ok(element.choose(name, &CAPS)?.unwrap_or(cap));
+        Ok(Beam {
+            place: element.place(),
+            vertices: ends,
+            radii,
+            caps: [cap("cap1")?, cap("cap2")?],
+            is_short: vertices[ends[0]].distance(vertices[ends[1]]) < least,
+        })
+    };
+    beams.map(beam).collect()
+}
+
+fn balls(
+    keys: &Element,
+    vertices: usize,
+    beams: &[Beam],
+) -> Result<BTreeMap<usize, f64>, SceneError> {
+    const MODES: [(&str, BallMode); 3] = [
+        ("none", BallMode::None),
+        ("mixed", BallMode::Mixed),
+        ("all", BallMode::All),
+    ];
+    let mode = keys.choose("ballmode", &MODES)?.unwrap_or(BallMode::None);
+    let mut balls = BTreeMap::new();
+    if mode == BallMode::None {
+        return Ok(balls);
+    }
+    let Some(radius) = keys.length("ballradius")? else {
+        let message = "<beamlattice> has a ballmode but no ballradius";
+        return Err(keys.error(message));
+    };
+    let mut ends = vec![false; vertices];
+    for end in beams.iter().flat_map(|beam| beam.vertices) {
+        ends[end] = true;
+    }
+    if mode == BallMode::All {
+        let ends = (0..vertices).filter(|&vertex| ends[vertex]);
+        balls.extend(ends.map(|vertex| (vertex, radius)));
+    }
+    let lists = keys.all_of_lattice("balls");
+    for element in lists.flat_map(|list| list.all_of_lattice("ball")) {
+        let vertex = element.vertex("vindex", vertices)?;
+        if !ends[vertex] {
+            return Err(element.error(format!(
+                "vindex of <ball> is {vertex}: no beam ends at this vertex"
+            )));
+        }
+        let radius = element.length("r")?.unwrap_or(radius);
+        if radius == 0.0 {
+            return Err(element.error("the ball has the radius 0: it must be positive"));
+        }
+        balls.insert(vertex, radius);
+    }
+    Ok(balls)
+}

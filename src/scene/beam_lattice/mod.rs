@@ -1,0 +1,234 @@
+//! Beam lattices in 3MF: `package` finds the model in the archive, `model` the
+//! objects that it builds, `lattice` the beams and balls of one, `element` reads
+//! XML. Here they become solids.
+//!
+//! **What a beam is.** The specification (3MF Beam Lattice Extension, 2.1.1) makes it
+//! a frustum, united at either end with what the end's cap is: nothing for `butt`, the
+//! ball of the end's radius for `sphere`, the outer half of that ball for
+//! `hemisphere`. All beams and balls of a lattice are united. So a frustum is a
+//! [`Cylinder`] or, where its radii differ, a [`Cone`], and at each vertex there is one
+//! [`Sphere`]: of all the balls there the greatest, which holds the others. (A rounded
+//! cone is another solid: its flank touches its balls, a beam's goes through the
+//! circles at its vertices.)
+//!
+//! **Half a ball** is the whole one to the union wherever its other half is inside the
+//! frustum, whose radius is nowhere less than the end's: at the end where the beam is
+//! not thicker than at the other, if the beam is at least as long as that radius.
+//! Where it is not, it is the intersection of the ball with a cylinder that stands on
+//! the end and is wider and higher than the half; unless the ball at the vertex holds
+//! it anyway.
+
+mod element;
+mod lattice;
+mod model;
+mod package;
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use toml::Spanned;
+
+use self::element::{Element, Similarity};
+use self::lattice::{Beam, Cap, Lattice};
+use self::model::Model;
+pub(super) use self::model::UNITS;
+use super::description::MaterialIndex;
+use super::error::SceneError;
+use super::gathered::{
+    Degenerate, Gathered, Refusal, SKIP_HELP, is_degenerate, is_degenerate_cone,
+};
+use super::solid_lists::Composition;
+use super::source::Source;
+use crate::solid::{AnySolid, Caps, Cone, Cylinder, Sphere};
+
+/// How a file is read.
+pub(super) struct BeamLattice {
+    /// The unit of the scene, in micrometers; without it, the file's.
+    pub unit: Option<f64>,
+    /// Whether meshes are left out; they are an error otherwise.
+    pub skips_meshes: bool,
+    pub material: MaterialIndex,
+    pub degenerate: Degenerate,
+}
+
+/// Adds the beams and balls of a `[[beam_lattice]]`.
+pub(super) fn add_beam_lattice(
+    solids: &mut Gathered,
+    source: &Source,
+    file: &Spanned<String>,
+    keys: &BeamLattice,
+) -> Result<(), SceneError> {
+    let part = package::model_part(source, file)?;
+    let document = package::parsed(&part)?;
+    let root = Element::root(&part.path, &document);
+    let model = Model::new(&root, keys.skips_meshes)?;
+    let units = keys
+        .unit
+        .map_or((1.0, 1.0), |unit| lowest(model.unit, unit));
+    for placed in &model.placed {
+        for place in &placed.places {
+            let mut lowering = Lowering {
+                source,
+                file,
+                root,
+                place,
+                units,
+                keys,
+                solids: &mut *solids,
+            };
+            lowering.add(&placed.lattice)?;
+        }
+    }
+    Ok(())
+}
+
+/// Two whole numbers without their common factors.
+fn lowest(one: f64, other: f64) -> (f64, f64) {
+    let (mut factor, mut rest) = (one, other);
+    while rest != 0.0 {
+        (factor, rest) = (rest, factor % rest);
+    }
+    (one / factor, other / factor)
+}
+
+/// A lattice on its way into a scene.
+struct Lowering<'a, 'input> {
+    source: &'a Source,
+    file: &'a Spanned<String>,
+    root: Element<'a, 'input>,
+    place: &'a Similarity,
+    /// What to multiply lengths with and to divide them by: one rounding where one of
+    /// them is 1.
+    units: (f64, f64),
+    keys: &'a BeamLattice,
+    solids: &'a mut Gathered,
+}
+
+impl Lowering<'_, '_> {
+    fn point(&self, point: DVec3) -> DVec3 {
+        self.place.parent_from_child.transform_point3(point) * self.units.0 / self.units.1
+    }
+
+    fn length(&self, length: f64) -> f64 {
+        length * self.place.scale * self.units.0 / self.units.1
+    }
+
+    /// Adds the beams in their order, then the balls in the order of their
+    /// vertices, then the halves of balls in the order of their beams.
+    fn add(&mut self, lattice: &Lattice) -> Result<(), SceneError> {
+        let points: Vec<_> = lattice.vertices.iter().map(|&at| self.point(at)).collect();
+        let mut balls = BTreeMap::new();
+        for (&vertex, &radius) in &lattice.balls {
+            balls.insert(vertex, self.length(radius));
+        }
+        let mut halves = Vec::new();
+        for beam in &lattice.beams {
+            let ends = beam.vertices.map(|vertex| points[vertex]);
+            let radii = beam.radii.map(|radius| self.length(radius));
+            let Some(solid) = self.frustum(beam, ends, radii)? else {
+                self.solids
+                    .skip()
+                    .map_err(|refusal| self.refused(&refusal))?;
+                continue;
+            };
+            self.push(&solid)?;
+            for end in [0, 1] {
+                let half = Half {
+                    vertex: beam.vertices[end],
+                    centre: ends[end],
+                    outward: ends[end] - ends[1 - end],
+                    radius: radii[end],
+                };
+                let fits = radii[end] <= radii[1 - end] && half.outward.length() >= radii[end];
+                match beam.caps[end] {
+                    Cap::Butt => {}
+                    _ if half.radius == 0.0 => {}
+                    Cap::Hemisphere if !fits => halves.push(half),
+                    Cap::Sphere | Cap::Hemisphere => {
+                        let radius = balls.entry(half.vertex).or_insert(half.radius);
+                        *radius = radius.max(half.radius);
+                    }
+                }
+            }
+        }
+        for (&vertex, &radius) in &balls {
+            let ball = Sphere::new(points[vertex], radius);
+            let ball = ball.map_err(|error| self.root.error(error.to_string()))?;
+            self.push(&ball.into())?;
+        }
+        for half in halves {
+            if balls
+                .get(&half.vertex)
+                .is_none_or(|&radius| radius < half.radius)
+            {
+                let solid = half.solid().map_err(|message| self.root.error(message))?;
+                let pushed = self.solids.push_composition(solid, self.keys.material);
+                pushed.map_err(|refusal| self.refused(&refusal))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn push(&mut self, solid: &AnySolid) -> Result<(), SceneError> {
+        let pushed = self.solids.push_any(solid, self.keys.material);
+        pushed.map_err(|refusal| self.refused(&refusal))
+    }
+
+    /// That a solid is not added.
+    fn refused(&self, refusal: &Refusal) -> SceneError {
+        let in_file = |message, help: Option<&str>| self.root.error_at(0, message, help);
+        refusal.in_row(self.source, self.file, in_file)
+    }
+
+    /// The beam without its caps, or `None` where it is to be left out.
+    fn frustum(
+        &self,
+        beam: &Beam,
+        [p0, p1]: [DVec3; 2],
+        [radius0, radius1]: [f64; 2],
+    ) -> Result<Option<AnySolid>, SceneError> {
+        if beam.is_short {
+            return Ok(None);
+        }
+        let (message, degenerate) = match radius0 == radius1 {
+            true => match Cylinder::new(p0, p1, radius0, Caps::Both) {
+                Ok(solid) => return Ok(Some(solid.into())),
+                Err(error) => (error.to_string(), is_degenerate(&error)),
+            },
+            false => match Cone::new(p0, p1, radius0, radius1, Caps::Both) {
+                Ok(solid) => return Ok(Some(solid.into())),
+                Err(error) => (error.to_string(), is_degenerate_cone(&error)),
+            },
+        };
+        if degenerate && self.keys.degenerate == Degenerate::Skip {
+            return Ok(None);
+        }
+        let help = degenerate.then_some(SKIP_HELP);
+        Err(self.root.error_at(beam.place, message, help))
+    }
+}
+
+/// The half of a ball beyond the end of a beam.
+struct Half {
+    vertex: usize,
+    centre: DVec3,
+    /// Along the beam, of its length.
+    outward: DVec3,
+    radius: f64,
+}
+
+impl Half {
+    fn solid(&self) -> Result<Composition, String> {
+        let mut axis = self.outward;
+        // Doubling is exact, and keeps the direction.
+        while axis.length() < 2.0 * self.radius {
+            axis *= 2.0;
+        }
+        let ball = Sphere::new(self.centre, self.radius).map_err(|error| error.to_string())?;
+        let width = 2.0 * self.radius;
+        let stand = Cylinder::new(self.centre, self.centre + axis, width, Caps::Both);
+        let stand = stand.map_err(|error| error.to_string())?;
+        let parts = [AnySolid::from(ball), stand.into()].map(Composition::Solid);
+        Ok(Composition::Intersection(parts.into()))
+    }
+}

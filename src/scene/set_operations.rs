@@ -1,0 +1,130 @@
+//! Set operations: from the keys of a table to the tree of its solids.
+
+use std::ops::Range;
+
+use glam::DVec3;
+use toml::Spanned;
+
+use super::error::SceneError;
+use super::pose::Motion;
+use super::solid_keys::{CompositionKeys, OperandKeys, SolidTable};
+use super::solid_lists::Composition;
+use super::solids::SolidKeys;
+use super::source::Source;
+use super::values::Keys;
+use crate::solid::AnySolid;
+
+/// What to do with the operands.
+#[derive(Clone, Copy)]
+pub(super) enum Operation {
+    Union,
+    Intersection,
+    Difference,
+}
+
+impl Operation {
+    /// The solid that a table of this operation states.
+    pub fn of(self, source: &Source, keys: &CompositionKeys) -> Result<Composition, SceneError> {
+        let operands = keys.of.get_ref().iter();
+        let operands = operands.map(|keys| operand(source, keys));
+        let operands = operands.collect::<Result<Vec<_>, _>>()?;
+        if operands.is_empty() {
+            return Err(source.error_with_help(
+                keys.of.span(),
+                "of is empty: a set operation needs solids",
+                "of = [{ cuboid = { half_widths = [1, 1, 1] } }, { sphere = { center = [1, 0, 0], radius = 1 } }]",
+            ));
+        }
+        let unmoved = match self {
+            Self::Union => Composition::Union(operands),
+            Self::Intersection => Composition::Intersection(operands),
+            Self::Difference => Composition::Difference(operands),
+        };
+        // An operation has an operand, so that there is a first solid.
+        let centre = unmoved
+            .solids()
+            .first()
+            .map_or(DVec3::ZERO, AnySolid::centre);
+        Motion::new(source, &keys.pose(), keys.of.span())?.of_composition(unmoved, centre)
+    }
+}
+
+/// An operand, which is a solid or another set operation.
+fn operand(source: &Source, keys: &Spanned<Keys<OperandKeys>>) -> Result<Composition, SceneError> {
+    let place = keys.span();
+    let Keys(keys) = keys.get_ref();
+    if let Some(disk) = &keys.disk {
+        return Err(source.error(
+            disk.span(),
+            "a disk has no inside: it cannot be part of a set operation",
+        ));
+    }
+    let solids: [Option<&dyn SolidKeys>; 5] = [
+        keys.cylinder.as_ref().map(|Keys(keys)| keys as _),
+        keys.cone.as_ref().map(|Keys(keys)| keys as _),
+        keys.rounded_cone.as_ref().map(|Keys(keys)| keys as _),
+        keys.sphere.as_ref().map(|Keys(keys)| keys as _),
+        keys.cuboid.as_ref().map(|Keys(keys)| keys as _),
+    ];
+    let nested = [
+        (Operation::Union, &keys.union),
+        (Operation::Intersection, &keys.intersection),
+        (Operation::Difference, &keys.difference),
+    ];
+    let solids = solids.into_iter().flatten();
+    let nested = nested
+        .into_iter()
+        .filter_map(|(operation, keys)| keys.as_ref().map(|Keys(keys)| (operation, keys)));
+    let stated: Vec<_> = solids
+        .map(Stated::Solid)
+        .chain(nested.map(|(operation, keys)| Stated::Nested(operation, keys)))
+        .collect();
+    let [stated] = stated.as_slice() else {
+        return Err(source.error_with_help(
+            place,
+            format!("an operand is one solid, and this states {}", stated.len()),
+            "write { cylinder = { ... } }, or cone, rounded_cone, sphere, cuboid, union, intersection or difference, each between braces of its own",
+        ));
+    };
+    match stated {
+        Stated::Solid(keys) => closed(source, *keys, place),
+        Stated::Nested(operation, keys) => {
+            without_material(source, *keys)?;
+            operation.of(source, keys)
+        }
+    }
+}
+
+/// What an operand states.
+enum Stated<'a> {
+    Solid(&'a dyn SolidKeys),
+    Nested(Operation, &'a CompositionKeys),
+}
+
+/// A solid that has an inside.
+fn closed(
+    source: &Source,
+    keys: &dyn SolidKeys,
+    place: Range<usize>,
+) -> Result<Composition, SceneError> {
+    without_material(source, keys)?;
+    let solid = keys.solid(source)?;
+    if !solid.is_closed() {
+        return Err(source.error(
+            keys.caps_place().unwrap_or(place),
+            "a solid in a set operation must be closed: caps must be \"both\"",
+        ));
+    }
+    Ok(Composition::Solid(solid))
+}
+
+/// That a part of a set operation has no material of its own.
+fn without_material<T: SolidTable + ?Sized>(source: &Source, keys: &T) -> Result<(), SceneError> {
+    match keys.material() {
+        None => Ok(()),
+        Some(material) => Err(source.error(
+            material.span(),
+            "a set operation has one material: state it beside of, not in its parts",
+        )),
+    }
+}

@@ -1,0 +1,91 @@
+//! A solid of whichever kind.
+
+use glam::DVec3;
+
+use super::{Caps, Cone, ConvexSolid, Cuboid, Cylinder, Disk, RoundedCone, SolidKind, Sphere};
+use crate::math::Bounds;
+
+/// A solid of whichever kind, where kinds are mixed and few: each list of a scene
+/// is of one kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AnySolid {
+    /// A circular cylinder.
+    Cylinder(Cylinder),
+    /// A part of a circular cone.
+    Cone(Cone),
+    /// Two balls and what is between them.
+    RoundedCone(RoundedCone),
+    /// A ball.
+    Sphere(Sphere),
+    /// A box.
+    Cuboid(Cuboid),
+    /// A flat disk.
+    Disk(Disk),
+}
+
+impl AnySolid {
+    /// Which kind it is of.
+    #[must_use]
+    pub fn kind(&self) -> SolidKind {
+        match self {
+            Self::Cylinder(_) => SolidKind::Cylinder,
+            Self::Cone(_) => SolidKind::Cone,
+            Self::RoundedCone(_) => SolidKind::RoundedCone,
+            Self::Sphere(_) => SolidKind::Sphere,
+            Self::Cuboid(_) => SolidKind::Cuboid,
+            Self::Disk(_) => SolidKind::Disk,
+        }
+    }
+
+    /// Its own centre, about which it is turned: the middle of the axis, where it
+    /// has one, rounded.
+    #[must_use]
+    pub fn centre(&self) -> DVec3 {
+        // Halves are exact, so only their sum is rounded.
+        let middle = |p0: DVec3, p1: DVec3| p0 * 0.5 + p1 * 0.5;
+        match self {
+            Self::Cylinder(cylinder) => middle(cylinder.p0(), cylinder.p1()),
+            Self::Cone(cone) => middle(cone.p0(), cone.p1()),
+            Self::RoundedCone(cone) => middle(cone.p0(), cone.p1()),
+            Self::Sphere(sphere) => sphere.centre(),
+            Self::Cuboid(cuboid) => cuboid.centre(),
+            Self::Disk(disk) => disk.centre(),
+        }
+    }
+
+    /// Whether its surface is the boundary of a solid with an inside.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        match self {
+            Self::Cylinder(cylinder) => cylinder.caps() == Caps::Both,
+            Self::Cone(cone) => cone.caps() == Caps::Both,
+            Self::RoundedCone(_) | Self::Sphere(_) | Self::Cuboid(_) => true,
+            Self::Disk(_) => false,
+        }
+    }
+
+    /// A box that holds it, rounded outward.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        match self {
+            Self::Cylinder(cylinder) => cylinder.bounds(),
+            Self::Cone(cone) => cone.bounds(),
+            Self::RoundedCone(cone) => cone.bounds(),
+            Self::Sphere(sphere) => sphere.bounds(),
+            Self::Cuboid(cuboid) => cuboid.bounds(),
+            Self::Disk(disk) => disk.bounds(),
+        }
+    }
+}
+
+macro_rules! from_kinds {
+    ($($kind:ident)*) => {$(
+        impl From<$kind> for AnySolid {
+            fn from(solid: $kind) -> Self {
+                Self::$kind(solid)
+            }
+        }
+    )*};
+}
+
+from_kinds!(Cylinder Cone RoundedCone Sphere Cuboid Disk);

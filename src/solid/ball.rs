@@ -1,0 +1,214 @@
+//! The ball: ray against sphere.
+//!
+//! With the ray `o + t d` and `x = o - centre`, a point of the line is at
+//! distance `radius` from the centre where
+//!
+//! ```text
+//! |d|² t² + 2 (x·d) t + |x|² - radius² = 0                                 (1)
+//! ```
+//!
+//! By Lagrange's identity `|x|² |d|² - (x·d)² = |x × d|²`, so that the quarter
+//! discriminant is
+//!
+//! ```text
+//! D = radius² |d|² - |x × d|²,   t = (-(x·d) ∓ √D) / |d|²                  (2)
+//! ```
+//!
+//! `|x × d| / |d|` is the distance of line and centre. It does not change when
+//! the origin slides along the ray, so no square of the distance enters `D` and
+//! is taken off again. Rounded products leave an error of at most `3 u |x| |d|`
+//! in the length of `x × d`, u = 2^-53; its square and that of the radius round by
+//! a few u of themselves. Where that is not small against `D`, as for lines that
+//! graze the ball and for origins far away, `D` is computed from exact numbers: so
+//! its sign, which is all that tells a hit from a miss, is that of the exact `D`
+//! always.
+//!
+//! Where the two terms of a root cancel, it is `C / q`, with `C` the constant
+//! term of (1), and `q` the sum that does not cancel; next to the sphere `C` is
+//! computed from exact numbers.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::Part;
+use super::chord::{Chord, ChordEnd};
+use super::exact::{Expression, Number, cross, difference, dot, quotient, sign, vector};
+use crate::math::{UNIT_ROUNDOFF, power_of_two};
+
+/// The relative error up to which rounded products of `D` will do: the roots then
+/// have half of it, 2^-13 of an ulp of f32.
+const GOOD: f64 = power_of_two(-36);
+
+/// Below this, relative to `radius²`, `C` is computed from exact numbers; see
+/// the triple-product solver's limit.
+const LEAST_CONSTANT_TERM: f64 = power_of_two(-20);
+
+/// The interval of `t` in which the line `centre + x + t d` is inside the closed
+/// ball, with both ends on `part`; `None` where it is not. A ball of radius zero is
+/// its centre. A non-finite argument is a miss.
+pub(super) fn chord(x: DVec3, d: DVec3, radius: f64, part: Part) -> Option<Chord> {
+    chord_about(DVec3::ZERO, x, d, radius, part)
+}
+
+/// The same of the line `origin + t d` and the ball around `centre`; their
+/// difference need not be a number of f64.
+pub(super) fn chord_about(
+    centre: DVec3,
+    origin: DVec3,
+    d: DVec3,
+    radius: f64,
+    part: Part,
+) -> Option<Chord> {
+    let from = FromBall {
+        point: origin,
+        centre,
+        radius,
+    };
+    let x = origin - centre;
+    if !(x.is_finite() && d.is_finite()) {
+        return None;
+    }
+    let dd = d.dot(d);
+    let discriminant = from.discriminant(x, d, dd);
+    if discriminant < 0.0 {
+        return None;
+    }
+    let (b, s) = (x.dot(d), discriminant.sqrt());
+    let (first, second) = (-b - s, s - b);
+    let root = |sum: f64, other: f64| {
+        if sum.abs() < 0.5 * b.abs() {
+            from.constant_term(x) / other
+        } else {
+            sum / dd
+        }
+    };
+    let end = |t| ChordEnd {
+        t,
+        part,
+        on_rim: false,
+    };
+    let enter = root(first, second);
+    Some(Chord {
+        enter: end(enter),
+        // Next to a tangent the two may come out in the wrong order by a rounding.
+        leave: end(root(second, first).max(enter)),
+        lies_on: None,
+    })
+}
+
+/// Whether the closed ball holds a point, exactly.
+pub(super) fn holds(centre: DVec3, radius: f64, point: DVec3) -> bool {
+    let from = FromBall {
+        point,
+        centre,
+        radius,
+    };
+    point.is_finite() && sign(&from) != Ordering::Greater
+}
+
+/// A point and a ball; as an expression `|point - centre|² - radius²`.
+#[derive(Clone, Copy, Debug)]
+struct FromBall {
+    point: DVec3,
+    centre: DVec3,
+    radius: f64,
+}
+
+impl FromBall {
+    /// `D` of (2), of the line through the point; `x` is the rounded difference.
+    fn discriminant(&self, x: DVec3, d: DVec3, dd: f64) -> f64 {
+        let across = x.cross(d);
+        let (squared, reach) = (across.dot(across), self.radius * self.radius * dd);
+        let rounded = reach - squared;
+        // The length of `x × d` is off by 4 u |x| |d| at most, squares round by 3 u and
+        // 5 u of themselves; the last term is for what is of second order.
+        let spread = x.dot(x) * dd;
+        let error = 8.0
+            * UNIT_ROUNDOFF
+            * (reach + squared + (squared * spread).sqrt() + 2.0 * UNIT_ROUNDOFF * spread);
+        if GOOD * rounded.abs() < error {
+            return quotient(&Discriminant { from: *self, d }, 1.0);
+        }
+        rounded
+    }
+
+    /// `C` of (1); `x` is the rounded difference.
+    fn constant_term(&self, x: DVec3) -> f64 {
+        let rr = self.radius * self.radius;
+        let rounded = x.dot(x) - rr;
+        if rounded.abs() < LEAST_CONSTANT_TERM * rr {
+            return quotient(self, 1.0);
+        }
+        rounded
+    }
+}
+
+impl Expression for FromBall {
+    fn value<N: Number>(&self) -> N {
+        let (x, r) = (difference::<N>(self.point, self.centre), N::of(self.radius));
+        dot(&x, &x).minus(&r.times(&r))
+    }
+}
+
+struct Discriminant {
+    from: FromBall,
+    d: DVec3,
+}
+
+impl Expression for Discriminant {
+    fn value<N: Number>(&self) -> N {
+        let FromBall {
+            point,
+            centre,
+            radius,
+        } = self.from;
+        let (x, d) = (difference::<N>(point, centre), vector(self.d));
+        let (across, r) = (cross(&x, &d), N::of(radius));
+        let reach = r.times(&r).times(&dot(&d, &d));
+        reach.minus(&dot(&across, &across))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tangents_from_afar_are_told_apart_by_one_ulp() {
+        // Both lines pass the centre at 5/3 · 3 = 5, from 1e9 and at a slope.
+        let far = DVec3::new(-4.0, 3.0, 0.0) * 1e9;
+        let tangent = far + DVec3::new(3.0, 4.0, 0.0);
+        let d = DVec3::new(4.0, -3.0, 0.0);
+        let met = chord(tangent, d, 5.0, Part::Side).unwrap();
+        assert_eq!((met.enter.t, met.leave.t), (1e9, 1e9));
+        assert_eq!(chord(tangent, d, 5.0_f64.next_down(), Part::Side), None);
+        let crossed = chord(tangent, d, 13.0, Part::Side).unwrap();
+        assert_eq!((crossed.enter.t, crossed.leave.t), (1e9 - 2.4, 1e9 + 2.4));
+        assert_eq!(chord(tangent * f64::NAN, d, 5.0, Part::Side), None);
+    }
+
+    #[test]
+    fn root_next_to_the_origin_keeps_its_bits() {
+        let outside = 2.0_f64.powi(-40);
+        let x = DVec3::new(-1.0 - outside, 0.0, 0.0);
+        let met = chord(x, DVec3::X * 4.0, 1.0, Part::Side).unwrap();
+        assert_eq!(met.enter.t, outside / 4.0);
+        assert_eq!(met.leave.t, (2.0 + outside) / 4.0);
+    }
+
+    #[test]
+    fn ball_of_no_radius_is_its_centre() {
+        let d = DVec3::new(1.0, 3.0, 7.0);
+        assert_eq!(chord(d * -3.0, d, 0.0, Part::Cap0).unwrap().enter.t, 3.0);
+        assert_eq!(chord(d * -3.0 + DVec3::Z * 1e-14, d, 0.0, Part::Cap0), None);
+    }
+
+    #[test]
+    fn sphere_belongs_to_the_ball() {
+        let (centre, point) = (DVec3::new(1e8, 0.0, 0.0), DVec3::new(1e8 + 3.0, 4.0, 0.0));
+        assert!(holds(centre, 5.0, point));
+        assert!(!holds(centre, 5.0_f64.next_down(), point));
+        assert!(!holds(centre, 5.0, DVec3::INFINITY));
+    }
+}

@@ -1,0 +1,148 @@
+//! Ray against cone: the wall's interval, cut by the discs.
+//!
+//! `wall.rs` finds where the line is inside the infinite wall; that is overlapped
+//! with the slab between the discs by where the roots lie to the discs' planes
+//! (`heights.rs`). The other nappe lies beyond the apex, so outside of the slab. A
+//! cone with equal radii is left to the triple-product solver, whose answers it has
+//! bit for bit.
+
+use std::cmp::Ordering::{Equal, Greater, Less};
+
+use glam::DVec3;
+
+use super::Cone;
+use super::heights::{End, Heights, Root};
+use super::wall::{Fit, Inside, Meets, Taper};
+use crate::solid::chord::{Chord, ChordEnd};
+use crate::solid::{Caps, Cylinder, Part, triple_product};
+
+/// The interval in which the line `p0 + x + t d` is inside the closed cone.
+pub(super) fn chord(cone: &Cone, x: DVec3, d: DVec3) -> Option<Chord> {
+    if cone.radius0 == cone.radius1 {
+        let cylinder = Cylinder::from_valid(cone.p0, cone.p1, cone.radius0, Caps::Both);
+        return triple_product::chord(&cylinder, x, d);
+    }
+    let taper = Taper {
+        a: cone.p1 - cone.p0,
+        radius0: cone.radius0,
+        radius1: cone.radius1,
+        fit: Fit::Discs,
+    };
+    let meets = taper.meets(x, d)?;
+    let heights = Heights::new(&taper, x, d);
+    match meets {
+        Meets::Along => Some(along(&heights, Part::Side)),
+        Meets::Inside(inside) if heights.slope == 0.0 => across(&heights, inside),
+        Meets::Inside(inside) => oblique(&heights, inside),
+    }
+}
+
+/// The part at an end.
+fn part_at(end: End) -> Part {
+    match end {
+        End::First => Part::Cap0,
+        End::Second => Part::Cap1,
+    }
+}
+
+/// The ends in the order in which the line comes through their planes.
+fn in_order(heights: &Heights) -> (End, End) {
+    if heights.slope > 0.0 {
+        (End::First, End::Second)
+    } else {
+        (End::Second, End::First)
+    }
+}
+
+/// The chord of a line of the wall, from end to end; it lies on `part`.
+pub(in crate::solid) fn along(heights: &Heights, part: Part) -> Chord {
+    let (near, far) = in_order(heights);
+    let rim = |end| ChordEnd {
+        t: heights.at(end),
+        part: part_at(end),
+        on_rim: true,
+    };
+    Chord {
+        enter: rim(near),
+        leave: rim(far),
+        lies_on: Some(part),
+    }
+}
+
+/// The chord of a line across the axis: from wall to wall at one height, which may
+/// be that of a disc.
+fn across(heights: &Heights, inside: Inside) -> Option<Chord> {
+    let [above0, above1] = heights.above;
+    if above0 < 0.0 || above1 > 0.0 {
+        return None;
+    }
+    let disc = if above0 == 0.0 {
+        Some(Part::Cap0)
+    } else if above1 == 0.0 {
+        Some(Part::Cap1)
+    } else {
+        None
+    };
+    let end = |t| ChordEnd {
+        t,
+        part: disc.unwrap_or(Part::Side),
+        on_rim: disc.is_some(),
+    };
+    Some(Chord {
+        enter: end(inside.enter),
+        leave: end(inside.leave.max(inside.enter)),
+        lies_on: disc,
+    })
+}
+
+/// The chord of any other line.
+fn oblique(heights: &Heights, inside: Inside) -> Option<Chord> {
+    let (near, far) = in_order(heights);
+    // How far the line has come, as seen in its own direction.
+    let passed = |root, t, end| {
+        let above = heights.compare(root, t, end);
+        if heights.slope > 0.0 {
+            above
+        } else {
+            above.reverse()
+        }
+    };
+    let enter = |end| passed(Root::Enter, inside.enter, end);
+    let leave = |end| passed(Root::Leave, inside.leave, end);
+    if enter(far) == Greater || leave(near) == Less {
+        return None;
+    }
+    let on_disc = |end, on_rim| ChordEnd {
+        t: heights.at(end),
+        part: part_at(end),
+        on_rim,
+    };
+    // A root that is not cut off is on the wall, or on the rim of the disc through
+    // which the line would otherwise go the other way.
+    let on_wall = |t, other, is_at_other| ChordEnd {
+        t,
+        part: if is_at_other {
+            part_at(other)
+        } else {
+            Part::Side
+        },
+        on_rim: is_at_other,
+    };
+    let enter = match enter(near) {
+        Greater => on_wall(inside.enter, far, enter(far) == Equal),
+        to_rim => on_disc(near, to_rim == Equal),
+    };
+    let leave = match leave(far) {
+        Less => on_wall(inside.leave, near, leave(near) == Equal),
+        to_rim => on_disc(far, to_rim == Equal),
+    };
+    Some(Chord {
+        enter,
+        // At an edge the two may come out in the wrong order by a rounding.
+        leave: ChordEnd {
+            t: leave.t.max(enter.t),
+            ..leave
+        },
+        lies_on: None,
+    })
+}

@@ -1,0 +1,385 @@
+//! The infinite wall of a cone: where a line is inside it.
+//!
+//! With the axis `a = p1 - p0`, the radii `r0` and `r1`, `Δ = r1 - r0`, the ray
+//! `o + t d` and `x = o - p0`, let `n = a × d`, `m = a × x`, and count heights as
+//! `y = x·a + t s` with `s = d·a`. For a `β > 0`, a cone is where
+//!
+//! ```text
+//! β |m + t n|² <= (g + t h)²,   g = r0 |a|² + Δ (x·a),   h = Δ s           (1)
+//! ```
+//!
+//! and `g + t h >= 0`, which tells its nappe from the other. `β = |a|²` is the cone
+//! through the rims of the discs of radius `r0` and `r1` (its radius at height
+//! `y` is `r0 + Δ y / |a|²`); `β = |a|² - Δ²` is the cone that touches the balls of
+//! these radii. Divided by `β`, (1) is `A t² + 2 B t + C <= 0` with
+//!
+//! ```text
+//! A = |n|² - h²/β,   B = m·n - g h/β,   C = |m|² - g²/β                    (2)
+//! ```
+//!
+//! Since `m × n = a w` with `w = x·n`, Lagrange's identity makes the quarter
+//! discriminant `B² - A C = (|g n - h m|² - β |a|² w²) / β`. Further `g n - h m =
+//! r0 |a|² n + Δ a × (a × (d × x))`, which is `|a|²` times the part of
+//!
+//! ```text
+//! k = r0 n + Δ (x × d)                                                     (3)
+//! ```
+//!
+//! that is perpendicular to `a`, and `k·a = -Δ w`. So `B² - A C = |a|⁴ E / β` with
+//!
+//! ```text
+//! E = |k|² - w² (β + Δ²) / |a|²,   t = (-B ∓ |a|² √(E/β)) / A              (4)
+//! ```
+//!
+//! Why this form: `n`, `w` and `k` (the moment of the line about the apex, times
+//! `Δ`) do not change when the origin slides along the ray, so no square of the
+//! distance enters `E` and is taken off again. For `Δ = 0` it is the triple
+//! product's `r0² |n|² - w²`.
+//!
+//! `A` is positive for a line that is steeper to the axis than the wall: it is
+//! inside of one nappe between the roots. It is negative for one that is less
+//! steep, which is inside of both nappes all the way from a root, and zero for one
+//! parallel to a line of the wall; `h` tells which of the half-lines is on the nappe
+//! of the solid.
+//!
+//! **Rounding.** Each of `A`, `B`, `C` and `E` is a difference; the bounds of
+//! [`Rounded::new`] follow from `|δn| <= 3 u |a| |d|`, `|δm| <= 3 u |a| |x|`,
+//! `|δ(x × d)| <= 3 u |x| |d|` and `|δ(d·a)| <= 3 u |a| |d|`, u = 2^-53. Where
+//! one exceeds [`GOOD`] of the value, which is rare but for lines that graze the
+//! wall or are nearly along it, the value is computed from exact numbers: then its
+//! sign is exact, and its relative error a few u. Of the two roots one has no
+//! cancellation in its sum `q`; where the other's terms cancel it is `C / q`.
+
+use glam::DVec3;
+
+use crate::math::{UNIT_ROUNDOFF, power_of_two};
+use crate::solid::exact::{Expression, Number, cross, dot, quotient, vector};
+
+/// The relative error up to which rounded products will do: a root then has less
+/// than 2^-11 of an ulp of f32.
+const GOOD: f64 = power_of_two(-36);
+
+/// Which cone belongs to two radii.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::solid) enum Fit {
+    /// That through the rims of two discs.
+    Discs,
+    /// That which touches two balls, of which neither holds the other.
+    Balls,
+}
+
+/// The infinite wall, as seen from `p0`.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solid) struct Taper {
+    pub a: DVec3,
+    pub radius0: f64,
+    pub radius1: f64,
+    pub fit: Fit,
+}
+
+/// The interval of `t` in which a line is inside the wall; either end may be
+/// infinite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::solid) struct Inside {
+    /// Where it comes in.
+    pub enter: f64,
+    /// Where it goes out.
+    pub leave: f64,
+}
+
+/// How a line lies to the wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::solid) enum Meets {
+    /// It is inside over an interval.
+    Inside(Inside),
+    /// It is one of the lines that the wall is made of.
+    Along,
+}
+
+impl Taper {
+    /// `β`.
+    pub fn beta(&self) -> f64 {
+        match self.fit {
+            Fit::Discs => self.a.dot(self.a),
+            Fit::Balls => {
+                let (aa, delta) = (self.a.dot(self.a), self.radius1 - self.radius0);
+                if delta * delta < 0.5 * aa {
+                    aa - delta * delta
+                } else {
+                    quotient(&Beta(self), 1.0)
+                }
+            }
+        }
+    }
+
+    /// Where the line `x + t d` is inside the wall, on the solid's nappe if it is
+    /// less steep than the wall. `None` if nowhere, and for NaN.
+    pub fn meets(&self, x: DVec3, d: DVec3) -> Option<Meets> {
+        if !(x.is_finite() && d.is_finite()) {
+            return None;
+        }
+        let rounded = Rounded::new(self, x, d);
+        let [a, b, e] = [rounded.a, rounded.b, rounded.e].map(|one| one.value);
+        let (a, b, e) = if rounded.is_good() {
+            (a, b, e)
+        } else {
+            let exactly = |term| self.exactly(term, x, d, rounded.beta);
+            (exactly(Term::A), exactly(Term::B), exactly(Term::E))
+        };
+        if !(e >= 0.0) {
+            return None;
+        }
+        let s = rounded.aa * (e / rounded.beta).sqrt();
+        let (minus, plus) = (-b - s, s - b);
+        let q = if b < 0.0 { plus } else { minus };
+        if q == 0.0 && a == 0.0 {
+            // In a plane that touches the wall, along a line of it or beside.
+            let is_along = self.constant_term(&rounded, x, d) == 0.0;
+            return is_along.then_some(Meets::Along);
+        }
+        let root = |sum: f64| {
+            if sum.abs() < 0.5 * b.abs() {
+                self.constant_term(&rounded, x, d) / q
+            } else {
+                sum / a
+            }
+        };
+        let is_half = !(a > 0.0);
+        let rises = rounded.h > 0.0;
+        Some(Meets::Inside(Inside {
+            enter: if is_half && !rises {
+                f64::NEG_INFINITY
+            } else {
+                root(minus)
+            },
+            leave: if is_half && rises {
+                f64::INFINITY
+            } else {
+                root(plus)
+            },
+        }))
+    }
+
+    /// `C` of (2).
+    fn constant_term(&self, rounded: &Rounded, x: DVec3, d: DVec3) -> f64 {
+        let c = rounded.constant_term(self, x);
+        if c.is_good() {
+            c.value
+        } else {
+            self.exactly(Term::C, x, d, rounded.beta)
+        }
+    }
+
+    fn exactly(&self, term: Term, x: DVec3, d: DVec3, beta: f64) -> f64 {
+        let divisor = match term {
+            Term::E => self.a.dot(self.a),
+            _ => beta,
+        };
+        let taper = self;
+        quotient(&Exactly { taper, x, d, term }, divisor)
+    }
+
+    pub fn measures<N: Number>(&self, a: &[N; 3]) -> Measures<N> {
+        Measures::new(a, self.radius0, self.radius1, self.fit)
+    }
+
+    /// A term as numbers `N`.
+    pub fn term<N: Number>(&self, x: &[N; 3], d: &[N; 3], term: Term) -> N {
+        let a = vector::<N>(self.a);
+        let measures = self.measures(&a);
+        let Measures {
+            aa, delta, beta, ..
+        } = &measures;
+        if term == Term::C {
+            return measures.outside(&a, x);
+        }
+        let (n, h) = (cross(&a, d), delta.times(&dot(d, &a)));
+        match term {
+            Term::A => beta.times(&dot(&n, &n)).minus(&h.times(&h)),
+            Term::E => {
+                let (l, w) = (cross(x, d), dot(x, &n));
+                let k: [N; 3] = std::array::from_fn(|i| {
+                    measures.radius0.times(&n[i]).plus(&delta.times(&l[i]))
+                });
+                let tilt = beta.plus(&delta.times(delta));
+                aa.times(&dot(&k, &k)).minus(&w.times(&w).times(&tilt))
+            }
+            _ => {
+                let (m, g) = (cross(&a, x), measures.g(&dot(x, &a)));
+                beta.times(&dot(&m, &n)).minus(&g.times(&h))
+            }
+        }
+    }
+}
+
+/// A rounded difference and a bound of its error.
+#[derive(Clone, Copy, Debug)]
+struct Difference {
+    value: f64,
+    error: f64,
+}
+
+impl Difference {
+    /// Whether the error is small against the value, or the value no number.
+    fn is_good(&self) -> bool {
+        !(GOOD * self.value.abs() < self.error)
+    }
+}
+
+/// What rounded products make of (2) and (4).
+#[derive(Clone, Copy, Debug)]
+struct Rounded {
+    aa: f64,
+    beta: f64,
+    h: f64,
+    m: DVec3,
+    /// `|x| |a|`, which bounds `|m|`.
+    reach: f64,
+    a: Difference,
+    b: Difference,
+    e: Difference,
+    /// `|a|² √(E/β)`.
+    s: f64,
+}
+
+impl Rounded {
+    fn new(taper: &Taper, x: DVec3, d: DVec3) -> Self {
+        const U: f64 = UNIT_ROUNDOFF;
+        let (axis, r0) = (taper.a, taper.radius0);
+        let delta = taper.radius1 - r0;
+        let (aa, dd, beta) = (axis.dot(axis), d.dot(d), taper.beta());
+        let (length, speed, distance) = (aa.sqrt(), dd.sqrt(), x.length());
+        let (n, m, l) = (axis.cross(d), axis.cross(x), x.cross(d));
+        let (nn, w, slope) = (n.dot(n), x.dot(n), d.dot(axis));
+        let (k, h) = (n * r0 + l * delta, delta * slope);
+        let (kk, ww, tilt) = (k.dot(k), w * w, (beta + delta * delta) / aa);
+        let (reach, pace) = (distance * length, length * speed);
+
+        // |δn| <= 3 u pace, also in h, which rounds by 2 u more.
+        let steep = pace * nn.sqrt() + nn + (delta * delta / beta) * (pace * slope.abs());
+        let a = Difference {
+            value: nn - h * h / beta,
+            error: 16.0 * U * (steep + 9.0 * U * pace * pace),
+        };
+        // |m·n| <= reach |n|, each with 3 u of reach and of pace.
+        let g = r0 * aa + delta * x.dot(axis);
+        let size = r0 * aa + delta.abs() * reach;
+        let b = Difference {
+            value: m.dot(n) - g * h / beta,
+            error: 16.0 * U * (reach * pace + size * (delta.abs() * pace) / beta),
+        };
+        // |δk| <= 5 u K with K = |d| (r0 |a| + |Δ| |x|), |δw| <= 6 u |x| |a| |d|.
+        let (moment, triple) = (
+            speed * (r0 * length + delta.abs() * distance),
+            reach * speed,
+        );
+        let first = k.length() * moment + tilt * (w.abs() * triple) + kk + tilt * ww;
+        let second = moment * moment + tilt * (triple * triple);
+        let value = kk - ww * tilt;
+        let e = Difference {
+            value,
+            error: 16.0 * U * (first + 3.0 * U * second),
+        };
+        Self {
+            aa,
+            beta,
+            h,
+            m,
+            reach,
+            a,
+            b,
+            e,
+            s: aa * (value / beta).sqrt(),
+        }
+    }
+
+    /// Whether the roots, but for `C`, are good: an error of `B` matters against
+    /// the sum that does not cancel.
+    fn is_good(&self) -> bool {
+        let sum = Difference {
+            value: self.b.value.abs() + self.s,
+            error: self.b.error,
+        };
+        self.a.is_good() && self.e.is_good() && sum.is_good()
+    }
+
+    fn constant_term(&self, taper: &Taper, x: DVec3) -> Difference {
+        let delta = taper.radius1 - taper.radius0;
+        let g = taper.radius0 * self.aa + delta * x.dot(taper.a);
+        let size = taper.radius0 * self.aa + delta.abs() * self.reach;
+        let mm = self.m.dot(self.m);
+        let wide = self.reach * mm.sqrt() + mm + g.abs() * (size / self.beta);
+        let second = self.reach * self.reach + size * (size / self.beta);
+        Difference {
+            value: mm - g * (g / self.beta),
+            error: 16.0 * UNIT_ROUNDOFF * (wide + 3.0 * UNIT_ROUNDOFF * second),
+        }
+    }
+}
+
+/// `|a|²`, `Δ` and `β` as numbers `N`.
+pub(in crate::solid) struct Measures<N> {
+    pub aa: N,
+    pub delta: N,
+    pub beta: N,
+    radius0: N,
+}
+
+impl<N: Number> Measures<N> {
+    pub fn new(a: &[N; 3], radius0: f64, radius1: f64, fit: Fit) -> Self {
+        let aa = dot(a, a);
+        let delta = N::difference(radius1, radius0);
+        let beta = match fit {
+            Fit::Discs => aa.clone(),
+            Fit::Balls => aa.minus(&delta.times(&delta)),
+        };
+        Self {
+            aa,
+            delta,
+            beta,
+            radius0: N::of(radius0),
+        }
+    }
+
+    /// `g` of a point at height `y`.
+    pub fn g(&self, y: &N) -> N {
+        self.radius0.times(&self.aa).plus(&self.delta.times(y))
+    }
+
+    /// `β C`, for `m = a × x`: positive outside of both nappes.
+    pub fn outside(&self, a: &[N; 3], x: &[N; 3]) -> N {
+        let (m, g) = (cross(a, x), self.g(&dot(x, a)));
+        self.beta.times(&dot(&m, &m)).minus(&g.times(&g))
+    }
+}
+
+struct Beta<'a>(&'a Taper);
+
+impl Expression for Beta<'_> {
+    fn value<N: Number>(&self) -> N {
+        self.0.measures(&vector(self.0.a)).beta
+    }
+}
+
+/// A term of (2) times `β`, or `E` times `|a|²`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::solid) enum Term {
+    A,
+    B,
+    C,
+    E,
+}
+
+/// One of them.
+struct Exactly<'a> {
+    taper: &'a Taper,
+    x: DVec3,
+    d: DVec3,
+    term: Term,
+}
+
+impl Expression for Exactly<'_> {
+    fn value<N: Number>(&self) -> N {
+        self.taper.term(&vector(self.x), &vector(self.d), self.term)
+    }
+}

@@ -1,0 +1,280 @@
+//! Ray against cuboid, by slabs.
+//!
+//! With the cuboid's axes `f_i` as they are stored, its half widths `h_i` and the
+//! ray `centre + x + t d`, the line is between the two planes of axis i where
+//!
+//! ```text
+//! -h_i <= f_i·x + t f_i·d <= h_i                                           (1)
+//! ```
+//!
+//! so for `t` from one of `-(h_i + f_i·x) / f_i·d` and `(h_i - f_i·x) / f_i·d` to
+//! the other, the near and the far plane. The chord reaches from the greatest near
+//! `t` to the least far one. Where `f_i·d` is zero the axis either holds the whole
+//! line or none of it.
+//!
+//! Each numerator and denominator is a height over a plane, which `linear.rs`
+//! computes to [`ERROR`] of itself and with the exact sign, so that a `t` is within
+//! [`MARGIN`] of itself. Two that differ by more are ordered by it. Where they do
+//! not, at edges and corners, and for a line within a face, the order of the planes
+//! is the sign of `N_i V_j - N_j V_i`, the difference of two quotients `N / V`
+//! without their division, from exact numbers. So the answer, hit or miss and which
+//! faces, is that of the exact numbers always.
+//!
+//! What both share: a point on several faces belongs to that of the first axis.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::Cuboid;
+use crate::solid::chord::{Chord, ChordEnd};
+use crate::solid::exact::{Expression, Number, dot, sign, vector};
+use crate::solid::{Part, linear};
+
+/// Bounds the relative error of a `t`, with room for that of the comparison.
+const MARGIN: f64 = 4.0 * linear::ERROR;
+
+/// One of the two planes of an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Plane {
+    axis: usize,
+    /// Whether it is the one at `+h`.
+    is_upper: bool,
+    /// Where the line meets it.
+    t: f64,
+}
+
+/// How the line passes the planes of an axis.
+#[derive(Clone, Copy, Debug)]
+enum Slab {
+    /// From the near to the far one.
+    Crossed { near: Plane, far: Plane },
+    /// Along them, in between.
+    Along,
+    /// Within one of them.
+    Within(Part),
+}
+
+/// The chord of the line `centre + x + t d`.
+#[inline]
+pub(super) fn chord(cuboid: &Cuboid, x: DVec3, d: DVec3) -> Option<Chord> {
+    // Zero times anything but a number is NaN.
+    if (x + d).dot(DVec3::ZERO) != 0.0 {
+        return None;
+    }
+    let slabs = [
+        slab(cuboid, 0, x, d)?,
+        slab(cuboid, 1, x, d)?,
+        slab(cuboid, 2, x, d)?,
+    ];
+    let (mut enter, mut leave) = (None::<Plane>, None::<Plane>);
+    let mut is_settled = true;
+    for slab in slabs {
+        match slab {
+            Slab::Crossed { near, far } => {
+                let (latest, soonest) = (enter.unwrap_or(near), leave.unwrap_or(far));
+                is_settled &= enter.is_none() | are_apart(latest.t, near.t);
+                is_settled &= leave.is_none() | are_apart(soonest.t, far.t);
+                enter = Some(if near.t > latest.t { near } else { latest });
+                leave = Some(if far.t < soonest.t { far } else { soonest });
+            }
+            Slab::Along => {}
+            Slab::Within(_) => is_settled = false,
+        }
+    }
+    let (enter, leave) = (enter?, leave?);
+    if !are_apart(enter.t, leave.t) {
+        is_settled = false;
+    } else if enter.t > leave.t {
+        return None;
+    }
+    if !is_settled {
+        return exact_chord(*cuboid, x, d, slabs);
+    }
+    Some(Chord {
+        enter: end(enter.t, enter.part()),
+        leave: end(leave.t, leave.part()),
+        lies_on: None,
+    })
+}
+
+/// Whether two parameters differ by more than their errors.
+#[inline(always)]
+fn are_apart(one: f64, other: f64) -> bool {
+    (one - other).abs() > MARGIN * (one.abs() + other.abs())
+}
+
+/// `None` where the line is beside the slab.
+#[inline(always)]
+fn slab(cuboid: &Cuboid, axis: usize, x: DVec3, d: DVec3) -> Option<Slab> {
+    let f = cuboid.axis(axis);
+    let slope = linear::product(f, d);
+    let [over_lower, under_upper] = linear::heights(f, x, cuboid.half_widths[axis]);
+    if slope == 0.0 {
+        return along(axis, over_lower, under_upper);
+    }
+    let plane = |is_upper, t| Plane { axis, is_upper, t };
+    let lower = plane(false, (0.0 - over_lower) / slope);
+    let upper = plane(true, under_upper / slope);
+    Some(if slope > 0.0 {
+        Slab::Crossed {
+            near: lower,
+            far: upper,
+        }
+    } else {
+        Slab::Crossed {
+            near: upper,
+            far: lower,
+        }
+    })
+}
+
+fn along(axis: usize, over_lower: f64, under_upper: f64) -> Option<Slab> {
+    if over_lower < 0.0 || under_upper < 0.0 {
+        None
+    } else if over_lower == 0.0 {
+        Some(Slab::Within(PARTS[axis][0]))
+    } else if under_upper == 0.0 {
+        Some(Slab::Within(PARTS[axis][1]))
+    } else {
+        Some(Slab::Along)
+    }
+}
+
+const PARTS: [[Part; 2]; 3] = [
+    [Part::XMin, Part::XMax],
+    [Part::YMin, Part::YMax],
+    [Part::ZMin, Part::ZMax],
+];
+
+impl Plane {
+    fn part(self) -> Part {
+        PARTS[self.axis][usize::from(self.is_upper)]
+    }
+}
+
+fn end(t: f64, part: Part) -> ChordEnd {
+    ChordEnd {
+        t,
+        part,
+        on_rim: false,
+    }
+}
+
+/// The same with every comparison from exact numbers.
+#[cold]
+#[inline(never)]
+fn exact_chord(cuboid: Cuboid, x: DVec3, d: DVec3, slabs: [Slab; 3]) -> Option<Chord> {
+    let line = Line { cuboid, x, d };
+    let crossed = || {
+        slabs.iter().filter_map(|slab| match *slab {
+            Slab::Crossed { near, far } => Some((near, far)),
+            Slab::Along | Slab::Within(_) => None,
+        })
+    };
+    // Of equals the first axis.
+    let enter = crossed().map(|(near, _)| near).reduce(|latest, near| {
+        if line.compare(near, latest) == Ordering::Greater {
+            near
+        } else {
+            latest
+        }
+    })?;
+    let leave = crossed().map(|(_, far)| far).reduce(|soonest, far| {
+        if line.compare(far, soonest) == Ordering::Less {
+            far
+        } else {
+            soonest
+        }
+    })?;
+    let order = line.compare(enter, leave);
+    if order == Ordering::Greater {
+        return None;
+    }
+    let part_at = |plane: Plane| {
+        let holding = slabs.iter().find_map(|slab| match *slab {
+            Slab::Crossed { near, far } => [near, far]
+                .into_iter()
+                .find(|other| line.compare(*other, plane) == Ordering::Equal)
+                .map(Plane::part),
+            Slab::Along => None,
+            Slab::Within(part) => Some(part),
+        });
+        holding.unwrap_or(plane.part())
+    };
+    let lies_on = slabs.iter().find_map(|slab| match *slab {
+        Slab::Within(part) => Some(part),
+        Slab::Crossed { .. } | Slab::Along => None,
+    });
+    // Told alike from either side: that of the first axis, or the middle where
+    // two that are next to each other come out in the wrong order.
+    let [t_enter, t_leave] = if order == Ordering::Equal {
+        [if enter.axis < leave.axis {
+            enter
+        } else {
+            leave
+        }
+        .t; 2]
+    } else if enter.t > leave.t {
+        [0.5 * (enter.t + leave.t); 2]
+    } else {
+        [enter.t, leave.t]
+    };
+    Some(Chord {
+        enter: end(t_enter, part_at(enter)),
+        leave: end(t_leave, part_at(leave)),
+        lies_on,
+    })
+}
+
+struct Line {
+    cuboid: Cuboid,
+    x: DVec3,
+    d: DVec3,
+}
+
+impl Line {
+    /// How the parameters of two planes compare that the line crosses.
+    fn compare(&self, one: Plane, other: Plane) -> Ordering {
+        if one == other {
+            return Ordering::Equal;
+        }
+        let slope = |plane: Plane| linear::product(self.cuboid.axis(plane.axis), self.d);
+        let order = sign(&Order {
+            line: self,
+            one,
+            other,
+        });
+        if (slope(one) < 0.0) == (slope(other) < 0.0) {
+            order
+        } else {
+            order.reverse()
+        }
+    }
+}
+
+/// `N_i V_j - N_j V_i` of two planes.
+struct Order<'a> {
+    line: &'a Line,
+    one: Plane,
+    other: Plane,
+}
+
+impl Expression for Order<'_> {
+    fn value<N: Number>(&self) -> N {
+        let (x, d) = (vector::<N>(self.line.x), vector(self.line.d));
+        let cuboid = &self.line.cuboid;
+        let quotient = |plane: Plane| {
+            let f = vector(cuboid.axis(plane.axis));
+            let half_width = cuboid.half_widths[plane.axis];
+            let side = if plane.is_upper {
+                half_width
+            } else {
+                -half_width
+            };
+            (N::of(side).minus(&dot(&f, &x)), dot(&f, &d))
+        };
+        let ((n_one, v_one), (n_other, v_other)) = (quotient(self.one), quotient(self.other));
+        n_one.times(&v_other).minus(&n_other.times(&v_one))
+    }
+}

@@ -1,0 +1,231 @@
+//! The cuboid as users state it.
+
+mod chord;
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::exact::{Expression, Number, difference, dot, sign, vector};
+use super::{Chord, ConvexSolid, Cylinder, Part, SolidKind, SurfacePoint};
+use crate::math::{Bounds, Orientation, UNIT_ROUNDOFF, power_of_two};
+
+/// A box that may be turned: its centre, half of its width along each of its own
+/// axes, and its orientation, all taken as exact numbers.
+///
+/// With `f` the columns of [`Orientation::world_from_object`], the solid is
+/// `{x : |f_i · (x - centre)| <= half_widths_i}` and the surface its boundary, six
+/// faces named by their own axis and side. The columns of a turned cuboid are
+/// orthonormal to within roundings, and taken as they are.
+///
+/// A point on an edge or a corner belongs to the face that is first of x, y, z,
+/// whichever way a ray passes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cuboid {
+    centre: DVec3,
+    half_widths: DVec3,
+    orientation: Orientation,
+}
+
+/// Why numbers are not a cuboid.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum CuboidError {
+    /// A coordinate of the centre is NaN, infinite or beyond [`Cylinder::GREATEST`].
+    #[error("the centre is ({:?}, {:?}, {:?}): every coordinate must be finite and at most {:.1e} in size", centre.x, centre.y, centre.z, Cylinder::GREATEST)]
+    Centre {
+        /// The centre as given.
+        centre: DVec3,
+    },
+    /// A half width is not a number in [`Cylinder::LEAST`, `Cylinder::GREATEST`].
+    #[error(
+        "the half width along {axis} is {half_width:?}: it must be a positive number between {:.1e} and {:.1e}",
+        Cylinder::LEAST,
+        Cylinder::GREATEST
+    )]
+    HalfWidth {
+        /// `"x"`, `"y"` or `"z"`, an axis of the cuboid.
+        axis: &'static str,
+        /// The half width as given.
+        half_width: f64,
+    },
+}
+
+impl Cuboid {
+    /// The cuboid around `centre` that reaches `half_widths` along its own axes.
+    ///
+    /// # Errors
+    /// When a number is not finite or out of range.
+    pub fn new(
+        centre: DVec3,
+        half_widths: DVec3,
+        orientation: Orientation,
+    ) -> Result<Self, CuboidError> {
+        if !Cylinder::is_in_range(centre) {
+            return Err(CuboidError::Centre { centre });
+        }
+        for (axis, half_width) in ["x", "y", "z"].into_iter().zip(half_widths.to_array()) {
+            if !(Cylinder::LEAST..=Cylinder::GREATEST).contains(&half_width) {
+                return Err(CuboidError::HalfWidth { axis, half_width });
+            }
+        }
+        Ok(Self::from_valid(centre, half_widths, orientation))
+    }
+
+    /// The cuboid of numbers that [`Cuboid::new`] accepted before.
+    #[inline]
+    pub(crate) fn from_valid(centre: DVec3, half_widths: DVec3, orientation: Orientation) -> Self {
+        Self {
+            centre,
+            half_widths,
+            orientation,
+        }
+    }
+
+    /// The centre.
+    #[must_use]
+    pub fn centre(&self) -> DVec3 {
+        self.centre
+    }
+
+    /// Half of the width along each of its own axes, positive.
+    #[must_use]
+    pub fn half_widths(&self) -> DVec3 {
+        self.half_widths
+    }
+
+    /// Which way it is turned.
+    #[must_use]
+    pub fn orientation(&self) -> Orientation {
+        self.orientation
+    }
+
+    /// An axis of the cuboid as it is stored, a unit vector to within roundings.
+    #[inline(always)]
+    fn axis(&self, axis: usize) -> DVec3 {
+        self.orientation.world_from_object().col(axis)
+    }
+}
+
+impl ConvexSolid for Cuboid {
+    const KIND: SolidKind = SolidKind::Cuboid;
+
+    /// A corner is `centre + F⁻¹ y`, `F` the matrix of the rows `f_i` and `|y_i| =
+    /// h_i`. With `M` the transpose of `F`, `F⁻¹` is `M` but for the part by which it is
+    /// not orthonormal, at most 6 u of the length of y ([`Orientation`]); products
+    /// and sums add 4 u. Where the axes are the world's none of this is there.
+    fn bounds(&self) -> Bounds {
+        let half_widths = self.half_widths;
+        let reach = self.orientation.world_from_object().abs() * half_widths;
+        let off = if self.orientation.is_axis_aligned() {
+            0.0
+        } else {
+            16.0 * UNIT_ROUNDOFF * half_widths.element_sum()
+        };
+        Bounds {
+            lower: self.centre - (reach + off),
+            upper: self.centre + (reach + off),
+        }
+        .rounded_outward()
+    }
+
+    fn anchor(&self) -> DVec3 {
+        self.centre
+    }
+
+    #[inline]
+    fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
+        chord::chord(self, from_anchor, direction)
+    }
+
+    /// `u` and `v` are the two coordinates of the face, in the order y z for a face
+    /// of x, z x for one of y and x y for one of z, from 0 at the least to 1.
+    ///
+    /// With `y` the point in own coordinates, one of which is `±h` and the others
+    /// within `±h`, the true point of the face is `centre + F⁻¹ y`. `M y` is off by 6 u
+    /// of the length of `y` for `M` (see [`Cuboid::bounds`]) and 6 u for its products
+    /// and sums, and the sum with the centre by u of the point.
+    fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {
+        let (axis, is_upper) = face(part);
+        let half_widths = self.half_widths;
+        let mut own = self
+            .orientation
+            .to_object(from_anchor)
+            .clamp(-half_widths, half_widths);
+        let side = if is_upper { 1.0 } else { -1.0 };
+        own[axis] = side * half_widths[axis];
+        let point = self.centre + self.orientation.to_world(own);
+        let share = |axis: usize| 0.5 + 0.5 * (own[axis] / half_widths[axis]);
+        SurfacePoint {
+            point,
+            error: UNIT_ROUNDOFF * (point.length() + 16.0 * half_widths.element_sum()),
+            normal: self.axis(axis) * side,
+            u: share((axis + 1) % 3),
+            v: share((axis + 2) % 3),
+        }
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        point.is_finite() && (0..3).all(|axis| self.holds(axis, point))
+    }
+
+    fn size(&self) -> f64 {
+        // The diagonal, and what `bounds` adds to it.
+        2.0 * self.half_widths.length() * (1.0 + 64.0 * UNIT_ROUNDOFF)
+    }
+}
+
+impl Cuboid {
+    /// Whether a point is between the planes of an axis. Rounded numbers, which are
+    /// off by less than 6 u of their terms, decide where they do by 2^-48.
+    fn holds(&self, axis: usize, point: DVec3) -> bool {
+        let (terms, half_width) = (
+            self.axis(axis) * (point - self.centre),
+            self.half_widths[axis],
+        );
+        let height = (terms.x + terms.y + terms.z).abs();
+        let size = terms.abs().element_sum() + half_width;
+        if (height - half_width).abs() > power_of_two(-48) * size && size.is_finite() {
+            return height < half_width;
+        }
+        [1.0, -1.0].into_iter().all(|side| {
+            let height = Height {
+                cuboid: self,
+                axis,
+                side,
+                point,
+            };
+            sign(&height) != Ordering::Less
+        })
+    }
+}
+
+/// `h - side f·(point - centre)`: how far a point is within a plane.
+struct Height<'a> {
+    cuboid: &'a Cuboid,
+    axis: usize,
+    side: f64,
+    point: DVec3,
+}
+
+impl Expression for Height<'_> {
+    fn value<N: Number>(&self) -> N {
+        let f = vector::<N>(self.cuboid.axis(self.axis) * self.side);
+        let x = difference(self.point, self.cuboid.centre);
+        N::of(self.cuboid.half_widths[self.axis]).minus(&dot(&f, &x))
+    }
+}
+
+/// The axis of a face, and whether it is the upper one.
+fn face(part: Part) -> (usize, bool) {
+    match part {
+        Part::XMin => (0, false),
+        Part::XMax => (0, true),
+        Part::YMin => (1, false),
+        Part::YMax => (1, true),
+        Part::ZMin => (2, false),
+        Part::ZMax => (2, true),
+        Part::Side | Part::Cap0 | Part::Cap1 => {
+            unreachable!("a cuboid has no part {}", part.name())
+        }
+    }
+}

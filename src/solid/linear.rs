@@ -1,0 +1,104 @@
+//! Heights over planes: linear forms `f·x + c` of numbers taken as exact.
+//!
+//! Three products and three sums round by at most `4 u S` together, u = 2^-53,
+//! with `S = Σ |f_i x_i| + |c|`. A value of at least `2^-10 S` is therefore within
+//! `2^-41` of itself, 2^-17 of an ulp of f32, and has the right sign. A smaller one
+//! has lost that much to cancellation and is computed again from exact numbers: so
+//! every value has the exact sign, and is zero only if it truly is.
+
+use glam::DVec3;
+
+use super::exact::{Expression, Number, dot, quotient, vector};
+use crate::math::power_of_two;
+
+/// The share of its terms from which on a rounded value will do.
+const LEAST_SHARE: f64 = power_of_two(-10);
+
+/// Below this, products may have lost bits to underflow.
+const LEAST_SIZE: f64 = power_of_two(-900);
+
+/// The bound of the relative error of a value.
+pub(super) const ERROR: f64 = power_of_two(-41);
+
+/// `f·x`, for finite numbers.
+#[inline]
+pub(super) fn product(f: DVec3, x: DVec3) -> f64 {
+    let terms = f * x;
+    let (sum, sizes) = (terms.x + terms.y + terms.z, terms.abs());
+    checked(sum, sizes.x + sizes.y + sizes.z, f, x, 0.0)
+}
+
+/// `c + f·x` and `c - f·x`, for finite numbers.
+#[inline]
+pub(super) fn heights(f: DVec3, x: DVec3, c: f64) -> [f64; 2] {
+    let terms = f * x;
+    let (sum, sizes) = (terms.x + terms.y + terms.z, terms.abs());
+    let size = sizes.x + sizes.y + sizes.z + c.abs();
+    [
+        checked(c + sum, size, f, x, c),
+        checked(c - sum, size, -f, x, c),
+    ]
+}
+
+#[inline(always)]
+fn checked(rounded: f64, size: f64, f: DVec3, x: DVec3, c: f64) -> f64 {
+    if rounded.abs() < LEAST_SHARE * size || size < LEAST_SIZE {
+        return from_exact_numbers(f, x, c);
+    }
+    rounded
+}
+
+/// Takes copies, so that the caller need not have its vectors in memory for a
+/// case that is rare.
+#[cold]
+#[inline(never)]
+fn from_exact_numbers(f: DVec3, x: DVec3, c: f64) -> f64 {
+    // Along a coordinate axis there is one term, and nothing but its sum with `c`
+    // to round.
+    let is_whole = |factor: &f64| *factor == 0.0 || factor.abs() == 1.0;
+    let terms = f * x;
+    let count = terms.to_array().iter().filter(|term| **term != 0.0).count();
+    if f.to_array().iter().all(is_whole) && count <= 1 {
+        return c + (terms.x + terms.y + terms.z);
+    }
+    quotient(&Linear { f, x, c }, 1.0)
+}
+
+struct Linear {
+    f: DVec3,
+    x: DVec3,
+    c: f64,
+}
+
+impl Expression for Linear {
+    fn value<N: Number>(&self) -> N {
+        dot(&vector::<N>(self.f), &vector(self.x)).plus(&N::of(self.c))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heights_keep_their_bits_and_sign_where_terms_cancel() {
+        let f = DVec3::new(0.6, 0.8, 0.0);
+        // 0.6 and 0.8 are not those numbers: what is left of the sum is exact.
+        let x = DVec3::new(0.8, -0.6, 3.0);
+        assert_eq!(product(f, x), 0.0);
+        let off = DVec3::new(0.8_f64.next_up(), -0.6, 3.0);
+        let step = 0.8_f64.next_up() - 0.8;
+        assert!((product(f, off) / (0.6 * step) - 1.0).abs() < 1e-15);
+        let [over, under] = heights(f, off, 0.5 * step);
+        assert!((over / (1.1 * step) - 1.0).abs() < 1e-15, "{over:e}");
+        assert!((under / (-0.1 * step) - 1.0).abs() < 1e-14, "{under:e}");
+    }
+
+    #[test]
+    fn heights_along_an_axis_round_once() {
+        let [over, under] = heights(DVec3::NEG_Y, DVec3::new(7.0, 0.1, 1e300), 0.1);
+        assert_eq!([over, under], [0.0, 0.2]);
+        assert_eq!(product(DVec3::X, DVec3::new(1e-320, 5.0, 1.0)), 1e-320);
+        assert_eq!(product(DVec3::X, DVec3::Y), 0.0);
+    }
+}

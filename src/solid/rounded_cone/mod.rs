@@ -1,0 +1,163 @@
+//! The rounded cone as users state it.
+
+mod solver;
+mod surface;
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::cone::check_ends;
+use super::cone::wall::{Fit, Measures};
+use super::exact::{self, Expression, Number, difference, dot};
+use super::{Chord, ConeError, ConvexSolid, Part, SolidKind, SurfacePoint, ball};
+use crate::math::Bounds;
+
+/// The surface of the convex hull of two balls: two centres and a radius each,
+/// all taken as exact numbers.
+///
+/// It is what a ball sweeps whose radius changes evenly on its way from `p0` to
+/// `p1`: two spheres and the cone that touches both, with no edge between them.
+/// Where one ball holds the other, it is that ball. A radius may be zero, and the
+/// centres may coincide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoundedCone {
+    p0: DVec3,
+    p1: DVec3,
+    radius0: f64,
+    radius1: f64,
+}
+
+/// Why numbers are not a rounded cone: one of them is out of the range that a
+/// [`Cone`](super::Cone)'s have, or both radii are zero.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(transparent)]
+pub struct RoundedConeError(#[from] pub ConeError);
+
+impl RoundedCone {
+    /// The hull of the balls around `p0` and `p1`.
+    ///
+    /// # Errors
+    /// When a number is not finite or out of range, a radius is negative or both
+    /// are zero.
+    pub fn new(p0: DVec3, p1: DVec3, radius0: f64, radius1: f64) -> Result<Self, RoundedConeError> {
+        check_ends(p0, p1, radius0, radius1)?;
+        // A radius of -0 is one of 0.
+        Ok(Self::from_valid(p0, p1, radius0.abs(), radius1.abs()))
+    }
+
+    /// The rounded cone of numbers that [`RoundedCone::new`] accepted before.
+    #[inline]
+    pub(crate) fn from_valid(p0: DVec3, p1: DVec3, radius0: f64, radius1: f64) -> Self {
+        Self {
+            p0,
+            p1,
+            radius0,
+            radius1,
+        }
+    }
+
+    /// The first centre.
+    #[must_use]
+    pub fn p0(&self) -> DVec3 {
+        self.p0
+    }
+
+    /// The second centre.
+    #[must_use]
+    pub fn p1(&self) -> DVec3 {
+        self.p1
+    }
+
+    /// The radius of the ball around `p0`, not negative.
+    #[must_use]
+    pub fn radius0(&self) -> f64 {
+        self.radius0
+    }
+
+    /// The radius of the ball around `p1`, not negative.
+    #[must_use]
+    pub fn radius1(&self) -> f64 {
+        self.radius1
+    }
+}
+
+impl ConvexSolid for RoundedCone {
+    const KIND: SolidKind = SolidKind::RoundedCone;
+
+    fn bounds(&self) -> Bounds {
+        Bounds {
+            lower: (self.p0 - self.radius0).min(self.p1 - self.radius1),
+            upper: (self.p0 + self.radius0).max(self.p1 + self.radius1),
+        }
+        .rounded_outward()
+    }
+
+    fn anchor(&self) -> DVec3 {
+        self.p0
+    }
+
+    fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
+        solver::chord(self, from_anchor, direction)
+    }
+
+    fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {
+        surface::surface_point(self, part, from_anchor)
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        let beyond = |limit| {
+            let solid = self;
+            exact::sign(&Beyond {
+                solid,
+                point,
+                limit,
+            })
+        };
+        // The discs at the seams are within the balls, so that the first need not
+        // be asked for; and where one ball holds the other, no height is beyond
+        // it and not beyond the other.
+        ball::holds(self.p0, self.radius0, point)
+            || ball::holds(self.p1, self.radius1, point)
+            || point.is_finite()
+                && beyond(Limit::Seam0) == Ordering::Less
+                && beyond(Limit::Seam1) != Ordering::Greater
+                && beyond(Limit::Wall) != Ordering::Greater
+    }
+
+    fn size(&self) -> f64 {
+        (self.p1 - self.p0).length() + 2.0 * self.radius0.max(self.radius1)
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Limit {
+    Seam0,
+    Seam1,
+    Wall,
+}
+
+/// Positive if the point is beyond a limit of the wall's part of the solid.
+struct Beyond<'a> {
+    solid: &'a RoundedCone,
+    point: DVec3,
+    limit: Limit,
+}
+
+impl Expression for Beyond<'_> {
+    fn value<N: Number>(&self) -> N {
+        let solid = self.solid;
+        let (a, x) = (
+            difference::<N>(solid.p1, solid.p0),
+            difference(self.point, solid.p0),
+        );
+        let (r0, r1) = (solid.radius0, solid.radius1);
+        let measures = Measures::new(&a, r0, r1, Fit::Balls);
+        let z = || dot(&x, &a).plus(&N::of(r0).times(&measures.delta));
+        match self.limit {
+            Limit::Seam0 => N::of(0.0).minus(&z()),
+            Limit::Seam1 => z().minus(&measures.beta),
+            Limit::Wall => measures.outside(&a, &x),
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Ray against rounded cone: two balls and the cone that touches both.
+//!
+//! With `a = p1 - p0` and `Δ = r1 - r0`, the touching cone's wall (`cone/wall.rs`,
+//! with `β = |a|² - Δ²`) meets the balls in two circles, the seams, and belongs to
+//! the hull between them (`cone/heights.rs`). If `β <= 0` one ball holds the other
+//! and is the hull.
+//!
+//! A line enters the hull where it enters the wall, if that is between the seams;
+//! otherwise it enters on a sphere, and the first entry into a ball is that. It
+//! leaves alike. The discs at the seams are within the balls and never asked for.
+//!
+//! **No gap at a seam.** Whether the line meets a ball or the infinite wall and on
+//! which side of a seam are decided exactly, from the same numbers. So a line that
+//! grazes the hull at a seam meets the one part or the other. A seam belongs to
+//! its sphere.
+
+use std::cmp::Ordering::{Greater, Less};
+
+use glam::DVec3;
+
+use super::RoundedCone;
+use crate::solid::chord::{Chord, ChordEnd};
+use crate::solid::cone::heights::{End, Heights, Root};
+use crate::solid::cone::solver::along;
+use crate::solid::cone::wall::{Fit, Meets, Taper};
+use crate::solid::{Part, ball};
+
+/// The interval in which the line `p0 + x + t d` is inside the hull.
+pub(super) fn chord(solid: &RoundedCone, x: DVec3, d: DVec3) -> Option<Chord> {
+    let a = solid.p1 - solid.p0;
+    let ball0 = || ball::chord(x, d, solid.radius0, Part::Cap0);
+    let ball1 = || ball::chord_about(a, x, d, solid.radius1, Part::Cap1);
+    let Some(taper) = solid.taper() else {
+        return if solid.radius0 >= solid.radius1 {
+            ball0()
+        } else {
+            ball1()
+        };
+    };
+    let [mut enter, mut leave] = [None, None];
+    if let Some(meets) = taper.meets(x, d) {
+        let heights = Heights::new(&taper, x, d);
+        let inside = match meets {
+            Meets::Along => return Some(along(&heights, Part::Side)),
+            Meets::Inside(inside) => inside,
+        };
+        enter = between_seams(&heights, Root::Enter, inside.enter);
+        leave = between_seams(&heights, Root::Leave, inside.leave);
+    }
+    if enter.is_none() || leave.is_none() {
+        let balls = [ball0(), ball1()];
+        let [enters, leaves] = [
+            balls.map(|ball| ball.map(|ball| ball.enter)),
+            balls.map(|ball| ball.map(|ball| ball.leave)),
+        ];
+        enter = enter.or_else(|| first(enters, |one, other| one.t <= other.t));
+        leave = leave.or_else(|| first(leaves, |one, other| one.t >= other.t));
+    }
+    // The one is there if and only if the other is.
+    let (enter, leave) = (enter?, leave?);
+    Some(Chord {
+        enter,
+        // Next to a tangent the two may come out in the wrong order by a rounding.
+        leave: ChordEnd {
+            t: leave.t.max(enter.t),
+            ..leave
+        },
+        lies_on: None,
+    })
+}
+
+/// Of two ends that may be there, the one that is before the other.
+fn first(
+    ends: [Option<ChordEnd>; 2],
+    is_before: fn(&ChordEnd, &ChordEnd) -> bool,
+) -> Option<ChordEnd> {
+    match ends {
+        [Some(one), Some(other)] if is_before(&one, &other) => Some(one),
+        [one, other] => other.or(one),
+    }
+}
+
+/// The end that a root of the wall is, if it is between the seams.
+fn between_seams(heights: &Heights, root: Root, t: f64) -> Option<ChordEnd> {
+    let is_between = if heights.slope == 0.0 {
+        heights.above[0] > 0.0 && heights.above[1] < 0.0
+    } else {
+        heights.compare(root, t, End::First) == Greater
+            && heights.compare(root, t, End::Second) == Less
+    };
+    is_between.then_some(ChordEnd {
+        t,
+        part: Part::Side,
+        on_rim: false,
+    })
+}
+
+impl RoundedCone {
+    /// The cone that touches both balls; `None` if one holds the other.
+    pub(super) fn taper(&self) -> Option<Taper> {
+        let taper = Taper {
+            a: self.p1 - self.p0,
+            radius0: self.radius0,
+            radius1: self.radius1,
+            fit: Fit::Balls,
+        };
+        (taper.beta() > 0.0).then_some(taper)
+    }
+}

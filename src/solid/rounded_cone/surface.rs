@@ -1,0 +1,74 @@
+//! The point, normal and parameters of a hit on a rounded cone, with error bounds.
+//!
+//! The hull is what a ball sweeps whose centre goes from `p0` to `p1` and whose
+//! radius changes evenly, and the point nearest to `o + t d` is one of the sphere
+//! around some centre `p0 + v a`: for the spheres at the ends v is 0 or 1. On the wall
+//! the normal is `n = (outward √β - axis Δ) / |a|` with `β = |a|² - Δ²`, and going
+//! back along it from a point at height `y = x·a` and distance `ρ` from the axis one
+//! meets the axis at
+//!
+//! ```text
+//! v = (y + ρ Δ |a| / √β) / |a|²,   q = p0 + v a + (r0 + v Δ) n
+//! ```
+//!
+//! Error (u = 2^-53, R the greater radius): as with the cylinder, the centre is off
+//! by `2 u |a|` and the sums round by `u (|q| + |a| + R)`. `r0 + v Δ` rounds by 3 u
+//! R; `n` is unit to 8 u. `outward` is off the perpendicular by 6 u, and `√β / |a|`
+//! is off by up to `u |a| / √β` of 1, since `a` is rounded: both turn `n` by an angle
+//! δ, which moves q along the sphere that the hull holds, so off the surface by δ² R/2
+//! at most. If `√β < √u |a|`, the turn is below 2 √u, otherwise below `√u`. So
+//! δ² / 2 is below 4 u. Together `u (|q| + 4 |a| + 16 R)`; 5 and 20 are counted. On a
+//! sphere it is `u (|q| + 6 R)`.
+
+use glam::DVec3;
+
+use super::RoundedCone;
+use crate::math::UNIT_ROUNDOFF;
+use crate::solid::surface::Around;
+use crate::solid::{Part, SurfacePoint};
+
+/// The point of `part` nearest to `p0 + from_p0`. `v` is where the centre of the
+/// ball is that touches the surface there, from `p0` to `p1`; `u` is a cylinder's. If
+/// the centres coincide, the axis is taken along z.
+pub(super) fn surface_point(solid: &RoundedCone, part: Part, from_p0: DVec3) -> SurfacePoint {
+    let (r0, r1) = (solid.radius0, solid.radius1);
+    let a = solid.p1 - solid.p0;
+    let around = Around::new(if a == DVec3::ZERO { DVec3::Z } else { a }, from_p0);
+    let sphere = |centre: DVec3, radius: f64, from_centre: DVec3, v| {
+        let distance = from_centre.length();
+        // The centre has no nearest point; any will do.
+        let normal = if distance > 0.0 {
+            from_centre / distance
+        } else {
+            around.outward
+        };
+        let point = centre + normal * radius;
+        SurfacePoint {
+            point,
+            error: UNIT_ROUNDOFF * (point.length() + 6.0 * radius),
+            normal,
+            u: around.u,
+            v,
+        }
+    };
+    match (part, solid.taper()) {
+        (Part::Cap0, _) => sphere(solid.p0, r0, from_p0, 0.0),
+        (Part::Cap1, _) => sphere(solid.p1, r1, from_p0 - a, 1.0),
+        (Part::Side, Some(taper)) => {
+            let (aa, delta) = (a.length_squared(), r1 - r0);
+            let (length, root) = (aa.sqrt(), taper.beta().sqrt());
+            let along = from_p0.dot(a) + around.distance * delta * length / root;
+            let v = (along / aa).clamp(0.0, 1.0);
+            let normal = (around.outward * root - around.axis * delta) / length;
+            let point = solid.p0 + (a * v + normal * (r0 + delta * v));
+            SurfacePoint {
+                point,
+                error: UNIT_ROUNDOFF * (point.length() + 5.0 * length + 20.0 * r0.max(r1)),
+                normal,
+                u: around.u,
+                v,
+            }
+        }
+        (part, _) => unreachable!("{solid:?} has no part {}", part.name()),
+    }
+}
