@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::Inputs;
 use super::aiming::{Aim, sign, whole};
+use super::shapes::scale_and_speed;
 use crate::math::{Orientation, Random, Ray};
 use crate::solid::Cuboid;
 
@@ -76,13 +77,7 @@ impl CuboidFamily {
         orientation: Orientation,
         inputs: Inputs,
     ) -> Option<(Cuboid, Ray)> {
-        let (scale, speed) = match self {
-            Self::Scale => (
-                random.log_uniform(1e-20, 1e20),
-                random.log_uniform(1e-10, 1e10),
-            ),
-            _ => (1.0, 1.0),
-        };
+        let (scale, speed) = scale_and_speed(random, self == Self::Scale);
         let least = if self == Self::Thin { 1e-6 } else { 0.1 };
         let half_widths = DVec3::from_array([(); 3].map(|()| random.log_uniform(least, 1.0)));
         let half_widths = inputs.vector(half_widths * scale);
