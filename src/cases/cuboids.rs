@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::Inputs;
 use super::aiming::{Aim, sign, whole};
+use super::shapes::scale_and_speed;
 use crate::math::{Orientation, Random, Ray};
 use crate::solid::Cuboid;
 
@@ -76,13 +77,7 @@ impl CuboidFamily {
         orientation: Orientation,
         inputs: Inputs,
     ) -> Option<(Cuboid, Ray)> {
-        let (scale, speed) = match self {
-            Self::Scale => (
-                random.log_uniform(1e-20, 1e20),
-                random.log_uniform(1e-10, 1e10),
-            ),
-            _ => (1.0, 1.0),
-        };
+        let (scale, speed) = scale_and_speed(random, self == Self::Scale);
         let least = if self == Self::Thin { 1e-6 } else { 0.1 };
         let half_widths = DVec3::from_array([(); 3].map(|()| random.log_uniform(least, 1.0)));
         let half_widths = inputs.vector(half_widths * scale);
@@ -91,11 +86,12 @@ impl CuboidFamily {
         let cuboid = Cuboid::new(centre, half_widths, orientation).ok()?;
         let to_world = |own: DVec3| centre + orientation.to_world(own * half_widths);
         let axis = random.below(3) as usize;
-        let target = to_world(self.target(random, axis));
+        let own = self.target(random, axis);
+        let target = to_world(own);
         let heading = match self {
             Self::Diagonal => {
-                let corner = corner(random);
-                (to_world(corner) - target).try_normalize()?
+                let other = to_world(other_corner(random, own, axis));
+                (other - target).try_normalize()?
             }
             Self::Parallel => orientation.to_world(DVec3::AXES[axis]) * sign(random),
             Self::WithinFace => {
@@ -152,7 +148,11 @@ impl CuboidFamily {
         match self {
             Self::Edge => own[axis] = any[axis],
             Self::Corner => {}
-            Self::Diagonal => heading = (corner(random) * half_widths - own) / 2.0,
+            Self::Diagonal => {
+                let other = other_corner(random, own, axis);
+                heading = (other * half_widths - own) / 2.0;
+            }
+            Self::Inside => own = any.clamp(-half_widths, half_widths),
             Self::Parallel => {
                 own = any;
                 heading = DVec3::AXES[axis] * sign(random);
@@ -193,6 +193,11 @@ fn orientation(random: &mut Random) -> Orientation {
 
 fn corner(random: &mut Random) -> DVec3 {
     DVec3::from_array([(); 3].map(|()| sign(random)))
+}
+
+/// A corner that is on the other side of an axis than a point.
+fn other_corner(random: &mut Random, own: DVec3, axis: usize) -> DVec3 {
+    with_axis(corner(random), axis, -own[axis].signum())
 }
 
 fn with_axis(mut vector: DVec3, axis: usize, value: f64) -> DVec3 {

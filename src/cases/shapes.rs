@@ -1,7 +1,9 @@
-//! The cylinders of the families.
+//! The cylinders of the families, and what spheres, cuboids and disks share.
 //!
-//! All are drawn alike: a radius, a length in radii and a distance from the
+//! All cylinders are drawn alike: a radius, a length in radii and a distance from the
 //! scene's origin, each log-uniform within the limits that make a family.
+
+use glam::DVec3;
 
 use crate::math::Random;
 use crate::solid::{Caps, Cylinder};
@@ -75,5 +77,38 @@ impl Shape {
             self.caps,
         )
         .ok()
+    }
+}
+
+/// The scale of all lengths and the length of directions: 1, or anything for a
+/// family of scales.
+pub(super) fn scale_and_speed(random: &mut Random, is_any: bool) -> (f64, f64) {
+    if !is_any {
+        return (1.0, 1.0);
+    }
+    let scale = random.log_uniform(1e-20, 1e20);
+    (scale, random.log_uniform(1e-10, 1e10))
+}
+
+/// A centre and a radius, of spheres and disks.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Round {
+    pub centre: DVec3,
+    pub radius: f64,
+}
+
+impl Round {
+    /// One at 0.1 to 10 radii from the scene's origin, or at 1e4 to 1e7.
+    pub fn draw(random: &mut Random, inputs: Inputs, scale: f64, is_far_off: bool) -> Self {
+        let radius = inputs.number(scale * random.log_uniform(0.05, 0.5));
+        let offset = if is_far_off {
+            random.log_uniform(1e4, 1e7)
+        } else {
+            random.log_uniform(0.1, 10.0)
+        };
+        Self {
+            centre: inputs.vector(random.direction() * (radius * offset)),
+            radius,
+        }
     }
 }

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::Inputs;
 use super::aiming::{Aim, whole};
+use super::shapes::{Round, scale_and_speed};
 use crate::math::{Random, Ray};
 use crate::solid::Sphere;
 
@@ -48,19 +49,9 @@ impl SphereFamily {
         if self == Self::Tangent {
             return tangent(&mut random);
         }
-        let (scale, speed) = match self {
-            Self::Scale => (
-                random.log_uniform(1e-20, 1e20),
-                random.log_uniform(1e-10, 1e10),
-            ),
-            _ => (1.0, 1.0),
-        };
-        let radius = inputs.number(scale * random.log_uniform(0.05, 0.5));
-        let offset = match self {
-            Self::Offset => random.log_uniform(1e4, 1e7),
-            _ => random.log_uniform(0.1, 10.0),
-        };
-        let centre = inputs.vector(random.direction() * (radius * offset));
+        let (scale, speed) = scale_and_speed(&mut random, self == Self::Scale);
+        let Round { centre, radius } =
+            Round::draw(&mut random, inputs, scale, self == Self::Offset);
         let sphere = Sphere::new(centre, radius).ok()?;
         let heading = random.direction();
         let across = heading.cross(random.direction()).try_normalize()?;

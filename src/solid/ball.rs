@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn root_next_to_the_origin_keeps_its_bits() {
-        let outside = 2.0_f64.powi(-40);
+        let outside = power_of_two(-40);
         let x = DVec3::new(-1.0 - outside, 0.0, 0.0);
         let met = chord(x, DVec3::X * 4.0, 1.0, Part::Side).unwrap();
         assert_eq!(met.enter.t, outside / 4.0);
