@@ -15,6 +15,7 @@ mod normal;
 mod number;
 mod rounded_cone;
 mod taper;
+mod taper_points;
 
 pub use affine::{ExactAffine, ExactMatrix};
 pub use cone::{cone_gap, cone_hits};
@@ -24,3 +25,6 @@ pub use gap::gap;
 pub use normal::outward_normal;
 pub use number::{Exact, ExactVector, exact, to_f64};
 pub use rounded_cone::{rounded_cone_gap, rounded_cone_hits};
+pub use taper_points::{
+    cone_holds, distance_to_cone, distance_to_rounded_cone, rounded_cone_holds,
+};
