@@ -19,6 +19,7 @@ mod number;
 mod rounded_cone;
 mod sphere;
 mod taper;
+mod taper_points;
 
 pub use affine::{ExactAffine, ExactMatrix};
 pub use chord::TrueChord;
@@ -32,3 +33,6 @@ pub use normal::outward_normal;
 pub use number::{Exact, ExactVector, exact, to_f64};
 pub use rounded_cone::{rounded_cone_gap, rounded_cone_hits};
 pub use sphere::{sphere_chord, sphere_gap, sphere_holds};
+pub use taper_points::{
+    cone_holds, distance_to_cone, distance_to_rounded_cone, rounded_cone_holds,
+};

@@ -120,7 +120,8 @@ fn oblique(heights: &Heights, inside: Inside) -> Option<Chord> {
     // A root that is not cut off is on the wall, or on the rim of the disc through
     // which the line would otherwise go the other way.
     let on_wall = |t, other, is_at_other| ChordEnd {
-        t,
+        // The plane's, so that a line turned round has the same.
+        t: if is_at_other { heights.at(other) } else { t },
         part: if is_at_other {
             part_at(other)
         } else {

@@ -146,6 +146,10 @@ impl Taper {
         };
         let is_half = !(a > 0.0);
         let rises = rounded.h > 0.0;
+        if a == 0.0 && (b < 0.0) != rises {
+            // Parallel to the wall it is inside of one nappe only: the other.
+            return None;
+        }
         Some(Meets::Inside(Inside {
             enter: if is_half && !rises {
                 f64::NEG_INFINITY
@@ -179,6 +183,7 @@ impl Taper {
         quotient(&Exactly { taper, x, d, term }, divisor)
     }
 
+    /// `|a|²`, `Δ` and `β`.
     pub fn measures<N: Number>(&self, a: &[N; 3]) -> Measures<N> {
         Measures::new(a, self.radius0, self.radius1, self.fit)
     }
