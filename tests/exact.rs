@@ -183,6 +183,7 @@ fn judge(inputs: Inputs, cylinder: &Cylinder, ray: &Ray, row: Option<&Row>, tall
             let ad = a.dot(d).abs();
             8.0 * (t.abs() * a_size * d_size + (x_size + a_size) * a_size) / ad
         }
+        part => panic!("a cylinder has no part {}", part.name()),
     };
     let used = off / (UNIT * bound);
     assert!(

@@ -234,6 +234,7 @@ fn other_end(part: Part) -> Part {
         Part::Side => Part::Side,
         Part::Cap0 => Part::Cap1,
         Part::Cap1 => Part::Cap0,
+        part => panic!("a cylinder has no part {}", part.name()),
     }
 }
 
