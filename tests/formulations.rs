@@ -88,7 +88,7 @@ fn easy_case(index: u64) -> Option<Case> {
     let along = match truth.hit.as_ref().map(|hit| hit.part) {
         Some(Part::Cap0 | Part::Cap1) => 16.0 * size / cos,
         Some(Part::Side) | None => 32.0 * size * size / (radius * sin * truth.wall_gap.sqrt()),
-        part => panic!("a cylinder has no part {}", part.name()),
+        part => panic!("a cylinder has no part {part:?}"),
     };
     Some(Case {
         problem: Problem { cylinder, ray },
@@ -150,7 +150,7 @@ fn judge(formulation: &dyn Formulation, cases: &[Case]) -> f64 {
             Part::Side => (from_p0 - a * (from_p0.dot(a) / a.length_squared())).normalize(),
             Part::Cap0 => -a.normalize(),
             Part::Cap1 => a.normalize(),
-            part => panic!("a cylinder has no part {}", part.name()),
+            part => panic!("a cylinder has no part {part:?}"),
         };
         let moved = u * (case.bound * ray.direction.length() + 32.0 * case.size);
         let turned = (answer.normal - normal).length();
