@@ -21,7 +21,7 @@
 mod arrangement;
 
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DVec3, Vec3};
 
@@ -113,7 +113,8 @@ pub struct CylinderList {
 
 #[derive(Clone, Debug)]
 enum Kept {
-    F64(Vec<CylinderRecord>),
+    /// Shared with those who trace them, who need not come through the list.
+    F64(Arc<Vec<CylinderRecord>>),
     F32(Rounded),
 }
 
@@ -163,7 +164,7 @@ impl CylinderList {
     #[must_use]
     pub fn new(records: Records) -> Self {
         let kept = match records {
-            Records::F64 => Kept::F64(Vec::new()),
+            Records::F64 => Kept::F64(Arc::default()),
             Records::F32 => Kept::F32(Rounded::default()),
         };
         Self::of(kept)
@@ -182,7 +183,7 @@ impl CylinderList {
     /// When the list is of f32 and the rounded cylinder is none.
     pub fn push(&mut self, record: CylinderRecord) -> Result<(), CylinderError> {
         match &mut self.kept {
-            Kept::F64(records) => records.push(record),
+            Kept::F64(records) => Arc::make_mut(records).push(record),
             Kept::F32(rounded) => rounded.push(&record)?,
         }
         self.by_primitive.take();
@@ -193,7 +194,7 @@ impl CylinderList {
     pub(super) fn reserve(&mut self, more: usize) {
         // What cannot be had now is asked for again by `push`.
         let _ = match &mut self.kept {
-            Kept::F64(records) => records.try_reserve_exact(more),
+            Kept::F64(records) => Arc::make_mut(records).try_reserve_exact(more),
             Kept::F32(rounded) => rounded.records.try_reserve_exact(more),
         };
     }
@@ -205,7 +206,7 @@ impl CylinderList {
         let is_loose = |capacity: usize, len: usize| capacity - len > capacity / 8;
         match &mut self.kept {
             Kept::F64(records) if is_loose(records.capacity(), records.len()) => {
-                records.shrink_to_fit();
+                Arc::make_mut(records).shrink_to_fit();
             }
             Kept::F32(rounded) if is_loose(rounded.records.capacity(), rounded.records.len()) => {
                 rounded.records.shrink_to_fit();
@@ -298,6 +299,14 @@ impl CylinderList {
         }
     }
 
+    /// The same, to be kept.
+    pub(crate) fn shared_f64(&self) -> Option<Arc<Vec<CylinderRecord>>> {
+        match &self.kept {
+            Kept::F64(records) => Some(Arc::clone(records)),
+            Kept::F32(_) => None,
+        }
+    }
+
     /// The records, where they are of f32.
     #[inline]
     #[must_use]
@@ -346,7 +355,7 @@ impl Default for CylinderList {
 
 impl From<Vec<CylinderRecord>> for CylinderList {
     fn from(records: Vec<CylinderRecord>) -> Self {
-        Self::of(Kept::F64(records))
+        Self::of(Kept::F64(Arc::new(records)))
     }
 }
 

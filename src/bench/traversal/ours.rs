@@ -45,7 +45,7 @@ pub fn modes(
         let ours = Ours {
             tracer: Arc::clone(tracer),
             flat: Arc::clone(flat),
-            in_batches: mode == Representation::AnalyticPacket,
+            in_batches: mode != Representation::AnalyticSingle,
         };
         (mode, ours, *build_s)
     };

@@ -286,7 +286,7 @@ fn ratio_rows(found: &Traversal) -> Vec<Vec<String>> {
 
 /// How to read the page.
 const READING: [&str; 3] = [
-    "Above 1 this library is faster, each side in its fastest mode. Rivals are timed one by one in turns with this library on the same rays; a ratio is the median over neighbouring measurements of some hundred microseconds, averaged by time over all rays; spreads are median absolute deviations, as if all pieces were off together. Rows with several threads share the rays out; figures are of the first number of threads.",
+    "Above 1 this library is faster, each side in its fastest mode. Rivals are timed one by one in turns with this library on the same rays; a ratio is the median over neighbouring measurements of some milliseconds, averaged by time over all rays; spreads are median absolute deviations, as if all pieces were off together. Rows with several threads share the rays out; figures are of the first number of threads.",
     "Coherent rays are the camera's, in tiles of 4 by 4 pixels; shadow rays go from their hits to the sun and stop at anything; incoherent ones start anywhere in the box, in any direction. All are f32 numbers, so that everybody has the same ray. An exact oracle says of a sample of them what is hit first, among candidates found by brute force.",
     "Wrong is a hit for a miss, a miss for a hit, or another cylinder than the first. The position error is along the ray, in radii of the cylinder that is hit, over the rays with the right cylinder. Bytes are records and all that Embree holds, for each cylinder that is stored: those of a placed prototype count once, placements come on top.",
 ];

@@ -1,13 +1,13 @@
 //! Times of one beside another on the same rays.
 //!
-//! A lap is cut into pieces of some hundred microseconds, and in every round
-//! each stretch of pieces is run by all, one after the other. On a shared
-//! processor a longer sample is nearly always disturbed; a short one seldom,
-//! which the median over the rounds does not notice.
+//! A lap is cut into pieces of some ten milliseconds, and in every round each
+//! piece is run by all, one after the other. On a shared processor a longer
+//! sample is nearly always disturbed; a short one seldom, which the median over
+//! the rounds does not notice.
 //!
 //! The time of a lap is the sum of the pieces' medians. The ratio of two is the
-//! mean of the pieces' ratios, each the median over the rounds of measurements a
-//! stretch apart, weighted by the time that the piece takes of the second lap.
+//! mean of the pieces' ratios, each the median over the rounds of neighbouring
+//! measurements, weighted by the time that the piece takes of the second lap.
 
 use std::hint::black_box;
 use std::ops::Range;
@@ -21,25 +21,13 @@ use crate::bench::statistics::{Spread, ratios};
 use crate::bench::timing::Timer;
 use crate::tracer::workers;
 
-/// Rays that a thread takes at a time: enough to forget how they were handed
-/// out, few enough to share.
-const AT_A_TIME: usize = 16 * TILE;
-
-/// Rays of a piece: some hundred microseconds. Threads have to be woken, so that
-/// each of several gets more of them.
-fn piece_size(threads: usize) -> usize {
-    if threads == 1 {
-        AT_A_TIME
-    } else {
-        4 * AT_A_TIME * threads
-    }
-}
-
-/// Pieces that one runs before it is another's turn. With one, modes of this
-/// library found the tree in the caches where the other had left it for the same
-/// rays, and came out up to twice as fast as beside a rival, that fills them
-/// with its own.
-const STRETCH: usize = 16;
+/// Rays of a piece, which is also what one runs before it is another's turn. One
+/// thread gets them as one batch; several share them.
+///
+/// With 256, modes of this library found the tree in the caches where the other
+/// had left it for the same rays, and came out up to twice as fast as beside a
+/// rival, that fills them with its own.
+const PIECE: usize = 1024 * TILE;
 
 /// So many threads.
 #[derive(Clone)]
@@ -67,12 +55,14 @@ impl Crew {
         if self.threads == 1 {
             return work(0..count);
         }
+        // Two turns each: threads are not woken at the same time.
+        let size = (PIECE / TILE).div_ceil(2 * self.threads) * TILE;
         self.pool.install(|| {
             let part = |number: usize| {
-                let first = number * AT_A_TIME;
-                work(first..(first + AT_A_TIME).min(count))
+                let first = number * size;
+                work(first..(first + size).min(count))
             };
-            let parts = (0..count.div_ceil(AT_A_TIME)).into_par_iter();
+            let parts = (0..count.div_ceil(size)).into_par_iter();
             parts.map(part).reduce(|| 0, u64::wrapping_add)
         })
     }
@@ -132,27 +122,22 @@ const NOTHING: Spread = Spread {
 
 /// Runs laps of the same rays in turns, after one round that warms up.
 pub fn race(timer: &mut dyn Timer, laps: &[Lap<'_>], rounds: usize) -> Vec<Times> {
-    let (count, size) = laps
-        .first()
-        .map_or((0, 1), |lap| (lap.count, piece_size(lap.crew.threads)));
-    let starts = (0..count).step_by(size);
-    let pieces: Vec<Range<usize>> = starts.map(|at| at..(at + size).min(count)).collect();
+    let count = laps.first().map_or(0, |lap| lap.count);
+    let starts = (0..count).step_by(PIECE);
+    let pieces: Vec<Range<usize>> = starts.map(|at| at..(at + PIECE).min(count)).collect();
     let mut times: Vec<Times> = laps
         .iter()
         .map(|_| Times(vec![Vec::with_capacity(rounds); pieces.len()]))
         .collect();
-    let numbers: Vec<usize> = (0..pieces.len()).collect();
     for round in 0..=rounds {
-        for (stretch, numbers) in numbers.chunks(STRETCH).enumerate() {
+        for (number, piece) in pieces.iter().enumerate() {
             for turn in 0..laps.len() {
-                let index = (round + stretch + turn) % laps.len();
-                for &number in numbers {
-                    let seconds = timer.seconds(&mut || {
-                        black_box(laps[index].piece(&pieces[number]));
-                    });
-                    if round > 0 {
-                        times[index].0[number].push(seconds);
-                    }
+                let index = (round + number + turn) % laps.len();
+                let seconds = timer.seconds(&mut || {
+                    black_box(laps[index].piece(piece));
+                });
+                if round > 0 {
+                    times[index].0[number].push(seconds);
                 }
             }
         }
@@ -198,7 +183,7 @@ mod tests {
     fn race_with_a_rival_twice_as_slow_gives_two_however_slow_the_rounds() {
         let (crew, last) = (Crew::new(1).unwrap(), Mutex::new(0.0));
         // Three pieces, the last of which is half as long.
-        let count = 5 * piece_size(1) / 2;
+        let count = 5 * PIECE / 2;
         let mut timer = Slowing {
             last: &last,
             slower_after: 6,

@@ -11,9 +11,10 @@ use crate::tracer::counters::Counts;
 pub enum Representation {
     /// This library, a ray at a time, a cylinder a primitive.
     AnalyticSingle,
-    /// This library as it chooses itself: packets where rays are coherent.
+    /// This library, batches of rays: in an order of its own, in packets where
+    /// they are coherent.
     AnalyticPacket,
-    /// This library, a ray at a time, blocks of cylinders a primitive.
+    /// The same with blocks of cylinders a primitive.
     AnalyticBlock,
     /// This library's traversal and solver, with the callback in C.
     CCallback,

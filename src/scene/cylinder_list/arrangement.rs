@@ -5,6 +5,8 @@
 //! branch, or a lattice row by row. Others are put along a Morton curve of their
 //! middles; `docs/performance.md` has what that gives.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -52,10 +54,9 @@ impl CylinderList {
             .map(|(position, record)| (code(record), position as u32))
             .collect();
         order.par_sort_unstable();
-        *records = order
-            .par_iter()
-            .map(|&(_, position)| records[position as usize])
-            .collect();
+        let arranged = order.par_iter();
+        let arranged = arranged.map(|&(_, position)| records[position as usize]);
+        *records = Arc::new(arranged.collect());
         self.by_primitive.take();
     }
 }

@@ -26,6 +26,10 @@ const LEAST_COSINE: f64 = 0.99;
 /// Fewer rays than this are traced one by one.
 const LEAST_RAYS: usize = 4;
 
+/// A description of so many bytes, which has about as many in Embree's tree, is
+/// thought to stay in the caches of a core, of which recent ones have 1 to 2 MB.
+const GREATEST_CACHED: usize = 1 << 21;
+
 impl Tracer {
     /// The first hits of many rays, in their order, as [`Tracer::first_hit`]
     /// finds them. The more rays there are the more have something in common;
@@ -92,7 +96,7 @@ impl Tracer {
         while !rest.is_empty() {
             let rays;
             (rays, rest) = split(rest);
-            let Some(order) = order(rays) else {
+            let Some(order) = order(rays, self.fits_caches()) else {
                 for rays in rays.chunks(GREATEST_PACKET) {
                     answer(rays, answers);
                 }
@@ -111,6 +115,11 @@ impl Tracer {
                 }
             }
         }
+    }
+
+    /// Whether all that rays visit stays in a core's own caches, however rays come.
+    fn fits_caches(&self) -> bool {
+        self.counted.described_bytes <= GREATEST_CACHED
     }
 
     /// Whether the rays should be a packet.

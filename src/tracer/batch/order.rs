@@ -42,8 +42,9 @@ pub(super) fn split(rays: &[Ray]) -> (&[Ray], &[Ray]) {
 }
 
 /// The numbers of the rays in the order in which they are traced; `None` if they
-/// are best as they are.
-pub(super) fn order(rays: &[Ray]) -> Option<Vec<u32>> {
+/// are best as they are. Where the scene fits the caches, only those that go the
+/// same way are ordered, of which packets are made.
+pub(super) fn order(rays: &[Ray], fits_caches: bool) -> Option<Vec<u32>> {
     if rays.len() < LEAST_RAYS {
         return None;
     }
@@ -61,6 +62,8 @@ pub(super) fn order(rays: &[Ray]) -> Option<Vec<u32>> {
         let plane = Plane::new(rays[0].direction, lower, extent);
         let key = |ray: &Ray| plane.key(ray.origin);
         (rays.iter().map(key).collect(), 2 * BITS_ACROSS)
+    } else if fits_caches {
+        return None;
     } else {
         let bits = rays.len().ilog2().div_ceil(3);
         let per_cell = f64::from(1_u32 << bits) / extent;
@@ -165,7 +168,7 @@ mod tests {
         let down = DVec3::NEG_Z;
         for (count, along, gain) in [(64, down, 2.0), (1000, down, 8.0), (32768, down, 40.0)] {
             let rays = rays(count, |_| along);
-            let order = order(&rays).unwrap();
+            let order = order(&rays, false).unwrap();
             let mut sorted = order.clone();
             sorted.sort_unstable();
             assert!(sorted.into_iter().eq(0..count as u32));
@@ -174,20 +177,21 @@ mod tests {
             assert!(after * gain < before, "{count}: {before} to {after}");
         }
         let rays = rays(32768, |random| random.direction());
-        let order = order(&rays).unwrap();
+        let order = order(&rays, false).unwrap();
         let before = mean_distance(rays.iter().copied(), DVec3::ZERO);
         let after = mean_distance(order.iter().map(|&ray| rays[ray as usize]), DVec3::ZERO);
         assert!(after * 8.0 < before, "{before} to {after}");
+        assert_eq!(super::order(&rays, true), None);
     }
 
     #[test]
     fn rays_of_one_point_and_of_nowhere_stay_as_they_are() {
         let mut all = rays(100, |_| DVec3::X);
         all[7].origin.x = f64::INFINITY;
-        assert_eq!(order(&all), None);
+        assert_eq!(order(&all, false), None);
         all.iter_mut().for_each(|ray| ray.origin = DVec3::ONE);
-        assert_eq!(order(&all), None);
+        assert_eq!(order(&all, false), None);
         all[7].origin.x = f64::NAN;
-        assert_eq!(order(&all), None);
+        assert_eq!(order(&all, false), None);
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::blocks::GREATEST_RECORDS;
 use super::ends::{Ends, EndsKind};
 use crate::embree::{Box32, GREATEST_PACKET, RaySet, UserGeometry};
-use crate::scene::{CylinderList, PrototypeIndex, Scene};
+use crate::scene::{CylinderList, CylinderRecord, PrototypeIndex, Scene};
 use crate::solid::Cylinder;
 use crate::tracer::counters;
 use crate::tracer::frame::Frame;
@@ -77,15 +77,29 @@ impl Cylinders {
 
 /// A user geometry with a primitive for each cylinder.
 pub(super) struct SingleCylinders<E> {
-    pub cylinders: Cylinders,
-    pub ends: PhantomData<E>,
+    cylinders: Cylinders,
+    /// The records, if they are of f64. A callback gets to one from here, not
+    /// through scene, prototype and list, each of which it would wait for.
+    records: Option<Arc<Vec<CylinderRecord>>>,
+    ends: PhantomData<E>,
 }
 
 impl<E: Ends> SingleCylinders<E> {
+    pub fn new(cylinders: Cylinders) -> Self {
+        Self {
+            records: cylinders.records().shared_f64(),
+            cylinders,
+            ends: PhantomData,
+        }
+    }
+
     /// The cylinder of a record, of which it is known what ends it has.
     #[inline(always)]
     fn cylinder(&self, record: u32) -> Cylinder {
-        E::known(self.cylinders.cylinder(record))
+        E::known(match &self.records {
+            Some(records) => records[record as usize].cylinder(),
+            None => self.cylinders.cylinder(record),
+        })
     }
 }
 

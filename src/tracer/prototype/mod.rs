@@ -13,7 +13,6 @@ mod ends;
 mod placements;
 mod sight;
 
-use std::marker::PhantomData;
 use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
@@ -262,10 +261,9 @@ impl Prototype {
                             .attach_user(BlockedCylinders::<E, f32>::new(&cylinders, threads)),
                     }
                 }
-                Layout::Block | Layout::Single => builder.attach_user(SingleCylinders::<E> {
-                    cylinders,
-                    ends: PhantomData,
-                }),
+                Layout::Block | Layout::Single => {
+                    builder.attach_user(SingleCylinders::<E>::new(cylinders))
+                }
             };
         attached.map(|_| ())
     }
