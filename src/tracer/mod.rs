@@ -11,6 +11,7 @@
 mod all_hits;
 mod batch;
 mod build;
+mod contains;
 pub mod counters;
 mod estimate;
 mod first_hit;
@@ -28,6 +29,7 @@ use std::sync::Arc;
 
 pub use all_hits::{AllHits, DEFAULT_BATCH};
 pub use build::TracerError;
+pub use contains::Containing;
 pub use estimate::MemoryEstimate;
 pub use first_hit::FirstHit;
 pub(crate) use frame::{Frame, LocalRay};
@@ -216,7 +218,7 @@ impl Tracer {
         trace(root, &LocalRay::new(&ray), &mut query);
         let first = match query.keep {
             Keep::First(nearest) => nearest.map(|nearest| FirstHit::new(nearest, factors)),
-            Keep::Next(_) => None,
+            Keep::Next(_) | Keep::Holding(_) => None,
         };
         (first, query.callbacks)
     }
