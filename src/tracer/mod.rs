@@ -189,6 +189,8 @@ impl Tracer {
         Statistics {
             cylinders_unique: self.counted.cylinders_unique,
             cylinders_instanced: self.counted.cylinders_instanced,
+            other_solids_unique: self.counted.other_solids_unique,
+            other_solids_instanced: self.counted.other_solids_instanced,
             instances: self.counted.instances,
             embree_bytes: self.device.memory_bytes(),
             records_bytes: self.counted.described_bytes + kept,
