@@ -45,6 +45,32 @@ impl<S> SolidRecord<S> {
     }
 }
 
+/// What a list of [`Solids`] is of.
+pub trait Listed: Sized + 'static {
+    /// The list of its kind.
+    fn list(solids: &Solids) -> &[SolidRecord<Self>];
+}
+
+macro_rules! listed {
+    ($($kind:ident in $list:ident)*) => {$(
+        impl Listed for $kind {
+            #[inline(always)]
+            fn list(solids: &Solids) -> &[SolidRecord<Self>] {
+                &solids.$list
+            }
+        }
+    )*};
+}
+
+listed! {
+    Sphere in spheres
+    Cuboid in cuboids
+    Cone in cones
+    RoundedCone in rounded_cones
+    Disk in disks
+    Composition in compositions
+}
+
 /// A composed solid with its number and material.
 pub type CompositionRecord = SolidRecord<Composition>;
 
@@ -81,6 +107,17 @@ impl Solids {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// The bytes of the records. What a composition holds of its own is left out.
+    #[must_use]
+    pub fn records_bytes(&self) -> usize {
+        size_of_val(self.spheres.as_slice())
+            + size_of_val(self.cuboids.as_slice())
+            + size_of_val(self.cones.as_slice())
+            + size_of_val(self.rounded_cones.as_slice())
+            + size_of_val(self.disks.as_slice())
+            + size_of_val(self.compositions.as_slice())
     }
 
     /// A box around all of them.
