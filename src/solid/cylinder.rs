@@ -2,6 +2,10 @@
 
 use glam::DVec3;
 
+use super::{
+    Chord, Cone, ConvexSolid, Location, Part, SolidKind, SurfacePoint, surface_point,
+    triple_product,
+};
 use crate::math::{Bounds, UNIT_ROUNDOFF, power_of_two};
 
 /// Which ends of a cylinder are closed by a disc.
@@ -178,6 +182,40 @@ impl Cylinder {
             upper: self.p0.max(self.p1) + reach,
         }
         .rounded_outward()
+    }
+}
+
+impl ConvexSolid for Cylinder {
+    const KIND: SolidKind = SolidKind::Cylinder;
+
+    fn bounds(&self) -> Bounds {
+        self.bounds()
+    }
+
+    fn anchor(&self) -> DVec3 {
+        self.p0
+    }
+
+    fn caps(&self) -> Caps {
+        self.caps
+    }
+
+    #[inline]
+    fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
+        triple_product::chord(self, from_anchor, direction)
+    }
+
+    fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {
+        surface_point(self, part, from_anchor)
+    }
+
+    fn locate(&self, point: DVec3) -> Location {
+        // The same set of points.
+        Cone::from_valid(self.p0, self.p1, self.radius, self.radius, self.caps).locate(point)
+    }
+
+    fn size(&self) -> f64 {
+        (self.p1 - self.p0).length() + 2.0 * self.radius
     }
 }
 

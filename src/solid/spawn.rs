@@ -14,16 +14,26 @@
 //! - for a placed solid, what the placements add (`tracer`, on the way up).
 //!
 //! The sum, taken twice for the terms of second order, is the offset.
+//!
+//! **Other solids than cylinders.** What is displaced, counted in units of u times
+//! `|o| + |anchor| + size`: the origin as seen from the anchor, 2; an axis, 1; a
+//! difference of radii, 1; the sign of `x·d`, by which the roots are told apart, 3. All
+//! else is decided on these numbers exactly: whether the line meets the solid, and the
+//! sign of each `t`, which has a relative error. Together 7, and so within the
+//! cylinder's bound. The wall of a rounded cone has a normal that may be turned by more
+//! than 16 u, by `θ = u |a| / √β` (`rounded_cone/surface.rs`). But that wall is only
+//! `√β` long, and the balls beyond it curve away: a line in the turned plane comes no
+//! deeper than `θ √β + θ² R / 2`, at most `2 u (|a| + R)`, 2 more.
 
 use glam::DVec3;
 
-use super::{Cylinder, SurfacePoint};
+use super::{ConvexSolid, Cylinder, SurfacePoint};
 use crate::math::{Ray, UNIT_ROUNDOFF};
 
 /// The solvers answer exactly for a ray displaced by at most this times
 /// `|o| + |p0| + |p1| + 2 radius`; `docs/derivations.md`, section 5, adds up
 /// the roundings of the triple-product solver to 22 u.
-const SOLVER_DISPLACEMENT: f64 = 32.0 * UNIT_ROUNDOFF;
+pub(super) const SOLVER_DISPLACEMENT: f64 = 32.0 * UNIT_ROUNDOFF;
 
 /// What a query that starts near a hit may be displaced by, apart from the
 /// error of the hit's point. Lengths in the units of the space it is kept for.
@@ -38,7 +48,19 @@ pub struct SpawnMargin {
 }
 
 impl SpawnMargin {
-    /// The margin in the solid's own space.
+    /// The margin in the space of a solid of any kind.
+    #[must_use]
+    pub fn of_solid(solid: &impl ConvexSolid, surface: &SurfacePoint) -> Self {
+        let size = solid.size();
+        let seen = surface.point.length() + solid.anchor().length() + size;
+        Self {
+            displacement: SOLVER_DISPLACEMENT * seen,
+            normal_error: 16.0 * UNIT_ROUNDOFF,
+            size,
+        }
+    }
+
+    /// The margin in a cylinder's own space.
     #[must_use]
     pub fn new(cylinder: &Cylinder, surface: &SurfacePoint) -> Self {
         let (p0, p1, radius) = (cylinder.p0(), cylinder.p1(), cylinder.radius());
