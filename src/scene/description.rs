@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec3};
 
 use super::cylinder_list::{CylinderList, Records};
 use super::solid_lists::Solids;
-use crate::solid::{Caps, Cylinder};
+use crate::solid::{Caps, Cylinder, SolidKind};
 
 /// A whole scene. What it holds has been checked when it was loaded.
 #[derive(Clone, Debug)]
@@ -75,6 +75,28 @@ pub struct Prototype {
     pub solids: Solids,
     /// The placements, in the order of their instance numbers.
     pub placements: Vec<Placement>,
+}
+
+impl Prototype {
+    /// The number of the solid at a position in the list of its kind.
+    ///
+    /// # Panics
+    /// When the list is shorter.
+    #[must_use]
+    pub fn primitive(&self, kind: SolidKind, position: usize) -> u32 {
+        let solids = &self.solids;
+        match kind {
+            SolidKind::Cylinder => self.cylinders.primitive(position),
+            SolidKind::Sphere => solids.spheres[position].primitive,
+            SolidKind::Cuboid => solids.cuboids[position].primitive,
+            SolidKind::Cone => solids.cones[position].primitive,
+            SolidKind::RoundedCone => solids.rounded_cones[position].primitive,
+            SolidKind::Disk => solids.disks[position].primitive,
+            SolidKind::Union | SolidKind::Intersection | SolidKind::Difference => {
+                solids.compositions[position].primitive
+            }
+        }
+    }
 }
 
 /// Another prototype put into this one.

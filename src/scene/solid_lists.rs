@@ -45,6 +45,32 @@ impl<S> SolidRecord<S> {
     }
 }
 
+/// What a list of [`Solids`] is of.
+pub trait Listed: Sized + 'static {
+    /// The list of its kind.
+    fn list(solids: &Solids) -> &[SolidRecord<Self>];
+}
+
+macro_rules! listed {
+    ($($kind:ident in $list:ident)*) => {$(
+        impl Listed for $kind {
+            #[inline(always)]
+            fn list(solids: &Solids) -> &[SolidRecord<Self>] {
+                &solids.$list
+            }
+        }
+    )*};
+}
+
+listed! {
+    Sphere in spheres
+    Cuboid in cuboids
+    Cone in cones
+    RoundedCone in rounded_cones
+    Disk in disks
+    Composition in compositions
+}
+
 /// A composed solid with its number and material.
 pub type CompositionRecord = SolidRecord<Composition>;
 

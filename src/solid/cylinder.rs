@@ -185,6 +185,8 @@ impl Cylinder {
     }
 }
 
+/// The fast paths of the tracer know cylinders by themselves; this is for where
+/// kinds are mixed.
 impl ConvexSolid for Cylinder {
     const KIND: SolidKind = SolidKind::Cylinder;
 
@@ -200,7 +202,6 @@ impl ConvexSolid for Cylinder {
         self.caps
     }
 
-    #[inline]
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
         triple_product::chord(self, from_anchor, direction)
     }
@@ -209,8 +210,8 @@ impl ConvexSolid for Cylinder {
         surface_point(self, part, from_anchor)
     }
 
+    /// A cone's answer, with equal radii: both are the same set.
     fn locate(&self, point: DVec3) -> Location {
-        // The same set of points.
         Cone::from_valid(self.p0, self.p1, self.radius, self.radius, self.caps).locate(point)
     }
 

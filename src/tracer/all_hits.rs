@@ -66,7 +66,7 @@ impl Iterator for AllHits<'_> {
         let found = self.known.next()?;
         let (ray, factors) = self.ray?;
         let root = self.tracer.root.as_ref()?;
-        let which = Which::This(found.meeting);
+        let which = Which::This(found.met);
         Some(
             self.tracer
                 .resolved(root, &ray, factors, &found.place, which),

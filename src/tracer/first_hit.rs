@@ -1,7 +1,8 @@
 //! The least that a query answers.
 
-use super::query::Nearest;
+use super::query::{Member, Nearest};
 use crate::scene::{PrototypeIndex, Scene};
+use crate::solid::SolidKind;
 
 /// Where a ray first meets a surface, and which: what a query finds out before
 /// anything is worked out of it, as Embree's own queries do.
@@ -27,10 +28,15 @@ impl FirstHit {
     /// When the hit is of another scene.
     #[must_use]
     pub fn primitive(&self, scene: &Scene) -> u32 {
+        let Member { kind, record } = self.nearest.place.member;
         let prototype = &scene.prototypes[self.prototype().0 as usize];
-        prototype
-            .cylinders
-            .primitive(self.nearest.place.record as usize)
+        prototype.primitive(kind, record as usize)
+    }
+
+    /// The kind of solid.
+    #[must_use]
+    pub fn solid(&self) -> SolidKind {
+        self.nearest.place.member.kind
     }
 
     /// The placements from the root to the prototype, outermost first.

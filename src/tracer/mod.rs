@@ -21,6 +21,7 @@ mod prototype;
 mod query;
 mod resolve;
 mod statistics;
+mod traced;
 mod workers;
 
 use std::sync::Arc;

@@ -26,9 +26,10 @@ use super::Hit;
 use super::frame::LocalRay;
 use super::prototype::Prototype;
 use super::query::Place;
+use super::traced::{Met, TracedSolid};
 use crate::math::{ChildFromParent, PlacementErrors, Ray, UNIT_ROUNDOFF};
-use crate::scene::Scene;
-use crate::solid::{Meeting, SolidKind, SpawnMargin, surface_point, triple_product};
+use crate::scene::{CylinderRecord, MaterialIndex, Scene, SolidRecord};
+use crate::solid::{Meeting, SolidKind, SpawnMargin, SurfacePoint, surface_point, triple_product};
 
 /// What a query is to work out of a hit.
 #[derive(Clone, Copy)]
@@ -36,7 +37,65 @@ pub(crate) enum Which {
     /// The first meeting with the solid, which is at this `t`.
     FirstAt(f64),
     /// This one.
-    This(Meeting),
+    This(Met),
+}
+
+/// A hit in its prototype's own space.
+struct LocalHit {
+    meeting: Meeting,
+    surface: SurfacePoint,
+    margin: SpawnMargin,
+    primitive: u32,
+    material: MaterialIndex,
+}
+
+/// What is to be worked out, once it is known of which solid.
+struct Search<'a> {
+    ray: &'a LocalRay,
+    t_min: f64,
+    which: Which,
+}
+
+impl Search<'_> {
+    /// The meeting, of which a query that only knows its `t` finds the rest by
+    /// `first`. The query went through the same operations: it is the same meeting.
+    fn met(&self, first: impl FnOnce(f64) -> Option<Met>) -> Met {
+        match self.which {
+            Which::This(met) => met,
+            Which::FirstAt(t) => first(t).expect("a hit is found again"),
+        }
+    }
+
+    fn on_cylinder(&self, record: &CylinderRecord) -> LocalHit {
+        let (cylinder, ray) = (record.cylinder(), self.ray);
+        let from_p0 = ray.origin_from(cylinder.p0());
+        let Met { meeting, .. } = self.met(|t| {
+            let (direction, shift) = (ray.direction, ray.shift);
+            let first = triple_product::first(&cylinder, from_p0, direction, shift, self.t_min, t);
+            first.map(Met::whole)
+        });
+        let on_ray = from_p0 + ray.direction * meeting.t_local;
+        let surface = surface_point(&cylinder, meeting.part, on_ray);
+        LocalHit {
+            meeting,
+            surface,
+            margin: SpawnMargin::new(&cylinder, &surface),
+            primitive: record.primitive(),
+            material: record.material(),
+        }
+    }
+
+    fn on_solid<S: TracedSolid>(&self, record: &SolidRecord<S>) -> LocalHit {
+        let met = self.met(|t| record.solid.first(self.ray, self.t_min, t));
+        let (surface, margin) = record.solid.surface(self.ray, &met);
+        LocalHit {
+            meeting: met.meeting,
+            surface,
+            margin,
+            primitive: record.primitive,
+            material: record.material,
+        }
+    }
 }
 
 /// The answer for a hit of a query with `ray`.
@@ -62,21 +121,30 @@ pub(crate) fn resolve(
     }
 
     // The point on the solid.
-    let record = description.cylinders.get(place.record as usize);
-    let cylinder = record.cylinder();
-    let from_p0 = local.origin_from(cylinder.p0());
-    let meeting = match which {
-        Which::This(meeting) => meeting,
-        // The query went through the same operations: it is the same meeting.
-        Which::FirstAt(t) => {
-            let (direction, shift) = (local.direction, local.shift);
-            triple_product::first(&cylinder, from_p0, direction, shift, ray.t_min, t)
-                .expect("a hit is found again")
+    let search = Search {
+        ray: &local,
+        t_min: ray.t_min,
+        which,
+    };
+    let (solids, position) = (&description.solids, place.member.record as usize);
+    let local = match place.member.kind {
+        SolidKind::Cylinder => search.on_cylinder(&description.cylinders.get(position)),
+        SolidKind::Sphere => search.on_solid(&solids.spheres[position]),
+        SolidKind::Cuboid => search.on_solid(&solids.cuboids[position]),
+        SolidKind::Cone => search.on_solid(&solids.cones[position]),
+        SolidKind::RoundedCone => search.on_solid(&solids.rounded_cones[position]),
+        SolidKind::Disk => search.on_solid(&solids.disks[position]),
+        SolidKind::Union | SolidKind::Intersection | SolidKind::Difference => {
+            search.on_solid(&solids.compositions[position])
         }
     };
-    let on_ray = from_p0 + local.direction * meeting.t_local;
-    let surface = surface_point(&cylinder, meeting.part, on_ray);
-    let mut margin = SpawnMargin::new(&cylinder, &surface);
+    let LocalHit {
+        meeting,
+        surface,
+        mut margin,
+        primitive,
+        material,
+    } = local;
 
     // Up again to the world.
     let (mut point, mut normal, mut error) = (surface.point, surface.normal, surface.error);
@@ -101,12 +169,12 @@ pub(crate) fn resolve(
         u: surface.u,
         v: surface.v,
         prototype: place.prototype,
-        solid: SolidKind::Cylinder,
-        primitive: record.primitive(),
+        solid: place.member.kind,
+        primitive,
         part: meeting.part,
         crossing: meeting.crossing,
         instance: place.path.to_vec(),
-        material: record.material(),
+        material,
         spawn_offset: margin.offset(point, error),
     }
 }

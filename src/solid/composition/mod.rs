@@ -48,12 +48,11 @@ pub struct Operand {
 }
 
 impl Composition {
-    /// What it is called: by its outermost operation, or the kind of a single solid.
+    /// What it is called, by its outermost operation. A single solid is a union of one.
     #[must_use]
     pub fn kind(&self) -> SolidKind {
         match self {
-            Self::Solid(solid) => solid.kind(),
-            Self::Union(_) => SolidKind::Union,
+            Self::Solid(_) | Self::Union(_) => SolidKind::Union,
             Self::Intersection(_) => SolidKind::Intersection,
             Self::Difference(_) => SolidKind::Difference,
         }

@@ -1,44 +1,39 @@
 //! The cylinders of a prototype as Embree's primitives, one each.
 
 use std::marker::PhantomData;
-use std::sync::Arc;
 
 use super::blocks::GREATEST_RECORDS;
+use super::described::Described;
 use super::ends::{Ends, EndsKind};
 use crate::embree::{Box32, GREATEST_PACKET, RaySet, UserGeometry};
-use crate::scene::{CylinderList, PrototypeIndex, Scene};
+use crate::scene::CylinderList;
 use crate::solid::Cylinder;
 use crate::tracer::counters;
-use crate::tracer::frame::Frame;
 use crate::tracer::query::{Packet, Query};
 
 /// The cylinders of a prototype, where the description keeps them.
 #[derive(Clone)]
 pub(crate) struct Cylinders {
-    description: Arc<Scene>,
-    prototype: PrototypeIndex,
-    frame: Frame,
+    described: Described,
 }
 
 impl Cylinders {
-    pub fn new(description: &Arc<Scene>, prototype: PrototypeIndex, frame: &Frame) -> Self {
+    pub fn new(described: &Described) -> Self {
         Self {
-            description: Arc::clone(description),
-            prototype,
-            frame: frame.clone(),
+            described: described.clone(),
         }
     }
 
     /// Whose they are.
     #[inline(always)]
-    pub fn prototype(&self) -> PrototypeIndex {
-        self.prototype
+    pub fn described(&self) -> &Described {
+        &self.described
     }
 
     /// All of them.
     #[inline(always)]
     pub fn records(&self) -> &CylinderList {
-        &self.description.prototypes[self.prototype.0 as usize].cylinders
+        &self.described.prototype().cylinders
     }
 
     /// How many there are.
@@ -63,15 +58,9 @@ impl Cylinders {
         self.records().get(record as usize).cylinder()
     }
 
-    /// The number that the user knows a record by.
-    #[inline]
-    pub fn primitive(&self, record: u32) -> u32 {
-        self.records().primitive(record as usize)
-    }
-
     /// The box of a record in the frame of the Embree scene.
     pub fn grown_box(&self, record: u32) -> Box32 {
-        self.frame.grown_box(&self.cylinder(record).bounds())
+        self.described.grown_box(&self.cylinder(record).bounds())
     }
 }
 

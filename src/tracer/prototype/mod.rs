@@ -1,39 +1,41 @@
 //! A prototype's Embree scene and what its callbacks do.
 //!
-//! A prototype has at most two user geometries, one of its cylinders and one
-//! of its placements; it has only those that it needs. Where it is and how far
+//! A prototype has a user geometry for each kind of solid that it has, and one for
+//! its placements if it has any. Where it is and how far
 //! it reaches is known from the start. Its Embree scene is built when it is
 //! asked for, which may be when a first ray gets there: threads that need it
 //! then build it together, and others go on.
 
+mod attach;
 mod blocks;
 mod clusters;
 mod cylinders;
+mod described;
 mod ends;
 mod placements;
 mod sight;
 
-use std::marker::PhantomData;
 use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
 
 pub(crate) use blocks::{CylinderBlock, block_bytes};
 pub(crate) use cylinders::Cylinders;
+pub(crate) use described::{Described, SolidList};
 pub(crate) use ends::Ends;
 
 use super::frame::{Frame, LocalRay, PacketEntry, PacketLevel, PacketRays};
 use super::options::Layout;
 use super::query::{Packet, Query};
+use super::traced::TracedSolid;
 use crate::embree::{
     self, Coherence, Device, GREATEST_PACKET, Instructions, JointCommit, PacketWidth, RaySet,
     SceneBuilder,
 };
 use crate::math::Bounds;
-use crate::scene::{Placement, PrototypeIndex, Records, Scene, ViewVolume};
-use blocks::BlockedCylinders;
-use cylinders::SingleCylinders;
-use ends::{Capped, EndsKind, Mixed, Open};
+use crate::scene::{Placement, PrototypeIndex, Scene, ViewVolume};
+use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
+use attach::{attach_cylinders, attach_solids};
 use placements::Placements;
 use sight::Sight;
 
@@ -143,6 +145,7 @@ impl Prototype {
             .with_min_len(1 << 10)
             .map(|record| prototype.cylinders.get(record).cylinder().bounds())
             .reduce(|| Bounds::EMPTY, union);
+        let solids = cylinders.union(&prototype.solids.bounds());
         let child = |placement: &Placement| made[placement.of.0 as usize].as_ref();
         let placed = || {
             let placements = prototype.placements.par_iter().with_min_len(1 << 10);
@@ -150,14 +153,14 @@ impl Prototype {
         };
         let bounds = placed()
             .map(|(placement, child)| child.bounds.transformed(&placement.parent_from_child))
-            .reduce(|| cylinders, union);
+            .reduce(|| solids, union);
         if bounds.is_empty() {
             return None;
         }
         let sight = Sight::new(&bounds, placed().map(|(placement, _)| placement));
         let reach = placed()
             .map(|(placement, child)| sight.placement_reach(placement, &child.reach))
-            .reduce(|| cylinders, union);
+            .reduce(|| solids, union);
         let frame = Frame::new(&reach);
 
         let may_reach = |view: &ViewVolume| {
@@ -183,7 +186,7 @@ impl Prototype {
         Some(Arc::new(Self {
             bounds,
             reach,
-            cylinders: Cylinders::new(description, index, &frame),
+            cylinders: Cylinders::new(&Described::new(description, index, &frame)),
             frame,
             placements: Arc::new(placements),
             workshop: workshop.clone(),
@@ -230,44 +233,13 @@ impl Prototype {
     #[cold]
     fn begin(&self) -> Result<JointCommit<Query>, embree::Error> {
         let mut builder = SceneBuilder::new(&self.workshop.device)?;
-        self.attach_cylinders(&mut builder)?;
+        let layout = self.workshop.layout;
+        attach_cylinders(&self.cylinders, layout, self.workshop.threads, &mut builder)?;
+        attach_solids(self.cylinders.described(), &mut builder)?;
         if !self.placements.children.0.is_empty() {
             builder.attach_user(Arc::clone(&self.placements))?;
         }
         Ok(builder.into_joint())
-    }
-
-    fn attach_cylinders(&self, builder: &mut SceneBuilder<Query>) -> Result<(), embree::Error> {
-        if self.cylinders.len() == 0 {
-            return Ok(());
-        }
-        match self.cylinders.ends() {
-            EndsKind::Open => self.attach::<Open>(builder),
-            EndsKind::Capped => self.attach::<Capped>(builder),
-            EndsKind::Mixed => self.attach::<Mixed>(builder),
-        }
-    }
-
-    /// Attaches the cylinders in the layout that is asked for.
-    fn attach<E: Ends>(&self, builder: &mut SceneBuilder<Query>) -> Result<(), embree::Error> {
-        let cylinders = self.cylinders.clone();
-        let attached =
-            match self.workshop.layout {
-                Layout::Block if cylinders.fit_blocks() => {
-                    let threads = self.workshop.threads;
-                    match cylinders.records().records() {
-                        Records::F64 => builder
-                            .attach_user(BlockedCylinders::<E, f64>::new(&cylinders, threads)),
-                        Records::F32 => builder
-                            .attach_user(BlockedCylinders::<E, f32>::new(&cylinders, threads)),
-                    }
-                }
-                Layout::Block | Layout::Single => builder.attach_user(SingleCylinders::<E> {
-                    cylinders,
-                    ends: PhantomData,
-                }),
-            };
-        attached.map(|_| ())
     }
 
     /// The bytes that are kept for the cylinders beside the description and
@@ -381,10 +353,23 @@ impl Prototype {
         for record in 0..self.cylinders.len() {
             query.visit(&self.cylinders.cylinder(record), &self.cylinders, record);
         }
+        self.visit_list::<Sphere>(query);
+        self.visit_list::<Cuboid>(query);
+        self.visit_list::<Cone>(query);
+        self.visit_list::<RoundedCone>(query);
+        self.visit_list::<Disk>(query);
+        self.visit_list::<Composition>(query);
         for placement in 0..self.placements.len() {
             self.placements
                 .visit(placement, query, Self::search_exhaustively);
         }
         query.level = outer;
+    }
+    /// Visits every solid of one kind.
+    fn visit_list<S: TracedSolid>(&self, query: &mut Query) {
+        let list = SolidList::<S>::new(self.cylinders.described());
+        for record in 0..list.records().len() as u32 {
+            query.visit_solid(&list, record);
+        }
     }
 }

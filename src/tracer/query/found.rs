@@ -5,28 +5,44 @@ use std::cmp::Ordering;
 use smallvec::SmallVec;
 
 use crate::scene::PrototypeIndex;
-use crate::solid::Meeting;
+use crate::solid::SolidKind;
+use crate::tracer::traced::Met;
 
 /// The placements on the way from the root to a prototype, outermost first.
 /// Scenes are rarely nested deeper than what is kept without the heap.
 pub(crate) type InstancePath = SmallVec<[u32; 4]>;
 
+/// Which solid of a prototype.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Member {
+    /// Its kind, of which the prototype has a list.
+    pub kind: SolidKind,
+    /// The position in the list.
+    pub record: u32,
+}
+
+impl Member {
+    #[inline(always)]
+    pub fn new(kind: SolidKind, record: u32) -> Self {
+        Self { kind, record }
+    }
+}
+
 /// Which solid of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Place {
     pub prototype: PrototypeIndex,
-    /// The position in the prototype's list of cylinders.
-    pub record: u32,
+    pub member: Member,
     pub path: InstancePath,
 }
 
 impl Place {
-    /// The place of a record in the prototype that is reached along a path.
+    /// The place of a solid in the prototype that is reached along a path.
     #[inline(always)]
-    pub fn new(prototype: PrototypeIndex, record: u32, path: &InstancePath) -> Self {
+    pub fn new(prototype: PrototypeIndex, member: Member, path: &InstancePath) -> Self {
         Self {
             prototype,
-            record,
+            member,
             // Copied as bytes; `clone` would go number by number.
             path: InstancePath::from_slice(path),
         }
@@ -43,21 +59,21 @@ pub(crate) struct Nearest {
 impl Nearest {
     /// Whether a solid that is met at `t` comes before this one: by `t`, then by
     /// the instance path, then by the primitive's number. `primitive` answers with
-    /// the number of a record of the solid's prototype, which for equal paths
+    /// the number of a member of the solid's prototype, which for equal paths
     /// is this one's too.
     #[inline]
     pub fn is_after(
         &self,
         t: f64,
         path: &InstancePath,
-        record: u32,
-        primitive: impl Fn(u32) -> u32,
+        member: Member,
+        primitive: impl Fn(Member) -> u32,
     ) -> bool {
         if t != self.t {
             return t < self.t;
         }
         let by_path = path.cmp(&self.place.path);
-        let order = by_path.then_with(|| primitive(record).cmp(&primitive(self.place.record)));
+        let order = by_path.then_with(|| primitive(member).cmp(&primitive(self.place.member)));
         order.is_lt()
     }
 }
@@ -66,7 +82,7 @@ impl Nearest {
 /// afterwards.
 #[derive(Clone, Debug)]
 pub(crate) struct Found {
-    pub meeting: Meeting,
+    pub met: Met,
     /// The number that the user knows the solid by.
     pub primitive: u32,
     pub place: Place,
@@ -74,17 +90,18 @@ pub(crate) struct Found {
 
 impl Found {
     /// How a hit that is not kept yet compares with this one: by `t`, then by
-    /// the instance path, the primitive, entry before exit, and the part. No
-    /// two hits of a ray are equal.
+    /// the instance path, the primitive, the number of the crossing, entry before exit,
+    /// and the part.
+    /// No two hits of a ray are equal.
     #[inline]
-    fn order(&self, meeting: &Meeting, path: &InstancePath, primitive: u32) -> Ordering {
-        let by_t = meeting.t.partial_cmp(&self.meeting.t);
+    fn order(&self, met: &Met, path: &InstancePath, primitive: u32) -> Ordering {
+        let by_t = met.meeting.t.partial_cmp(&self.met.meeting.t);
+        let surface = |met: &Met| (met.rank, met.meeting.crossing, met.meeting.part);
         by_t.expect("a hit's t is a number").then_with(|| {
-            (path, primitive, meeting.crossing, meeting.part).cmp(&(
+            (path, primitive, surface(met)).cmp(&(
                 &self.place.path,
                 self.primitive,
-                self.meeting.crossing,
-                self.meeting.part,
+                surface(&self.met),
             ))
         })
     }
@@ -115,7 +132,7 @@ impl Keep {
         match self {
             Self::First(first) => first.as_ref().map_or(t_max, |first| first.t),
             Self::Next(next) if next.hits.len() == next.most => {
-                next.hits.last().map_or(t_max, |last| last.meeting.t)
+                next.hits.last().map_or(t_max, |last| last.met.meeting.t)
             }
             Self::Next(_) => t_max,
         }
@@ -127,12 +144,12 @@ impl Next {
     #[inline]
     pub fn offer(
         &mut self,
-        meeting: Meeting,
+        met: Met,
         path: &InstancePath,
         primitive: u32,
         place: impl FnOnce() -> Place,
     ) {
-        let order = |kept: &Found| kept.order(&meeting, path, primitive);
+        let order = |kept: &Found| kept.order(&met, path, primitive);
         if self
             .after
             .as_ref()
@@ -144,7 +161,7 @@ impl Next {
         if position < self.most {
             self.hits.truncate(self.most - 1);
             let found = Found {
-                meeting,
+                met,
                 primitive,
                 place: place(),
             };

@@ -8,6 +8,6 @@ mod found;
 mod packet;
 mod single;
 
-pub(crate) use found::{Found, Keep, Nearest, Place};
+pub(crate) use found::{Found, Keep, Member, Nearest, Place};
 pub(crate) use packet::Packet;
 pub(crate) use single::Query;

@@ -6,15 +6,16 @@
 //! for bit: the arithmetic is the same in every lane, and no ray's answer
 //! depends on another's.
 
-use super::found::{InstancePath, Keep, Nearest, Place};
+use super::found::{InstancePath, Keep, Member, Nearest, Place};
 use super::single::Query;
 use crate::embree::{GREATEST_PACKET, Instructions, RaySet};
 use crate::math::{LANES, LaneMask, LaneVectors, Lanes};
-use crate::solid::Cylinder;
 use crate::solid::lanes::{self, CylinderLanes, RayLanes};
+use crate::solid::{Cylinder, SolidKind};
 use crate::tracer::counters;
 use crate::tracer::frame::{Enter, Frame, Level, PacketEntry, PacketLevel, PacketRays, ROWS, Rows};
-use crate::tracer::prototype::{Cylinders, Ends};
+use crate::tracer::prototype::{Cylinders, Described, Ends, SolidList};
+use crate::tracer::traced::{Met, TracedSolid};
 
 /// A packet on its way.
 pub(crate) struct Packet {
@@ -139,6 +140,7 @@ impl Packet {
         rays: RaySet,
         t_far: &mut [f32; GREATEST_PACKET],
     ) -> RaySet {
+        let member = Member::new(SolidKind::Cylinder, record);
         let mut shorter = RaySet::EMPTY;
         for row in 0..ROWS {
             let wanted = (rays.bits() >> (row * LANES)) as u8;
@@ -151,7 +153,7 @@ impl Packet {
                 let in_row = met.trailing_zeros() as usize;
                 met &= met - 1;
                 let ray = row * LANES + in_row;
-                if self.offer(ray, t.0[in_row], cylinders, record) {
+                if self.offer(ray, t.0[in_row], cylinders.described(), member) {
                     t_far[ray] = self.t_far(ray);
                     shorter.insert(ray);
                 }
@@ -172,6 +174,50 @@ impl Packet {
             }
         }
         RaySet::from_bits(blocked)
+    }
+
+    /// As [`Packet::visit`] for a solid of another kind, ray by ray.
+    #[inline]
+    pub fn visit_solid<S: TracedSolid>(
+        &mut self,
+        list: &SolidList<S>,
+        record: u32,
+        rays: RaySet,
+        t_far: &mut [f32; GREATEST_PACKET],
+    ) -> RaySet {
+        let solid = list.solid(record);
+        let member = Member::new(solid.kind(), record);
+        let mut shorter = RaySet::EMPTY;
+        for ray in rays {
+            if let Some(met) = self.first_of_solid(solid, ray, self.bound(ray))
+                && self.offer(ray, met.meeting.t, list.described(), member)
+            {
+                t_far[ray] = self.t_far(ray);
+                shorter.insert(ray);
+            }
+        }
+        shorter
+    }
+
+    /// As [`Packet::meets`] for a solid of another kind.
+    #[inline]
+    pub fn meets_solid(&self, solid: &impl TracedSolid, rays: RaySet) -> RaySet {
+        let mut blocked = RaySet::EMPTY;
+        for ray in rays {
+            let t_max = lane(&self.t_max, ray);
+            if self.first_of_solid(solid, ray, t_max).is_some() {
+                blocked.insert(ray);
+            }
+        }
+        blocked
+    }
+
+    /// Where a ray first meets a solid, up to `t_max`.
+    #[inline]
+    fn first_of_solid(&self, solid: &impl TracedSolid, ray: usize, t_max: f64) -> Option<Met> {
+        counters::solved(1);
+        let local = self.rays().ray(ray / LANES, ray % LANES);
+        solid.first(&local, lane(&self.t_min, ray), t_max)
     }
 
     /// Where the rays of a row that are `wanted` first meet a cylinder.
@@ -203,15 +249,15 @@ impl Packet {
 
     /// Keeps a ray's first hit if it is before the one that is known.
     #[inline(always)]
-    fn offer(&mut self, ray: usize, t: f64, cylinders: &Cylinders, record: u32) -> bool {
+    fn offer(&mut self, ray: usize, t: f64, described: &Described, member: Member) -> bool {
         let (nearest, path) = (&mut self.nearest[ray], &self.path);
         let is_first = nearest.as_ref().is_none_or(|known| {
-            known.is_after(t, path, record, |record| cylinders.primitive(record))
+            known.is_after(t, path, member, |member| described.primitive(member))
         });
         if is_first {
             *nearest = Some(Nearest {
                 t,
-                place: Place::new(cylinders.prototype(), record, path),
+                place: Place::new(described.index(), member, path),
             });
             set_lane(&mut self.bound, ray, t);
         }

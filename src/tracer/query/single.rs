@@ -1,12 +1,13 @@
 //! A query of one ray.
 
-use super::found::{Found, InstancePath, Keep, Nearest, Next, Place};
+use super::found::{Found, InstancePath, Keep, Member, Nearest, Next, Place};
 use crate::embree::{self, Ray32};
 use crate::math::{LaneMask, Lanes, Ray};
-use crate::solid::{Cylinder, Meeting, triple_product};
+use crate::solid::{Cylinder, Meeting, SolidKind, triple_product};
 use crate::tracer::counters;
 use crate::tracer::frame::{Frame, Level, LocalRay};
-use crate::tracer::prototype::{CylinderBlock, Cylinders, Ends};
+use crate::tracer::prototype::{CylinderBlock, Cylinders, Described, Ends, SolidList};
+use crate::tracer::traced::{Met, TracedSolid};
 
 /// A query on its way.
 #[derive(Debug)]
@@ -67,7 +68,7 @@ impl Query {
         match &self.keep {
             Keep::Next(Next {
                 after: Some(after), ..
-            }) => after.meeting.t,
+            }) => after.met.meeting.t,
             Keep::First(_) | Keep::Next(_) => self.t_min,
         }
     }
@@ -110,7 +111,8 @@ impl Query {
     pub fn visit(&mut self, cylinder: &Cylinder, cylinders: &Cylinders, record: u32) {
         if let Keep::First(_) = self.keep {
             if let Some(meeting) = self.first_meeting(cylinder, self.bound()) {
-                self.offer(meeting.t, cylinders, record);
+                let member = Member::new(SolidKind::Cylinder, record);
+                self.offer(meeting.t, cylinders.described(), member);
             }
         } else {
             self.visit_all(cylinder, cylinders, record);
@@ -125,31 +127,66 @@ impl Query {
         let Some(chord) = triple_product::chord(cylinder, from_p0, ray.direction) else {
             return;
         };
-        let bound = self.bound();
-        let Keep::Next(next) = &mut self.keep else {
-            return;
-        };
-        let (prototype, primitive) = (cylinders.prototype(), cylinders.primitive(record));
-        for meeting in chord.meetings(cylinder.caps(), shift, self.t_min, bound) {
-            let place = || Place::new(prototype, record, &self.path);
-            next.offer(meeting, &self.path, primitive, place);
+        let member = Member::new(SolidKind::Cylinder, record);
+        let (bound, t_min) = (self.bound(), self.t_min);
+        let mut offer = self.next_of(cylinders.described(), member);
+        for meeting in chord.meetings(cylinder.caps(), shift, t_min, bound) {
+            offer(Met::whole(meeting));
+        }
+    }
+
+    /// As [`Query::visit`] for a solid of another kind.
+    #[inline]
+    pub fn visit_solid<S: TracedSolid>(&mut self, list: &SolidList<S>, record: u32) {
+        counters::solved(1);
+        let solid = list.solid(record);
+        let member = Member::new(solid.kind(), record);
+        let (ray, bound, t_min) = (self.level().ray, self.bound(), self.t_min);
+        if let Keep::First(_) = self.keep {
+            if let Some(met) = solid.first(&ray, t_min, bound) {
+                self.offer(met.meeting.t, list.described(), member);
+            }
+        } else {
+            let offer = self.next_of(list.described(), member);
+            solid.each_meeting(&ray, t_min, bound, offer);
+        }
+    }
+
+    /// Whether the ray meets a solid of another kind of the current prototype.
+    #[inline]
+    pub fn meets_solid(&self, solid: &impl TracedSolid) -> bool {
+        counters::solved(1);
+        let met = solid.first(&self.level().ray, self.t_min, self.t_max);
+        met.is_some()
+    }
+
+    /// What keeps the meetings with a solid that are wanted, where all hits are asked
+    /// for.
+    fn next_of(&mut self, described: &Described, member: Member) -> impl FnMut(Met) {
+        let (prototype, primitive) = (described.index(), described.primitive(member));
+        let (keep, path) = (&mut self.keep, &self.path);
+        move |met| {
+            if let Keep::Next(next) = keep {
+                let place = || Place::new(prototype, member, path);
+                next.offer(met, path, primitive, place);
+            }
         }
     }
 
     /// Keeps a first hit if it is before the one that is known.
     #[inline(always)]
-    fn offer(&mut self, t: f64, cylinders: &Cylinders, record: u32) {
+    fn offer(&mut self, t: f64, described: &Described, member: Member) {
         let Keep::First(nearest) = &mut self.keep else {
             return;
         };
         let path = &self.path;
         let is_first = nearest.as_ref().is_none_or(|known| {
-            known.is_after(t, path, record, |record| cylinders.primitive(record))
+            known.is_after(t, path, member, |member| described.primitive(member))
         });
         if is_first {
             *nearest = Some(Nearest {
                 t,
-                place: Place::new(cylinders.prototype(), record, path),
+                place: Place::new(described.index(), member, path),
             });
         }
     }
@@ -168,7 +205,8 @@ impl Query {
         while met != 0 {
             let lane = met.trailing_zeros() as usize;
             met &= met - 1;
-            self.offer(t.0[lane], cylinders, block.record(lane));
+            let member = Member::new(SolidKind::Cylinder, block.record(lane));
+            self.offer(t.0[lane], cylinders.described(), member);
         }
     }
 

@@ -1,0 +1,80 @@
+//! Attaches the solids of a prototype to its Embree scene: a user geometry for
+//! each kind that there is.
+
+use std::marker::PhantomData;
+
+use super::blocks::BlockedCylinders;
+use super::cylinders::{Cylinders, SingleCylinders};
+use super::described::{Described, SolidList};
+use super::ends::{Capped, Ends, EndsKind, Mixed, Open};
+use crate::embree::{self, SceneBuilder};
+use crate::scene::Records;
+use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
+use crate::tracer::options::Layout;
+use crate::tracer::query::Query;
+use crate::tracer::traced::TracedSolid;
+
+/// Attaches cylinders in the layout that is asked for, made on up to `threads`
+/// threads.
+pub(super) fn attach_cylinders(
+    cylinders: &Cylinders,
+    layout: Layout,
+    threads: usize,
+    builder: &mut SceneBuilder<Query>,
+) -> Result<(), embree::Error> {
+    if cylinders.len() == 0 {
+        return Ok(());
+    }
+    match cylinders.ends() {
+        EndsKind::Open => attach::<Open>(cylinders, layout, threads, builder),
+        EndsKind::Capped => attach::<Capped>(cylinders, layout, threads, builder),
+        EndsKind::Mixed => attach::<Mixed>(cylinders, layout, threads, builder),
+    }
+}
+
+fn attach<E: Ends>(
+    cylinders: &Cylinders,
+    layout: Layout,
+    threads: usize,
+    builder: &mut SceneBuilder<Query>,
+) -> Result<(), embree::Error> {
+    let attached = match layout {
+        Layout::Block if cylinders.fit_blocks() => match cylinders.records().records() {
+            Records::F64 => {
+                builder.attach_user(BlockedCylinders::<E, f64>::new(cylinders, threads))
+            }
+            Records::F32 => {
+                builder.attach_user(BlockedCylinders::<E, f32>::new(cylinders, threads))
+            }
+        },
+        Layout::Block | Layout::Single => builder.attach_user(SingleCylinders::<E> {
+            cylinders: cylinders.clone(),
+            ends: PhantomData,
+        }),
+    };
+    attached.map(|_| ())
+}
+
+/// Attaches the solids of other kinds.
+pub(super) fn attach_solids(
+    described: &Described,
+    builder: &mut SceneBuilder<Query>,
+) -> Result<(), embree::Error> {
+    attach_list::<Sphere>(described, builder)?;
+    attach_list::<Cuboid>(described, builder)?;
+    attach_list::<Cone>(described, builder)?;
+    attach_list::<RoundedCone>(described, builder)?;
+    attach_list::<Disk>(described, builder)?;
+    attach_list::<Composition>(described, builder)
+}
+
+fn attach_list<S: TracedSolid>(
+    described: &Described,
+    builder: &mut SceneBuilder<Query>,
+) -> Result<(), embree::Error> {
+    let list = SolidList::<S>::new(described);
+    if !list.records().is_empty() {
+        builder.attach_user(list)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,132 @@
+//! Where a prototype's solids are kept: in the description.
+
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+use crate::embree::{Box32, GREATEST_PACKET, RaySet, UserGeometry};
+use crate::math::Bounds;
+use crate::scene::{self, PrototypeIndex, Scene, SolidRecord};
+use crate::tracer::counters;
+use crate::tracer::frame::Frame;
+use crate::tracer::query::{Member, Packet, Query};
+use crate::tracer::traced::TracedSolid;
+
+/// A prototype in the description, and its frame.
+#[derive(Clone)]
+pub(crate) struct Described {
+    scene: Arc<Scene>,
+    index: PrototypeIndex,
+    frame: Frame,
+}
+
+impl Described {
+    pub fn new(scene: &Arc<Scene>, index: PrototypeIndex, frame: &Frame) -> Self {
+        Self {
+            scene: Arc::clone(scene),
+            index,
+            frame: frame.clone(),
+        }
+    }
+
+    /// Which one.
+    #[inline(always)]
+    pub fn index(&self) -> PrototypeIndex {
+        self.index
+    }
+
+    /// The prototype.
+    #[inline(always)]
+    pub fn prototype(&self) -> &scene::Prototype {
+        &self.scene.prototypes[self.index.0 as usize]
+    }
+
+    /// The number that the user knows a solid by.
+    #[inline]
+    pub fn primitive(&self, member: Member) -> u32 {
+        let Member { kind, record } = member;
+        self.prototype().primitive(kind, record as usize)
+    }
+
+    /// A box in the frame of the Embree scene.
+    pub fn grown_box(&self, bounds: &Bounds) -> Box32 {
+        self.frame.grown_box(bounds)
+    }
+}
+
+/// The solids of one kind, that are no cylinders: a user geometry with a
+/// primitive for each.
+pub(crate) struct SolidList<S> {
+    described: Described,
+    kind: PhantomData<fn() -> S>,
+}
+
+impl<S: TracedSolid> SolidList<S> {
+    pub fn new(described: &Described) -> Self {
+        Self {
+            described: described.clone(),
+            kind: PhantomData,
+        }
+    }
+
+    /// All of them.
+    #[inline(always)]
+    pub fn records(&self) -> &[SolidRecord<S>] {
+        S::list(&self.described.prototype().solids)
+    }
+
+    /// The solid of a record.
+    #[inline(always)]
+    pub fn solid(&self, record: u32) -> &S {
+        &self.records()[record as usize].solid
+    }
+
+    /// Whose they are.
+    #[inline(always)]
+    pub fn described(&self) -> &Described {
+        &self.described
+    }
+}
+
+impl<S: TracedSolid> UserGeometry for SolidList<S> {
+    type Query = Query;
+
+    fn primitive_count(&self) -> u32 {
+        self.records().len() as u32
+    }
+
+    fn bounds(&self, primitive: u32) -> Box32 {
+        self.described.grown_box(&self.solid(primitive).bounds())
+    }
+
+    fn intersect(&self, primitive: u32, query: &mut Query) -> Option<f32> {
+        counters::called_back();
+        query.callbacks += 1;
+        let before = query.bound();
+        query.visit_solid(self, primitive);
+        (query.bound() < before).then(|| query.t_far())
+    }
+
+    fn occluded(&self, primitive: u32, query: &mut Query) -> bool {
+        counters::called_back();
+        query.callbacks += 1;
+        query.meets_solid(self.solid(primitive))
+    }
+
+    fn intersect_packet(
+        &self,
+        primitive: u32,
+        rays: RaySet,
+        t_far: &mut [f32; GREATEST_PACKET],
+        packet: &mut Packet,
+    ) -> RaySet {
+        counters::called_back();
+        packet.callbacks += 1;
+        packet.visit_solid(self, primitive, rays, t_far)
+    }
+
+    fn occluded_packet(&self, primitive: u32, rays: RaySet, packet: &mut Packet) -> RaySet {
+        counters::called_back();
+        packet.callbacks += 1;
+        packet.meets_solid(self.solid(primitive), rays)
+    }
+}

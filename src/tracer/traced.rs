@@ -1,0 +1,149 @@
+//! What a query asks of a solid of any kind.
+//!
+//! A convex solid answers from the one interval in which a line is inside it. A
+//! solid that is not convex is met in several; it answers for itself, and says by
+//! a *leaf* which of the solids it is made of has the surface that is met.
+//!
+//! Cylinders are left out: the queries know them and their rows of eight.
+
+use glam::DVec3;
+
+use super::frame::LocalRay;
+use crate::math::Bounds;
+use crate::scene::Listed;
+use crate::solid::{
+    Chord, ComposedMeeting, Composition, ConvexSolid, Meeting, SolidKind, SpawnMargin, SurfacePoint,
+};
+
+/// A meeting with a solid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Met {
+    pub meeting: Meeting,
+    /// Which of the solids that it is made of is met; 0 where it is one.
+    pub leaf: u32,
+    /// The number of the crossing, where one solid is entered more than once; 0
+    /// where it is not.
+    pub rank: u32,
+}
+
+impl Met {
+    /// A meeting with a solid that is one.
+    #[inline(always)]
+    pub fn whole(meeting: Meeting) -> Self {
+        Self {
+            meeting,
+            leaf: 0,
+            rank: 0,
+        }
+    }
+}
+
+/// A solid as queries know it.
+pub(crate) trait TracedSolid: Listed + Send + Sync {
+    /// What it is called, which says in which list it is.
+    fn kind(&self) -> SolidKind;
+
+    /// A box that holds it.
+    fn bounds(&self) -> Bounds;
+
+    /// The first meeting of the ray with its surface in a range of the whole
+    /// ray's `t`.
+    fn first(&self, ray: &LocalRay, t_min: f64, t_max: f64) -> Option<Met>;
+
+    /// Hands on all of them.
+    fn each_meeting(&self, ray: &LocalRay, t_min: f64, t_max: f64, keep: impl FnMut(Met));
+
+    /// The point of the surface where the ray meets it, and what a query that
+    /// starts there may be displaced by.
+    fn surface(&self, ray: &LocalRay, met: &Met) -> (SurfacePoint, SpawnMargin);
+
+    /// Whether the closed solid holds a point.
+    fn contains(&self, point: DVec3) -> bool;
+}
+
+/// The interval in which a ray is inside a convex solid.
+#[inline]
+fn chord<S: ConvexSolid>(solid: &S, ray: &LocalRay) -> Option<Chord> {
+    solid.chord(ray.origin_from(solid.anchor()), ray.direction)
+}
+
+impl<S: ConvexSolid + Listed> TracedSolid for S {
+    #[inline(always)]
+    fn kind(&self) -> SolidKind {
+        S::KIND
+    }
+
+    fn bounds(&self) -> Bounds {
+        ConvexSolid::bounds(self)
+    }
+
+    #[inline]
+    fn first(&self, ray: &LocalRay, t_min: f64, t_max: f64) -> Option<Met> {
+        chord(self, ray)?
+            .first(self.caps(), ray.shift, t_min, t_max)
+            .map(Met::whole)
+    }
+
+    fn each_meeting(&self, ray: &LocalRay, t_min: f64, t_max: f64, keep: impl FnMut(Met)) {
+        if let Some(chord) = chord(self, ray) {
+            let meetings = chord.meetings(self.caps(), ray.shift, t_min, t_max);
+            meetings.map(Met::whole).for_each(keep);
+        }
+    }
+
+    fn surface(&self, ray: &LocalRay, met: &Met) -> (SurfacePoint, SpawnMargin) {
+        let Meeting { part, t_local, .. } = met.meeting;
+        let from_anchor = ray.origin_from(self.anchor()) + ray.direction * t_local;
+        let surface = self.surface_point(part, from_anchor);
+        (surface, SpawnMargin::of_solid(self, &surface))
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        ConvexSolid::contains(self, point)
+    }
+}
+
+impl From<ComposedMeeting> for Met {
+    fn from(met: ComposedMeeting) -> Self {
+        Self {
+            meeting: met.meeting,
+            leaf: met.leaf,
+            rank: met.rank,
+        }
+    }
+}
+
+impl TracedSolid for Composition {
+    fn kind(&self) -> SolidKind {
+        self.kind()
+    }
+
+    fn bounds(&self) -> Bounds {
+        self.bounds()
+    }
+
+    fn first(&self, ray: &LocalRay, t_min: f64, t_max: f64) -> Option<Met> {
+        let from = |anchor| ray.origin_from(anchor);
+        self.first(from, ray.direction, ray.shift, [t_min, t_max])
+            .map(Met::from)
+    }
+
+    fn each_meeting(&self, ray: &LocalRay, t_min: f64, t_max: f64, mut keep: impl FnMut(Met)) {
+        let from = |anchor| ray.origin_from(anchor);
+        let range = [t_min, t_max];
+        self.meetings(from, ray.direction, ray.shift, range, |met| {
+            keep(met.into())
+        });
+    }
+
+    fn surface(&self, ray: &LocalRay, met: &Met) -> (SurfacePoint, SpawnMargin) {
+        let Meeting { part, t_local, .. } = met.meeting;
+        self.surface(met.leaf, part, |anchor| {
+            ray.origin_from(anchor) + ray.direction * t_local
+        })
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        self.contains(point)
+    }
+}
