@@ -77,9 +77,23 @@ struct cyltrace_ray {
 #define CYLTRACE_TELLS_PLACE 2u  /* primitive, part, instance_count, instance */
 
 /* cyltrace_hit.part */
-#define CYLTRACE_SIDE 0u /* the curved wall */
-#define CYLTRACE_CAP0 1u /* the disc at p0, its rim included */
-#define CYLTRACE_CAP1 2u /* the disc at p1, its rim included */
+#define CYLTRACE_SIDE 0u  /* the curved wall; all of a sphere or a disk */
+#define CYLTRACE_CAP0 1u  /* the disc at p0, its rim included; a rounded cone's sphere */
+#define CYLTRACE_CAP1 2u  /* the disc at p1, its rim included; a rounded cone's sphere */
+#define CYLTRACE_X_MIN 3u /* the face of a cuboid where its own x is least */
+#define CYLTRACE_X_MAX 4u /* where x is greatest */
+#define CYLTRACE_Y_MIN 5u /* where y is least */
+#define CYLTRACE_Y_MAX 6u /* where y is greatest */
+#define CYLTRACE_Z_MIN 7u /* where z is least */
+#define CYLTRACE_Z_MAX 8u /* where z is greatest */
+
+/* cyltrace_hit.solid */
+#define CYLTRACE_SOLID_CYLINDER 0u
+#define CYLTRACE_SOLID_CONE 1u
+#define CYLTRACE_SOLID_ROUNDED_CONE 2u
+#define CYLTRACE_SOLID_SPHERE 3u
+#define CYLTRACE_SOLID_CUBOID 4u
+#define CYLTRACE_SOLID_DISK 5u
 
 /* cyltrace_hit.crossing */
 #define CYLTRACE_ENTER 0u /* against the outward normal */
@@ -107,6 +121,7 @@ struct cyltrace_hit {
     uint32_t material;       /* 0 is the default one, then in the file's order */
     uint32_t instance_count; /* how many of `instance` count */
     uint32_t instance[CYLTRACE_GREATEST_DEPTH]; /* placements, outermost first */
+    uint32_t solid;          /* CYLTRACE_SOLID_..., filled in by the library */
 };
 
 /*

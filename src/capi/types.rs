@@ -8,7 +8,7 @@ use glam::DVec3;
 use crate::check::{Finding, Place};
 use crate::math::Ray;
 use crate::scene::GREATEST_DEPTH;
-use crate::solid::{Crossing, Part};
+use crate::solid::{Crossing, Part, SolidKind};
 use crate::tracer::Hit;
 
 /// Most placements inside each other.
@@ -27,6 +27,44 @@ pub const CYLTRACE_SIDE: u32 = 0;
 pub const CYLTRACE_CAP0: u32 = 1;
 /// [`CyltraceHit::part`]: the disc at `p1`.
 pub const CYLTRACE_CAP1: u32 = 2;
+/// [`CyltraceHit::part`]: the face of a cuboid where its own x is least.
+pub const CYLTRACE_X_MIN: u32 = 3;
+/// [`CyltraceHit::part`]: where x is greatest.
+pub const CYLTRACE_X_MAX: u32 = 4;
+/// [`CyltraceHit::part`]: where y is least.
+pub const CYLTRACE_Y_MIN: u32 = 5;
+/// [`CyltraceHit::part`]: where y is greatest.
+pub const CYLTRACE_Y_MAX: u32 = 6;
+/// [`CyltraceHit::part`]: where z is least.
+pub const CYLTRACE_Z_MIN: u32 = 7;
+/// [`CyltraceHit::part`]: where z is greatest.
+pub const CYLTRACE_Z_MAX: u32 = 8;
+
+/// The parts and their codes.
+const PARTS: [(Part, u32); 9] = [
+    (Part::Side, CYLTRACE_SIDE),
+    (Part::Cap0, CYLTRACE_CAP0),
+    (Part::Cap1, CYLTRACE_CAP1),
+    (Part::XMin, CYLTRACE_X_MIN),
+    (Part::XMax, CYLTRACE_X_MAX),
+    (Part::YMin, CYLTRACE_Y_MIN),
+    (Part::YMax, CYLTRACE_Y_MAX),
+    (Part::ZMin, CYLTRACE_Z_MIN),
+    (Part::ZMax, CYLTRACE_Z_MAX),
+];
+
+/// [`CyltraceHit::solid`]: a cylinder.
+pub const CYLTRACE_SOLID_CYLINDER: u32 = 0;
+/// [`CyltraceHit::solid`]: a cone.
+pub const CYLTRACE_SOLID_CONE: u32 = 1;
+/// [`CyltraceHit::solid`]: a rounded cone.
+pub const CYLTRACE_SOLID_ROUNDED_CONE: u32 = 2;
+/// [`CyltraceHit::solid`]: a sphere.
+pub const CYLTRACE_SOLID_SPHERE: u32 = 3;
+/// [`CyltraceHit::solid`]: a cuboid.
+pub const CYLTRACE_SOLID_CUBOID: u32 = 4;
+/// [`CyltraceHit::solid`]: a disk.
+pub const CYLTRACE_SOLID_DISK: u32 = 5;
 
 /// [`CyltraceHit::crossing`]: the ray goes into the solid.
 pub const CYLTRACE_ENTER: u32 = 0;
@@ -103,6 +141,8 @@ pub struct CyltraceHit {
     pub instance_count: u32,
     /// The placements from the scene inward.
     pub instance: [u32; CYLTRACE_GREATEST_DEPTH],
+    /// The kind of solid.
+    pub solid: u32,
 }
 
 impl CyltraceHit {
@@ -123,6 +163,7 @@ impl CyltraceHit {
         material: 0,
         instance_count: 0,
         instance: [0; CYLTRACE_GREATEST_DEPTH],
+        solid: CYLTRACE_SOLID_CYLINDER,
     };
 
     /// What a caller's intersector tells; `None` for a miss. The error is a
@@ -141,11 +182,10 @@ impl CyltraceHit {
     }
 
     fn place(&self) -> Result<Place, String> {
-        let part = match self.part {
-            CYLTRACE_SIDE => Part::Side,
-            CYLTRACE_CAP0 => Part::Cap0,
-            CYLTRACE_CAP1 => Part::Cap1,
-            part => return Err(format!("a hit's part is {part}: there is no such part")),
+        let known = PARTS.iter().find(|(_, code)| *code == self.part);
+        let Some(&(part, _)) = known else {
+            let part = self.part;
+            return Err(format!("a hit's part is {part}: there is no such part"));
         };
         let count = self.instance_count;
         let instance = self.instance.get(..count as usize).ok_or_else(|| {
@@ -157,6 +197,11 @@ impl CyltraceHit {
             part,
         })
     }
+}
+
+fn part_code(part: Part) -> u32 {
+    let known = PARTS.iter().find(|(known, _)| *known == part);
+    known.expect("every part has a code").1
 }
 
 impl From<&Hit> for CyltraceHit {
@@ -174,12 +219,7 @@ impl From<&Hit> for CyltraceHit {
             tells: CYLTRACE_TELLS_NORMAL | CYLTRACE_TELLS_PLACE,
             prototype: hit.prototype.0,
             primitive: hit.primitive,
-            part: match hit.part {
-                Part::Side => CYLTRACE_SIDE,
-                Part::Cap0 => CYLTRACE_CAP0,
-                Part::Cap1 => CYLTRACE_CAP1,
-                part => part.not_of_a_cylinder(),
-            },
+            part: part_code(hit.part),
             crossing: match hit.crossing {
                 Crossing::Enter => CYLTRACE_ENTER,
                 Crossing::Leave => CYLTRACE_LEAVE,
@@ -187,6 +227,14 @@ impl From<&Hit> for CyltraceHit {
             material: hit.material.0.into(),
             instance_count: hit.instance.len() as u32,
             instance,
+            solid: match hit.solid {
+                SolidKind::Cylinder => CYLTRACE_SOLID_CYLINDER,
+                SolidKind::Cone => CYLTRACE_SOLID_CONE,
+                SolidKind::RoundedCone => CYLTRACE_SOLID_ROUNDED_CONE,
+                SolidKind::Sphere => CYLTRACE_SOLID_SPHERE,
+                SolidKind::Cuboid => CYLTRACE_SOLID_CUBOID,
+                SolidKind::Disk => CYLTRACE_SOLID_DISK,
+            },
         }
     }
 }

@@ -109,7 +109,12 @@ pub(super) fn chosen_windows(
             return Err(CheckError::Segments { segments });
         }
     }
-    if scene.census().cylinders_instanced == 0 {
+    let census = scene.census();
+    if census.other_solids_unique > 0 {
+        let solids = census.other_solids_unique;
+        return Err(CheckError::OtherSolids { solids });
+    }
+    if census.cylinders_instanced == 0 {
         return Err(CheckError::Empty);
     }
     let segments = settings.segments.iter().copied().max().unwrap_or(3);

@@ -124,6 +124,14 @@ pub enum CheckError {
     /// Nothing to check.
     #[error("the scene holds no solid")]
     Empty,
+    /// There are solids of which there are no prisms.
+    #[error(
+        "the scene holds {solids} solids that are no cylinders: the prisms of check are those of cylinders"
+    )]
+    OtherSolids {
+        /// How many, as they are stored.
+        solids: u64,
+    },
     /// Embree refused.
     #[error(transparent)]
     Embree(#[from] crate::embree::Error),

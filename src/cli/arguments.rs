@@ -100,26 +100,39 @@ pub struct RenderArguments {
     pub common: Common,
 }
 
-/// Trace rays from a table; write their hits to another
+/// Trace rays from a table and write their hits to another, or say which solids
+/// hold points
 #[derive(Args, Debug)]
 pub struct TraceArguments {
     /// The scene file
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// CSV with the columns ox,oy,oz,dx,dy,dz and optionally t_min,t_max
-    /// (defaults 0 and inf); `-` is standard input
-    #[arg(long, value_name = "FILE")]
-    pub rays: PathBuf,
-    /// CSV of hits, one row a ray, in order; `-` is standard output
+    #[command(flatten)]
+    pub table: TraceTable,
+    /// CSV of hits, one row a ray, in order; with --points of the solids that hold
+    /// each point, one row a solid. `-` is standard output
     #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
     /// Write every hit of a ray, in order of t, instead of the first
-    #[arg(long)]
+    #[arg(long, conflicts_with = "points")]
     pub all: bool,
     #[command(flatten)]
     pub memory: MemoryArguments,
     #[command(flatten)]
     pub common: Common,
+}
+
+/// What is asked about.
+#[derive(Args, Debug)]
+#[group(required = true, multiple = false)]
+pub struct TraceTable {
+    /// CSV with the columns ox,oy,oz,dx,dy,dz and optionally t_min,t_max
+    /// (defaults 0 and inf); `-` is standard input
+    #[arg(long, value_name = "FILE")]
+    pub rays: Option<PathBuf>,
+    /// CSV with the columns x,y,z; `-` is standard input
+    #[arg(long, value_name = "FILE")]
+    pub points: Option<PathBuf>,
 }
 
 /// Say what a scene holds, without tracing it

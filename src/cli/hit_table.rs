@@ -1,9 +1,9 @@
-//! Tables of hits, as DESIGN.md fixes their columns.
+//! Tables of hits, and of the solids that hold points; DESIGN.md fixes the columns.
 
 use std::fmt::Write;
 
 use cyltrace::scene::Scene;
-use cyltrace::tracer::Hit;
+use cyltrace::tracer::{Containing, Hit};
 
 /// The header line.
 pub const HEADER: &str =
@@ -35,14 +35,44 @@ pub fn push_row(rows: &mut String, ray: u64, hit: Option<&Hit>, scene: &Scene) {
             hit.crossing.name()
         ),
     );
-    for (level, placement) in hit.instance.iter().enumerate() {
-        let separator = if level == 0 { "" } else { "/" };
-        push(rows, format_args!("{separator}{placement}"));
-    }
+    push_path(rows, &hit.instance);
     for value in [hit.u, hit.v, hit.error] {
         push_number(rows, value);
     }
     rows.push('\n');
+}
+
+/// The header line of a table of points.
+pub const POINTS_HEADER: &str = "point,inside,prototype,solid,primitive,instance\n";
+
+/// Appends the row of point number `point` and a solid that holds it, if any does.
+pub fn push_point_row(
+    rows: &mut String,
+    point: u64,
+    containing: Option<&Containing>,
+    scene: &Scene,
+) {
+    let Some(containing) = containing else {
+        push(rows, format_args!("{point},0,,,,\n"));
+        return;
+    };
+    push(rows, format_args!("{point},1,"));
+    push_text(
+        rows,
+        &scene.prototypes[containing.prototype.0 as usize].name,
+    );
+    let (solid, primitive) = (containing.solid.name(), containing.primitive);
+    push(rows, format_args!(",{solid},{primitive},"));
+    push_path(rows, &containing.instance);
+    rows.push('\n');
+}
+
+/// Appends the path of placements.
+fn push_path(rows: &mut String, instance: &[u32]) {
+    for (level, placement) in instance.iter().enumerate() {
+        let separator = if level == 0 { "" } else { "/" };
+        push(rows, format_args!("{separator}{placement}"));
+    }
 }
 
 /// Appends a comma and a number.

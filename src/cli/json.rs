@@ -56,3 +56,11 @@ pub fn cylinders(statistics: &Statistics) -> Value {
         "instanced": count(statistics.cylinders_instanced),
     })
 }
+
+/// The solids of other kinds of a traced scene.
+pub fn other_solids(statistics: &Statistics) -> Value {
+    json!({
+        "unique": statistics.other_solids_unique,
+        "instanced": count(statistics.other_solids_instanced),
+    })
+}

@@ -1,7 +1,7 @@
 //! `cyltrace trace`.
 //!
-//! Rays are read, traced and written in batches of a few blocks a thread, so
-//! that a table of any length needs little memory and rows stay in order.
+//! Rays, or points, are read, asked about and written in batches of a few blocks a
+//! thread, so that a table of any length needs little memory and rows stay in order.
 
 use std::io::Write;
 use std::path::Path;
@@ -10,170 +10,343 @@ use std::time::Instant;
 
 use cyltrace::math::Ray;
 use cyltrace::tracer::{DEFAULT_BATCH, Hit, Options, Tracer};
+use glam::DVec3;
 use rayon::prelude::*;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::arguments::TraceArguments;
 use super::interrupt::Interrupted;
 use super::limit::{Limit, Need};
+use super::number_table::{Block, NumberTable, Row};
 use super::outputs::Files;
-use super::ray_table::{Block, RayTable};
 use super::target::{Target, is_standard_stream};
-use super::{hit_table, interrupt, json, print, progress, ray_table, scene, text};
+use super::{hit_table, interrupt, json, number_table, print, progress, scene, text};
 
 /// Blocks that a thread gets of each batch: enough to even out slow ones.
 const BLOCKS_PER_THREAD: usize = 4;
 
-/// What rays came to.
+/// What rows came to.
 #[derive(Clone, Copy, Default)]
 struct Totals {
-    rays: u64,
-    /// Rays that hit anything.
-    hit_rays: u64,
-    /// Hits; more than one a ray only if all are asked for.
-    hits: u64,
+    /// Rays, or points.
+    asked: u64,
+    /// Rays that hit anything, points that anything holds.
+    met: u64,
+    /// Hits, or solids that hold a point; there may be many of one row.
+    found: u64,
+}
+
+/// A table and what is asked about its rows.
+struct Task<'a, R> {
+    path: &'a Path,
+    /// What the table is to the user.
+    what: &'static str,
+    header: &'static str,
+    /// What a row is called.
+    items: &'static str,
+    /// Writes what is found of a row of that number, and says how much it is.
+    answer: Answer<'a, R>,
+}
+
+/// See [`Task::answer`].
+type Answer<'a, R> = &'a (dyn Fn(&Tracer, &mut String, u64, &R) -> u64 + Sync);
+
+/// What a command ran into.
+struct Traced {
+    tracer: Tracer,
+    items: &'static str,
+    totals: Totals,
+    check: f64,
+    load: f64,
+    build: f64,
+    trace: f64,
+    threads: usize,
+}
+
+/// Traces what is asked for.
+pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
+    match (&arguments.table.rays, &arguments.table.points) {
+        (Some(rays), _) => trace_rays(arguments, rays),
+        (None, Some(points)) => locate_points(arguments, points),
+        (None, None) => unreachable!("the arguments name a table"),
+    }
 }
 
 /// Traces the rays of a table.
-pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
-    let common = &arguments.common;
-    let files = Files::new(&arguments.scene, common.json.as_deref())
-        .input("the table of rays", &arguments.rays)
-        .output("-o", &arguments.output);
-    files.check()?;
-    Target::check(&arguments.output)?;
-    json::check(common)?;
-    interrupt::install()?;
-    let workers = scene::workers(common)?;
-    let threads = workers.current_num_threads();
-
-    let start = Instant::now();
-    let file = scene::read(&arguments.scene)?;
-    files.check_with(&file)?;
-    let read = start.elapsed();
-
-    // A bad row is to be found before anything is traced or written. A pipe
-    // can be read once only; its rows are checked on the way.
-    let start = Instant::now();
-    let rereadable = !is_standard_stream(&arguments.rays)
-        && arguments.rays.metadata().is_ok_and(|file| file.is_file());
-    let rays = if rereadable {
-        Some(workers.install(|| count_rays(&arguments.rays))?)
-    } else {
-        None
-    };
-    let check = start.elapsed().as_secs_f64();
-
-    let start = Instant::now();
-    let scene = Arc::new(scene::load(
-        common,
-        file,
-        Need::Build,
-        Limit::of(&arguments.memory),
-    )?);
-    let load = (read + start.elapsed()).as_secs_f64();
-    let start = Instant::now();
-    let tracer = scene::build_with(
-        common,
-        &scene,
-        Options {
-            layout: arguments.memory.layout.into(),
-            ..Options::default()
+fn trace_rays(arguments: &TraceArguments, path: &Path) -> anyhow::Result<()> {
+    let all = arguments.all;
+    let traced = Task::<Ray> {
+        path,
+        what: "the table of rays",
+        header: hit_table::HEADER,
+        items: "rays",
+        answer: &|tracer, rows, number, ray| {
+            let mut hits = 0;
+            let mut push = |hit: &Hit| {
+                hit_table::push_row(rows, number, Some(hit), tracer.scene());
+                hits += 1;
+            };
+            if all {
+                tracer
+                    .all_hits(ray, DEFAULT_BATCH)
+                    .for_each(|hit| push(&hit));
+            } else if let Some(hit) = tracer.closest(ray) {
+                push(&hit);
+            }
+            if hits == 0 {
+                hit_table::push_row(rows, number, None, tracer.scene());
+            }
+            hits
         },
-    )?;
-    let build = start.elapsed().as_secs_f64();
-
-    interrupt::end_in_order();
-    let mut target = Target::create(&arguments.output)?;
-    let bar = progress::bar(common, rays.unwrap_or(0), "rays");
-    let start = Instant::now();
-    target.write_all(hit_table::HEADER.as_bytes())?;
-    let mut totals = Totals::default();
-    let traced = workers.install(|| {
-        for_each_batch(&arguments.rays, |blocks| {
-            let before = totals.rays;
-            trace_batch(&tracer, arguments.all, &blocks, &mut totals, &mut target)?;
-            bar.inc(totals.rays - before);
-            Ok(())
-        })
+    }
+    .run(arguments)?;
+    let Totals { asked, met, found } = traced.totals;
+    let figures = json!({
+        "rays_file": path,
+        "rays": asked,
+        "hit_rays": met,
+        "hits": found,
+        "rays_per_s": traced.rate(),
     });
-    traced.map_err(|error| match error.downcast_ref::<Interrupted>() {
-        Some(_) if target.shows_parts() => Interrupted::PartWritten.into(),
-        _ => error,
-    })?;
-    target.finish()?;
-    let trace = start.elapsed().as_secs_f64();
-    bar.finish_and_clear();
+    let more = if all {
+        format!(", {found} hits")
+    } else {
+        String::new()
+    };
+    traced.tell(
+        arguments,
+        figures,
+        &format!("{met} of {asked} rays hit{more}"),
+    )
+}
 
-    let statistics = &tracer.statistics();
-    let skipped_rows = tracer.scene().skipped_rows;
-    let Totals {
-        rays,
-        hit_rays,
-        hits,
-    } = totals;
-    let rays_per_s = rays as f64 / trace;
-    json::write(
-        common,
-        &json!({
+/// Says which solids hold the points of a table.
+fn locate_points(arguments: &TraceArguments, path: &Path) -> anyhow::Result<()> {
+    let traced = Task::<DVec3> {
+        path,
+        what: "the table of points",
+        header: hit_table::POINTS_HEADER,
+        items: "points",
+        answer: &|tracer, rows, number, point| {
+            let found = tracer.contains(*point);
+            for containing in &found {
+                hit_table::push_point_row(rows, number, Some(containing), tracer.scene());
+            }
+            if found.is_empty() {
+                hit_table::push_point_row(rows, number, None, tracer.scene());
+            }
+            found.len() as u64
+        },
+    }
+    .run(arguments)?;
+    let Totals { asked, met, found } = traced.totals;
+    let figures = json!({
+        "points_file": path,
+        "points": asked,
+        "inside_points": met,
+        "containing_solids": found,
+        "points_per_s": traced.rate(),
+    });
+    traced.tell(
+        arguments,
+        figures,
+        &format!("{met} of {asked} points inside, of {found} solids"),
+    )
+}
+
+impl<R: Row + Sync> Task<'_, R> {
+    /// Reads the table, asks and writes the answers.
+    fn run(&self, arguments: &TraceArguments) -> anyhow::Result<Traced> {
+        let common = &arguments.common;
+        let files = Files::new(&arguments.scene, common.json.as_deref())
+            .input(self.what, self.path)
+            .output("-o", &arguments.output);
+        files.check()?;
+        Target::check(&arguments.output)?;
+        json::check(common)?;
+        interrupt::install()?;
+        let workers = scene::workers(common)?;
+        let threads = workers.current_num_threads();
+
+        let start = Instant::now();
+        let file = scene::read(&arguments.scene)?;
+        files.check_with(&file)?;
+        let read = start.elapsed();
+
+        // A bad row is to be found before anything is traced or written. A pipe
+        // can be read once only; its rows are checked on the way.
+        let start = Instant::now();
+        let rereadable =
+            !is_standard_stream(self.path) && self.path.metadata().is_ok_and(|file| file.is_file());
+        let rows = if rereadable {
+            Some(workers.install(|| self.count_rows())?)
+        } else {
+            None
+        };
+        let check = start.elapsed().as_secs_f64();
+
+        let start = Instant::now();
+        let scene = Arc::new(scene::load(
+            common,
+            file,
+            Need::Build,
+            Limit::of(&arguments.memory),
+        )?);
+        let load = (read + start.elapsed()).as_secs_f64();
+        let start = Instant::now();
+        let tracer = scene::build_with(
+            common,
+            &scene,
+            Options {
+                layout: arguments.memory.layout.into(),
+                ..Options::default()
+            },
+        )?;
+        let build = start.elapsed().as_secs_f64();
+
+        interrupt::end_in_order();
+        let mut target = Target::create(&arguments.output)?;
+        let bar = progress::bar(common, rows.unwrap_or(0), self.items);
+        let start = Instant::now();
+        target.write_all(self.header.as_bytes())?;
+        let mut totals = Totals::default();
+        let traced = workers.install(|| {
+            for_each_batch(self.path, |blocks| {
+                let before = totals.asked;
+                self.batch(&tracer, &blocks, &mut totals, &mut target)?;
+                bar.inc(totals.asked - before);
+                Ok(())
+            })
+        });
+        traced.map_err(|error| match error.downcast_ref::<Interrupted>() {
+            Some(_) if target.shows_parts() => Interrupted::PartWritten.into(),
+            _ => error,
+        })?;
+        target.finish()?;
+        let trace = start.elapsed().as_secs_f64();
+        bar.finish_and_clear();
+        Ok(Traced {
+            tracer,
+            items: self.items,
+            totals,
+            check,
+            load,
+            build,
+            trace,
+            threads,
+        })
+    }
+
+    /// The number of rows in the table, all of them good.
+    fn count_rows(&self) -> anyhow::Result<u64> {
+        let mut count = 0;
+        for_each_batch(self.path, |blocks: Vec<Vec<R>>| {
+            count += blocks.iter().map(|rows| rows.len() as u64).sum::<u64>();
+            Ok(())
+        })?;
+        Ok(count)
+    }
+
+    /// Asks about the rows of some blocks and writes the answers.
+    fn batch(
+        &self,
+        tracer: &Tracer,
+        blocks: &[Vec<R>],
+        totals: &mut Totals,
+        target: &mut Target,
+    ) -> anyhow::Result<()> {
+        let numbered: Vec<_> = blocks
+            .iter()
+            .map(|rows| {
+                let first = totals.asked;
+                totals.asked += rows.len() as u64;
+                (first, rows)
+            })
+            .collect();
+        let answered: Vec<(String, Totals)> = numbered
+            .par_iter()
+            .map(|(first, rows)| self.block(tracer, *first, rows))
+            .collect();
+        for (text, block) in answered {
+            target.write_all(text.as_bytes())?;
+            totals.met += block.met;
+            totals.found += block.found;
+        }
+        Ok(())
+    }
+
+    /// The answers to a block whose rows count from `first`, and what they come to.
+    fn block(&self, tracer: &Tracer, first: u64, rows: &[R]) -> (String, Totals) {
+        let mut text = String::new();
+        let mut totals = Totals::default();
+        for (number, row) in (first..).zip(rows) {
+            let found = (self.answer)(tracer, &mut text, number, row);
+            totals.met += u64::from(found > 0);
+            totals.found += found;
+        }
+        (text, totals)
+    }
+}
+
+impl Traced {
+    /// Rows a second.
+    fn rate(&self) -> f64 {
+        self.totals.asked as f64 / self.trace
+    }
+
+    /// Writes the figures, some of which are the task's own, and says what it came
+    /// to.
+    fn tell(&self, arguments: &TraceArguments, own: Value, came_to: &str) -> anyhow::Result<()> {
+        let common = &arguments.common;
+        let statistics = &self.tracer.statistics();
+        let skipped_rows = self.tracer.scene().skipped_rows;
+        let mut figures = json!({
             "scene": arguments.scene,
-            "rays_file": arguments.rays,
             "output": arguments.output,
-            "rays": rays,
-            "hit_rays": hit_rays,
-            "hits": hits,
-            "check_s": check,
-            "load_s": load,
-            "build_s": build,
-            "trace_s": trace,
-            "rays_per_s": rays_per_s,
+            "check_s": self.check,
+            "load_s": self.load,
+            "build_s": self.build,
+            "trace_s": self.trace,
             "cylinders": json::cylinders(statistics),
+            "other_solids": json::other_solids(statistics),
             "instances": json::count(statistics.instances),
             "memory": json::memory(statistics),
             "skipped": statistics.skipped,
             "skipped_rows": skipped_rows,
             "embree": statistics.embree_version,
             "isa": statistics.isa,
-            "threads": threads,
-        }),
-    )?;
-    if !common.prints() || is_standard_stream(&arguments.output) {
-        return Ok(());
+            "threads": self.threads,
+        });
+        if let (Value::Object(all), Value::Object(own)) = (&mut figures, own) {
+            all.extend(own);
+        }
+        json::write(common, &figures)?;
+        if !common.prints() || is_standard_stream(&arguments.output) {
+            return Ok(());
+        }
+        let mut text = format!("{}: {came_to}\n", arguments.output.display());
+        text += &text::skipped_rows(skipped_rows);
+        text += &format!(
+            "time: check {:.2} s, load {:.2} s, build {:.2} s, trace {:.2} s on {} threads ({:.2} million {} a second, tables included)\n",
+            self.check,
+            self.load,
+            self.build,
+            self.trace,
+            self.threads,
+            self.rate() / 1e6,
+            self.items
+        );
+        print(&text)
     }
-    let more = if arguments.all {
-        format!(", {hits} hits")
-    } else {
-        String::new()
-    };
-    let mut text = format!(
-        "{}: {hit_rays} of {rays} rays hit{more}\n",
-        arguments.output.display()
-    );
-    text += &text::skipped_rows(skipped_rows);
-    text += &format!(
-        "time: check {check:.2} s, load {load:.2} s, build {build:.2} s, trace {trace:.2} s on {threads} threads ({:.2} million rays a second, tables included)\n",
-        rays_per_s / 1e6
-    );
-    print(&text)
-}
-
-/// The number of rays in a table, all of them good.
-fn count_rays(path: &Path) -> anyhow::Result<u64> {
-    let mut count = 0;
-    for_each_batch(path, |blocks| {
-        count += blocks.iter().map(|rays| rays.len() as u64).sum::<u64>();
-        Ok(())
-    })?;
-    Ok(count)
 }
 
 /// Reads a table in the rayon pool that this is called in, and hands on the
-/// rays of some blocks at a time, in order.
-pub fn for_each_batch(
+/// rows of some blocks at a time, in order.
+pub fn for_each_batch<R: Row>(
     path: &Path,
-    mut action: impl FnMut(Vec<Vec<Ray>>) -> anyhow::Result<()>,
+    mut action: impl FnMut(Vec<Vec<R>>) -> anyhow::Result<()>,
 ) -> anyhow::Result<()> {
-    let mut table = RayTable::open(path)?;
+    let mut table = NumberTable::<R>::open(path)?;
     let columns = table.columns();
     loop {
         interrupt::check()?;
@@ -187,67 +360,11 @@ pub fn for_each_batch(
         if blocks.is_empty() {
             return Ok(());
         }
-        let name = ray_table::name(path);
-        let parse = |block: &Block| RayTable::rays(&name, &columns, block);
+        let name = number_table::name(path);
+        let parse = |block: &Block| NumberTable::rows(&name, &columns, block);
         // Collected first, then searched for an error, so that the first bad
         // row is the one that is reported.
         let parsed: Vec<_> = blocks.par_iter().map(parse).collect();
         action(parsed.into_iter().collect::<anyhow::Result<_>>()?)?;
     }
-}
-
-/// Traces the rays of some blocks and writes their rows.
-fn trace_batch(
-    tracer: &Tracer,
-    all: bool,
-    blocks: &[Vec<Ray>],
-    totals: &mut Totals,
-    target: &mut Target,
-) -> anyhow::Result<()> {
-    let numbered: Vec<_> = blocks
-        .iter()
-        .map(|rays| {
-            let first = totals.rays;
-            totals.rays += rays.len() as u64;
-            (first, rays)
-        })
-        .collect();
-    let traced: Vec<(String, Totals)> = numbered
-        .par_iter()
-        .map(|(first, rays)| trace_block(tracer, all, *first, rays))
-        .collect();
-    for (rows, block) in traced {
-        target.write_all(rows.as_bytes())?;
-        totals.hit_rays += block.hit_rays;
-        totals.hits += block.hits;
-    }
-    Ok(())
-}
-
-/// The rows of a block whose rays count from `first`, and what they come to.
-fn trace_block(tracer: &Tracer, all: bool, first: u64, rays: &[Ray]) -> (String, Totals) {
-    let mut rows = String::new();
-    let mut totals = Totals::default();
-    for (number, ray) in (first..).zip(rays) {
-        let mut push = |hit: Option<&Hit>| {
-            hit_table::push_row(&mut rows, number, hit, tracer.scene());
-        };
-        let mut hits = 0;
-        if all {
-            for hit in tracer.all_hits(ray, DEFAULT_BATCH) {
-                push(Some(&hit));
-                hits += 1;
-            }
-        } else if let Some(hit) = tracer.closest(ray) {
-            push(Some(&hit));
-            hits += 1;
-        }
-        if hits == 0 {
-            push(None);
-        }
-        totals.rays += 1;
-        totals.hit_rays += u64::from(hits > 0);
-        totals.hits += hits;
-    }
-    (rows, totals)
 }

@@ -62,6 +62,14 @@ pub enum MeshFileError {
         /// The number given.
         segments: u32,
     },
+    /// There are solids that are not written.
+    #[error(
+        "the scene holds {solids} solids that are no cylinders: only the meshes of cylinders are written"
+    )]
+    OtherSolids {
+        /// How many, as they are stored.
+        solids: u64,
+    },
     /// A PLY file counts vertices in 32 bits.
     #[error(
         "the mesh has {vertices} vertices, and a .ply file can name {}: write an .obj file, or use fewer segments",

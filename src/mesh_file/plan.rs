@@ -61,10 +61,14 @@ impl Plan {
     /// Counts what the prisms of a scene come to.
     ///
     /// # Errors
-    /// When there are no prisms with so many sides.
+    /// When there are no prisms with so many sides, or solids that are no cylinders.
     pub fn new(scene: &Scene, segments: u32, fit: Fit) -> Result<Self, MeshFileError> {
         if !(LEAST_SEGMENTS..=GREATEST_SEGMENTS).contains(&segments) {
             return Err(MeshFileError::Segments { segments });
+        }
+        let solids = scene.census().other_solids_unique;
+        if solids > 0 {
+            return Err(MeshFileError::OtherSolids { solids });
         }
         let mut wholes = vec![None; scene.prototypes.len()];
         let whole = whole(scene, PrototypeIndex::ROOT, segments, fit, &mut wholes);

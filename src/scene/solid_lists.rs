@@ -92,6 +92,17 @@ impl Solids {
         self.len() == 0
     }
 
+    /// The bytes of the records. What a composition holds of its own is left out.
+    #[must_use]
+    pub fn records_bytes(&self) -> usize {
+        size_of_val(self.spheres.as_slice())
+            + size_of_val(self.cuboids.as_slice())
+            + size_of_val(self.cones.as_slice())
+            + size_of_val(self.rounded_cones.as_slice())
+            + size_of_val(self.disks.as_slice())
+            + size_of_val(self.compositions.as_slice())
+    }
+
     /// A box around all of them.
     #[must_use]
     pub fn bounds(&self) -> Bounds {

@@ -59,6 +59,8 @@ pub(crate) struct Plan {
     /// For every prototype, the cylinders in it and in all it places; counts
     /// beyond u128 stay at its greatest number.
     pub instanced_cylinders: Vec<u128>,
+    /// For every prototype, the solids of other kinds likewise.
+    pub instanced_others: Vec<u128>,
     /// For every prototype, the placements in it and in all it places.
     pub instances: Vec<u128>,
 }
@@ -78,6 +80,7 @@ impl Plan {
         let mut plan = Self {
             order: Vec::new(),
             instanced_cylinders: vec![0; count],
+            instanced_others: vec![0; count],
             instances: vec![0; count],
         };
         let mut nesting = vec![None; count];
@@ -120,6 +123,7 @@ impl Plan {
                 Ok::<_, TracerError>(Total {
                     nesting: child.placed(&errors, &scene.prototypes[of].name)?,
                     cylinders: self.instanced_cylinders[of],
+                    others: self.instanced_others[of],
                     instances: self.instances[of].saturating_add(1),
                 })
             })
@@ -132,6 +136,8 @@ impl Plan {
         }
         let cylinders = prototype.cylinders.len() as u128;
         self.instanced_cylinders[index.0 as usize] = total.cylinders.saturating_add(cylinders);
+        let others = prototype.solids.len() as u128;
+        self.instanced_others[index.0 as usize] = total.others.saturating_add(others);
         self.instances[index.0 as usize] = total.instances;
         self.order.push(index);
         known[index.0 as usize] = Some(nesting);
@@ -184,6 +190,7 @@ impl Nesting {
 struct Total {
     nesting: Nesting,
     cylinders: u128,
+    others: u128,
     instances: u128,
 }
 
@@ -196,6 +203,7 @@ impl Default for Total {
                 greatest: 1.0,
             },
             cylinders: 0,
+            others: 0,
             instances: 0,
         }
     }
@@ -211,6 +219,7 @@ impl Total {
                 greatest: one.greatest.max(two.greatest),
             },
             cylinders: self.cylinders.saturating_add(other.cylinders),
+            others: self.others.saturating_add(other.others),
             instances: self.instances.saturating_add(other.instances),
         }
     }

@@ -11,6 +11,7 @@
 mod all_hits;
 mod batch;
 mod build;
+mod contains;
 pub mod counters;
 mod estimate;
 mod first_hit;
@@ -28,6 +29,7 @@ use std::sync::Arc;
 
 pub use all_hits::{AllHits, DEFAULT_BATCH};
 pub use build::TracerError;
+pub use contains::Containing;
 pub use estimate::MemoryEstimate;
 pub use first_hit::FirstHit;
 pub(crate) use frame::{Frame, LocalRay};
@@ -187,6 +189,8 @@ impl Tracer {
         Statistics {
             cylinders_unique: self.counted.cylinders_unique,
             cylinders_instanced: self.counted.cylinders_instanced,
+            other_solids_unique: self.counted.other_solids_unique,
+            other_solids_instanced: self.counted.other_solids_instanced,
             instances: self.counted.instances,
             embree_bytes: self.device.memory_bytes(),
             records_bytes: self.counted.described_bytes + kept,
@@ -216,7 +220,7 @@ impl Tracer {
         trace(root, &LocalRay::new(&ray), &mut query);
         let first = match query.keep {
             Keep::First(nearest) => nearest.map(|nearest| FirstHit::new(nearest, factors)),
-            Keep::Next(_) => None,
+            Keep::Next(_) | Keep::Holding(_) => None,
         };
         (first, query.callbacks)
     }

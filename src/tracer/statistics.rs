@@ -16,12 +16,16 @@ pub struct Statistics {
     pub cylinders_unique: u64,
     /// Cylinders in the scene with every placement counted.
     pub cylinders_instanced: u128,
+    /// Solids of other kinds in the prototypes that the root places.
+    pub other_solids_unique: u64,
+    /// Solids of other kinds with every placement counted.
+    pub other_solids_instanced: u128,
     /// Placements in the scene, those within placed prototypes counted each
     /// time.
     pub instances: u128,
     /// Memory that Embree holds.
     pub embree_bytes: usize,
-    /// Memory of the records of cylinders and placements.
+    /// Memory of the records of solids and placements.
     pub records_bytes: usize,
     /// What was left out because the scene does not need it, so far.
     pub skipped: Vec<String>,
@@ -35,6 +39,8 @@ pub struct Statistics {
 pub(super) struct Counted {
     pub cylinders_unique: u64,
     pub cylinders_instanced: u128,
+    pub other_solids_unique: u64,
+    pub other_solids_instanced: u128,
     pub instances: u128,
     pub described_bytes: usize,
     /// The prototypes that the root needs.
@@ -43,11 +49,15 @@ pub(super) struct Counted {
 
 impl Counted {
     pub fn new(scene: &Scene, plan: &Plan) -> Self {
-        let cylinders =
-            |index: &PrototypeIndex| scene.prototypes[index.0 as usize].cylinders.len() as u64;
+        let needed = || {
+            let needed = plan.order.iter();
+            needed.map(|index| &scene.prototypes[index.0 as usize])
+        };
         Self {
-            cylinders_unique: plan.order.iter().map(cylinders).sum(),
+            cylinders_unique: needed().map(|one| one.cylinders.len() as u64).sum(),
             cylinders_instanced: plan.instanced_cylinders[0],
+            other_solids_unique: needed().map(|one| one.solids.len() as u64).sum(),
+            other_solids_instanced: plan.instanced_others[0],
             instances: plan.instances[0],
             described_bytes: described_bytes(scene),
             needed: plan.order.clone(),
@@ -101,6 +111,7 @@ fn described_bytes(scene: &Scene) -> usize {
     prototypes
         .map(|prototype| {
             prototype.cylinders.records_bytes()
+                + prototype.solids.records_bytes()
                 + prototype.placements.len() * size_of::<Placement>()
         })
         .sum()

@@ -53,7 +53,8 @@ fn in_rust() -> BTreeMap<String, u64> {
         crossing,
         material,
         instance_count,
-        instance
+        instance,
+        solid
     );
     layout!(
         numbers,
@@ -89,6 +90,18 @@ fn in_rust() -> BTreeMap<String, u64> {
         CYLTRACE_SIDE,
         CYLTRACE_CAP0,
         CYLTRACE_CAP1,
+        CYLTRACE_X_MIN,
+        CYLTRACE_X_MAX,
+        CYLTRACE_Y_MIN,
+        CYLTRACE_Y_MAX,
+        CYLTRACE_Z_MIN,
+        CYLTRACE_Z_MAX,
+        CYLTRACE_SOLID_CYLINDER,
+        CYLTRACE_SOLID_CONE,
+        CYLTRACE_SOLID_ROUNDED_CONE,
+        CYLTRACE_SOLID_SPHERE,
+        CYLTRACE_SOLID_CUBOID,
+        CYLTRACE_SOLID_DISK,
         CYLTRACE_ENTER,
         CYLTRACE_LEAVE,
         CYLTRACE_CAMERA,

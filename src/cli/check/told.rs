@@ -134,7 +134,7 @@ fn given_rays(arguments: &CheckArguments) -> anyhow::Result<Option<Vec<Ray>>> {
         return Ok(None);
     };
     let mut rays = Vec::new();
-    for_each_batch(path, |blocks| {
+    for_each_batch(path, |blocks: Vec<Vec<Ray>>| {
         rays.extend(blocks.into_iter().flatten());
         Ok(())
     })?;

@@ -114,6 +114,8 @@ pub(crate) enum Keep {
     First(Option<Nearest>),
     /// The next hits after one that is known.
     Next(Next),
+    /// The solids that hold the ray's origin, whatever its range.
+    Holding(Vec<Place>),
 }
 
 /// The next hits after one that is known, at most so many.
@@ -134,7 +136,7 @@ impl Keep {
             Self::Next(next) if next.hits.len() == next.most => {
                 next.hits.last().map_or(t_max, |last| last.met.meeting.t)
             }
-            Self::Next(_) => t_max,
+            Self::Next(_) | Self::Holding(_) => t_max,
         }
     }
 }

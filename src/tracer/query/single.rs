@@ -1,9 +1,11 @@
 //! A query of one ray.
 
+use glam::DVec3;
+
 use super::found::{Found, InstancePath, Keep, Member, Nearest, Next, Place};
 use crate::embree::{self, Ray32};
 use crate::math::{LaneMask, Lanes, Ray};
-use crate::solid::{Cylinder, Meeting, SolidKind, triple_product};
+use crate::solid::{ConvexSolid, Cylinder, Meeting, SolidKind, triple_product};
 use crate::tracer::counters;
 use crate::tracer::frame::{Frame, Level, LocalRay};
 use crate::tracer::prototype::{CylinderBlock, Cylinders, Described, Ends, SolidList};
@@ -54,6 +56,15 @@ impl Query {
         }
     }
 
+    /// A query for the solids that hold the origin of a ray, whose range is that
+    /// point.
+    pub fn holding(ray: &Ray) -> Self {
+        Self {
+            keep: Keep::Holding(Vec::new()),
+            ..Self::first(ray)
+        }
+    }
+
     /// The greatest `t` that can still be part of the answer.
     #[inline(always)]
     pub fn bound(&self) -> f64 {
@@ -69,7 +80,7 @@ impl Query {
             Keep::Next(Next {
                 after: Some(after), ..
             }) => after.met.meeting.t,
-            Keep::First(_) | Keep::Next(_) => self.t_min,
+            Keep::First(_) | Keep::Next(_) | Keep::Holding(_) => self.t_min,
         }
     }
 
@@ -119,15 +130,20 @@ impl Query {
         }
     }
 
-    /// As [`Query::visit`], where all hits are asked for.
+    /// As [`Query::visit`], where all hits are asked for, or what holds the origin.
     #[cold]
     fn visit_all(&mut self, cylinder: &Cylinder, cylinders: &Cylinders, record: u32) {
+        let member = Member::new(SolidKind::Cylinder, record);
+        if let Keep::Holding(_) = self.keep {
+            return self.hold(cylinders.described(), member, |point| {
+                cylinder.contains(point)
+            });
+        }
         let ray = &self.level().ray;
         let (from_p0, shift) = (ray.origin_from(cylinder.p0()), ray.shift);
         let Some(chord) = triple_product::chord(cylinder, from_p0, ray.direction) else {
             return;
         };
-        let member = Member::new(SolidKind::Cylinder, record);
         let (bound, t_min) = (self.bound(), self.t_min);
         let mut offer = self.next_of(cylinders.described(), member);
         for meeting in chord.meetings(cylinder.caps(), shift, t_min, bound) {
@@ -142,13 +158,37 @@ impl Query {
         let solid = list.solid(record);
         let member = Member::new(solid.kind(), record);
         let (ray, bound, t_min) = (self.level().ray, self.bound(), self.t_min);
-        if let Keep::First(_) = self.keep {
-            if let Some(met) = solid.first(&ray, t_min, bound) {
-                self.offer(met.meeting.t, list.described(), member);
+        match self.keep {
+            Keep::First(_) => {
+                if let Some(met) = solid.first(&ray, t_min, bound) {
+                    self.offer(met.meeting.t, list.described(), member);
+                }
             }
-        } else {
-            let offer = self.next_of(list.described(), member);
-            solid.each_meeting(&ray, t_min, bound, offer);
+            Keep::Next(_) => {
+                let offer = self.next_of(list.described(), member);
+                solid.each_meeting(&ray, t_min, bound, offer);
+            }
+            Keep::Holding(_) => {
+                self.hold(list.described(), member, |point| solid.contains(point));
+            }
+        }
+    }
+
+    /// Keeps a solid if it `contains` the origin of the ray.
+    fn hold(
+        &mut self,
+        described: &Described,
+        member: Member,
+        contains: impl FnOnce(DVec3) -> bool,
+    ) {
+        let Level { ray, .. } = self.level();
+        // A ray that was moved began far away from all that is here.
+        let is_moved = ray.shift != 0.0 || ray.base != DVec3::ZERO;
+        if is_moved || !contains(ray.origin) {
+            return;
+        }
+        if let Keep::Holding(places) = &mut self.keep {
+            places.push(Place::new(described.index(), member, &self.path));
         }
     }
 
@@ -194,7 +234,7 @@ impl Query {
     /// As [`Query::visit`] for all cylinders of a block.
     #[inline(always)]
     pub fn visit_block<E: Ends>(&mut self, block: &impl CylinderBlock, cylinders: &Cylinders) {
-        if let Keep::Next(_) = self.keep {
+        if !matches!(self.keep, Keep::First(_)) {
             for record in block.records() {
                 self.visit_all(&cylinders.cylinder(record), cylinders, record);
             }

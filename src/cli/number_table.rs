@@ -1,4 +1,5 @@
-//! Tables of rays: `ox,oy,oz,dx,dy,dz` and optionally `t_min,t_max`.
+//! Tables of rays, `ox,oy,oz,dx,dy,dz` and optionally `t_min,t_max`, and of points,
+//! `x,y,z`.
 //!
 //! The first line that is neither blank nor a comment (`#`) names the columns,
 //! in any order. Spaces and double quotes around cells are ignored. The table
@@ -7,6 +8,7 @@
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
+use std::marker::PhantomData;
 use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
@@ -15,30 +17,73 @@ use glam::DVec3;
 
 use super::target::is_standard_stream;
 
-/// The columns' names; the last two may be absent.
-const NAMES: [&str; 8] = ["ox", "oy", "oz", "dx", "dy", "dz", "t_min", "t_max"];
+/// What a row of a table says.
+pub trait Row: Sized + Send {
+    /// The columns' names, at most [`MOST_COLUMNS`]: first those that hold finite
+    /// numbers and must be there, then those that may be absent.
+    const NAMES: &'static [&'static str];
 
-/// What stands for a column that is absent.
-const DEFAULTS: [f64; 8] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f64::INFINITY];
+    /// Columns that a table must have.
+    const REQUIRED: usize;
 
-/// Columns that a table must have.
-const REQUIRED: usize = 6;
+    /// What stands for the columns that are absent.
+    const DEFAULTS: &'static [f64];
 
-/// Bytes of a block, about 1000 rays: enough that handing it to a thread costs
+    /// The row of numbers, one a column.
+    fn of(values: &[f64]) -> anyhow::Result<Self>;
+}
+
+impl Row for Ray {
+    const NAMES: &'static [&'static str] = &["ox", "oy", "oz", "dx", "dy", "dz", "t_min", "t_max"];
+    const REQUIRED: usize = 6;
+    const DEFAULTS: &'static [f64] = &[0.0, f64::INFINITY];
+
+    fn of(values: &[f64]) -> anyhow::Result<Self> {
+        let ray = Self {
+            origin: DVec3::from_slice(values),
+            direction: DVec3::from_slice(&values[3..]),
+            t_min: values[6],
+            t_max: values[7],
+        };
+        if ray.direction == DVec3::ZERO {
+            bail!("columns \"dx\", \"dy\", \"dz\": the direction is zero; it must have a length");
+        }
+        let (t_min, t_max) = (ray.t_min, ray.t_max);
+        if t_min > t_max {
+            bail!("columns \"t_min\", \"t_max\": {t_min:?} is greater than {t_max:?}");
+        }
+        Ok(ray)
+    }
+}
+
+/// A point.
+impl Row for DVec3 {
+    const NAMES: &'static [&'static str] = &["x", "y", "z"];
+    const REQUIRED: usize = 3;
+    const DEFAULTS: &'static [f64] = &[];
+
+    fn of(values: &[f64]) -> anyhow::Result<Self> {
+        Ok(Self::from_slice(values))
+    }
+}
+
+/// The most columns of any table.
+const MOST_COLUMNS: usize = 8;
+
+/// Bytes of a block, about 1000 rows: enough that handing it to a thread costs
 /// nothing, few enough to share the work evenly.
 const BLOCK_BYTES: usize = 1 << 16;
 
 /// A table that is being read.
-pub struct RayTable {
+pub struct NumberTable<R> {
     name: String,
     reader: BufReader<Box<dyn Read>>,
     line: u64,
-    columns: Columns,
+    columns: Columns<R>,
 }
 
-/// What each cell of a row is: a position in [`NAMES`].
-#[derive(Clone)]
-pub struct Columns(Vec<usize>);
+/// What each cell of a row is: a position in [`Row::NAMES`].
+pub struct Columns<R>(Vec<usize>, PhantomData<fn() -> R>);
 
 /// Some whole lines of a table.
 pub struct Block {
@@ -55,7 +100,7 @@ pub fn name(path: &Path) -> String {
     }
 }
 
-impl RayTable {
+impl<R: Row> NumberTable<R> {
     /// Opens a table and reads its header.
     pub fn open(path: &Path) -> anyhow::Result<Self> {
         let name = name(path);
@@ -73,7 +118,7 @@ impl RayTable {
             name: name.clone(),
             reader: BufReader::with_capacity(BLOCK_BYTES, input),
             line: 0,
-            columns: Columns(Vec::new()),
+            columns: Columns(Vec::new(), PhantomData),
         };
         let mut line = Vec::new();
         loop {
@@ -86,7 +131,7 @@ impl RayTable {
             {
                 bail!(
                     "{name}: there is no header; it must name the columns {}",
-                    NAMES[..REQUIRED].join(",")
+                    R::NAMES[..R::REQUIRED].join(",")
                 );
             }
             table.line += 1;
@@ -100,8 +145,8 @@ impl RayTable {
     }
 
     /// What the cells are.
-    pub fn columns(&self) -> Columns {
-        self.columns.clone()
+    pub fn columns(&self) -> Columns<R> {
+        Columns(self.columns.0.clone(), PhantomData)
     }
 
     /// The next lines, or `None` at the end.
@@ -120,28 +165,28 @@ impl RayTable {
         Ok((!block.text.is_empty()).then_some(block))
     }
 
-    /// The rays of a block of the table of that name.
-    pub fn rays(name: &str, columns: &Columns, block: &Block) -> anyhow::Result<Vec<Ray>> {
-        let mut rays = Vec::with_capacity(block.text.len() / 32);
+    /// The rows of a block of the table of that name.
+    pub fn rows(name: &str, columns: &Columns<R>, block: &Block) -> anyhow::Result<Vec<R>> {
+        let mut rows = Vec::with_capacity(block.text.len() / 32);
         for (number, line) in (block.first_line..).zip(block.text.split(|&byte| byte == b'\n')) {
             let at = || format!("{name}:{number}");
             if let Some(row) = content(line).with_context(at)? {
-                rays.push(columns.ray(row).with_context(at)?);
+                rows.push(columns.row(row).with_context(at)?);
             }
         }
-        Ok(rays)
+        Ok(rows)
     }
 }
 
-impl Columns {
+impl<R: Row> Columns<R> {
     /// The columns of a header.
     fn named(header: &str) -> anyhow::Result<Self> {
         let mut columns = Vec::new();
         for name in header.split(',').map(cell) {
-            let Some(column) = NAMES.iter().position(|known| *known == name) else {
+            let Some(column) = R::NAMES.iter().position(|known| *known == name) else {
                 bail!(
                     "there is no column {name:?}: columns are {}",
-                    NAMES.join(",")
+                    R::NAMES.join(",")
                 );
             };
             if columns.contains(&column) {
@@ -149,41 +194,29 @@ impl Columns {
             }
             columns.push(column);
         }
-        if let Some(missing) = (0..REQUIRED).find(|column| !columns.contains(column)) {
+        if let Some(missing) = (0..R::REQUIRED).find(|column| !columns.contains(column)) {
             bail!(
                 "column {:?} is missing: the header must name {}",
-                NAMES[missing],
-                NAMES[..REQUIRED].join(",")
+                R::NAMES[missing],
+                R::NAMES[..R::REQUIRED].join(",")
             );
         }
-        Ok(Self(columns))
+        Ok(Self(columns, PhantomData))
     }
 
-    /// The ray of a row.
-    fn ray(&self, row: &str) -> anyhow::Result<Ray> {
-        let mut values = DEFAULTS;
+    /// What a row says.
+    fn row(&self, row: &str) -> anyhow::Result<R> {
+        let mut values = [0.0; MOST_COLUMNS];
+        values[R::REQUIRED..R::NAMES.len()].copy_from_slice(R::DEFAULTS);
         let mut cells = row.split(',').map(cell);
         for &column in &self.0 {
             let text = cells.next().ok_or_else(|| self.wrong_width(row))?;
-            values[column] = number(column, text)?;
+            values[column] = number::<R>(column, text)?;
         }
         if cells.next().is_some() {
             return Err(self.wrong_width(row));
         }
-        let [ox, oy, oz, dx, dy, dz, t_min, t_max] = values;
-        let ray = Ray {
-            origin: DVec3::new(ox, oy, oz),
-            direction: DVec3::new(dx, dy, dz),
-            t_min,
-            t_max,
-        };
-        if ray.direction == DVec3::ZERO {
-            bail!("columns \"dx\", \"dy\", \"dz\": the direction is zero; it must have a length");
-        }
-        if t_min > t_max {
-            bail!("columns \"t_min\", \"t_max\": {t_min:?} is greater than {t_max:?}");
-        }
-        Ok(ray)
+        R::of(&values[..R::NAMES.len()])
     }
 
     fn wrong_width(&self, row: &str) -> anyhow::Error {
@@ -209,14 +242,15 @@ fn cell(text: &str) -> &str {
     unquoted.map_or(text, str::trim)
 }
 
-/// The value of a cell: finite, or at least not NaN for the ray's range.
-fn number(column: usize, text: &str) -> anyhow::Result<f64> {
-    let range = column >= REQUIRED;
+/// The value of a cell: finite, or at least not NaN where it may be absent, as the
+/// ray's range.
+fn number<R: Row>(column: usize, text: &str) -> anyhow::Result<f64> {
+    let range = column >= R::REQUIRED;
     let value: f64 = text.parse().unwrap_or(f64::NAN);
     if value.is_nan() || (!range && value.is_infinite()) {
         bail!(
             "column {:?}: {:?} must be a {}number",
-            NAMES[column],
+            R::NAMES[column],
             shortened(text),
             if range { "" } else { "finite " }
         );
