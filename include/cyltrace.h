@@ -94,6 +94,9 @@ struct cyltrace_ray {
 #define CYLTRACE_SOLID_SPHERE 3u
 #define CYLTRACE_SOLID_CUBOID 4u
 #define CYLTRACE_SOLID_DISK 5u
+#define CYLTRACE_SOLID_UNION 6u /* of these three, the part is that of the solid met */
+#define CYLTRACE_SOLID_INTERSECTION 7u
+#define CYLTRACE_SOLID_DIFFERENCE 8u
 
 /* cyltrace_hit.crossing */
 #define CYLTRACE_ENTER 0u /* against the outward normal */

@@ -65,6 +65,12 @@ pub const CYLTRACE_SOLID_SPHERE: u32 = 3;
 pub const CYLTRACE_SOLID_CUBOID: u32 = 4;
 /// [`CyltraceHit::solid`]: a disk.
 pub const CYLTRACE_SOLID_DISK: u32 = 5;
+/// [`CyltraceHit::solid`]: a union of solids; the part is that of the one met.
+pub const CYLTRACE_SOLID_UNION: u32 = 6;
+/// [`CyltraceHit::solid`]: an intersection of solids.
+pub const CYLTRACE_SOLID_INTERSECTION: u32 = 7;
+/// [`CyltraceHit::solid`]: a solid without others.
+pub const CYLTRACE_SOLID_DIFFERENCE: u32 = 8;
 
 /// [`CyltraceHit::crossing`]: the ray goes into the solid.
 pub const CYLTRACE_ENTER: u32 = 0;
@@ -234,6 +240,9 @@ impl From<&Hit> for CyltraceHit {
                 SolidKind::Sphere => CYLTRACE_SOLID_SPHERE,
                 SolidKind::Cuboid => CYLTRACE_SOLID_CUBOID,
                 SolidKind::Disk => CYLTRACE_SOLID_DISK,
+                SolidKind::Union => CYLTRACE_SOLID_UNION,
+                SolidKind::Intersection => CYLTRACE_SOLID_INTERSECTION,
+                SolidKind::Difference => CYLTRACE_SOLID_DIFFERENCE,
             },
         }
     }

@@ -92,6 +92,9 @@ impl Prototype {
             SolidKind::Cone => solids.cones[position].primitive,
             SolidKind::RoundedCone => solids.rounded_cones[position].primitive,
             SolidKind::Disk => solids.disks[position].primitive,
+            SolidKind::Union | SolidKind::Intersection | SolidKind::Difference => {
+                solids.compositions[position].primitive
+            }
         }
     }
 }

@@ -5,10 +5,10 @@ use toml::Spanned;
 use super::cylinder_list::{CylinderList, Records};
 use super::description::{CylinderRecord, MaterialIndex};
 use super::error::SceneError;
-use super::solid_lists::{Composition, SolidRecord, Solids};
+use super::solid_lists::{SolidRecord, Solids};
 use super::source::Source;
 use crate::math::Bounds;
-use crate::solid::{AnySolid, Caps, ConeError, Cylinder, CylinderError};
+use crate::solid::{AnySolid, Caps, Composition, ConeError, Cylinder, CylinderError};
 
 /// What to say about rows that `degenerate = "skip"` would leave out.
 pub(super) const SKIP_HELP: &str =

@@ -58,5 +58,7 @@ pub use error::{SceneError, Statement};
 pub use limits::{GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_PIXELS, GREATEST_STRETCH};
 pub use load::load;
 pub use scene_file::SceneFile;
-pub use solid_lists::{Composition, CompositionRecord, Listed, SolidRecord, Solids};
+pub use solid_lists::{CompositionRecord, Listed, SolidRecord, Solids};
 pub use view_volume::ViewVolume;
+
+pub use crate::solid::Composition;

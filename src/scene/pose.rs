@@ -14,11 +14,10 @@ use toml::Spanned;
 use super::error::SceneError;
 use super::settings::vector;
 use super::solid_keys::{PoseKeys, RotationKeys};
-use super::solid_lists::Composition;
 use super::source::Source;
 use super::values::{Keys, Number};
 use crate::math::{Orientation, unit};
-use crate::solid::{AnySolid, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
+use crate::solid::{AnySolid, Composition, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 
 /// A turn about a centre that is not known yet, and a translation.
 pub(super) struct Motion<'a> {

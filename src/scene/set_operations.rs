@@ -8,11 +8,10 @@ use toml::Spanned;
 use super::error::SceneError;
 use super::pose::Motion;
 use super::solid_keys::{CompositionKeys, OperandKeys, SolidTable};
-use super::solid_lists::Composition;
 use super::solids::SolidKeys;
 use super::source::Source;
 use super::values::Keys;
-use crate::solid::AnySolid;
+use crate::solid::{AnySolid, Composition};
 
 /// What to do with the operands.
 #[derive(Clone, Copy)]

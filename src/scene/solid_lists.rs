@@ -2,7 +2,7 @@
 
 use super::description::MaterialIndex;
 use crate::math::Bounds;
-use crate::solid::{AnySolid, Cone, ConvexSolid, Cuboid, Disk, RoundedCone, Sphere};
+use crate::solid::{Composition, Cone, ConvexSolid, Cuboid, Disk, RoundedCone, Sphere};
 
 /// The solids of a prototype that are no cylinders, each list in the order of
 /// the primitive numbers.
@@ -74,23 +74,6 @@ listed! {
 /// A composed solid with its number and material.
 pub type CompositionRecord = SolidRecord<Composition>;
 
-/// A solid that is composed of others by set operations. Its points are those
-/// that the operations say, its surface their boundary.
-///
-/// What a scene file states has no open ends, no disks and no operation without
-/// an operand.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Composition {
-    /// A solid as it is.
-    Solid(AnySolid),
-    /// What is in any of them.
-    Union(Vec<Composition>),
-    /// What is in all of them.
-    Intersection(Vec<Composition>),
-    /// What is in the first and in none of the others.
-    Difference(Vec<Composition>),
-}
-
 impl Solids {
     /// How many there are.
     #[must_use]
@@ -148,48 +131,5 @@ impl Solids {
         self.rounded_cones.shrink_to_fit();
         self.disks.shrink_to_fit();
         self.compositions.shrink_to_fit();
-    }
-}
-
-impl Composition {
-    /// The solids that it is composed of, from the first to the last.
-    #[must_use]
-    pub fn solids(&self) -> Vec<AnySolid> {
-        let mut solids = Vec::new();
-        let mut open = vec![self];
-        while let Some(next) = open.pop() {
-            match next {
-                Self::Solid(solid) => solids.push(*solid),
-                Self::Union(parts) | Self::Intersection(parts) | Self::Difference(parts) => {
-                    open.extend(parts.iter().rev());
-                }
-            }
-        }
-        solids
-    }
-
-    /// A box that holds it: of a union the box of all boxes, of an intersection what
-    /// is in all of them, of a difference the first. [`Bounds::EMPTY`] where that
-    /// shows that nothing is left.
-    #[must_use]
-    pub fn bounds(&self) -> Bounds {
-        let boxes = |parts: &[Self]| parts.iter().map(Self::bounds).collect::<Vec<_>>();
-        match self {
-            Self::Solid(solid) => solid.bounds(),
-            Self::Union(parts) => {
-                let boxes = boxes(parts).into_iter();
-                boxes.fold(Bounds::EMPTY, |sum, bounds| sum.union(&bounds))
-            }
-            Self::Intersection(parts) => {
-                let common = boxes(parts).into_iter().reduce(|one, other| Bounds {
-                    lower: one.lower.max(other.lower),
-                    upper: one.upper.min(other.upper),
-                });
-                common
-                    .filter(|bounds| bounds.lower.cmple(bounds.upper).all())
-                    .unwrap_or(Bounds::EMPTY)
-            }
-            Self::Difference(parts) => parts.first().map_or(Bounds::EMPTY, Self::bounds),
-        }
     }
 }

@@ -2,7 +2,10 @@
 
 use glam::DVec3;
 
-use super::{Caps, Cone, ConvexSolid, Cuboid, Cylinder, Disk, RoundedCone, SolidKind, Sphere};
+use super::{
+    Caps, Chord, Cone, ConvexSolid, Cuboid, Cylinder, Disk, Location, Part, RoundedCone, SolidKind,
+    SpawnMargin, Sphere, SurfacePoint,
+};
 use crate::math::Bounds;
 
 /// A solid of whichever kind, where kinds are mixed and few: each list of a scene
@@ -21,6 +24,20 @@ pub enum AnySolid {
     Cuboid(Cuboid),
     /// A flat disk.
     Disk(Disk),
+}
+
+/// The same of a solid, whatever its kind is.
+macro_rules! of_each {
+    ($any:expr, $solid:ident => $what:expr) => {
+        match $any {
+            Self::Cylinder($solid) => $what,
+            Self::Cone($solid) => $what,
+            Self::RoundedCone($solid) => $what,
+            Self::Sphere($solid) => $what,
+            Self::Cuboid($solid) => $what,
+            Self::Disk($solid) => $what,
+        }
+    };
 }
 
 impl AnySolid {
@@ -53,6 +70,42 @@ impl AnySolid {
         }
     }
 
+    /// As [`ConvexSolid::anchor`].
+    #[must_use]
+    pub fn anchor(&self) -> DVec3 {
+        of_each!(self, solid => solid.anchor())
+    }
+
+    /// As [`ConvexSolid::chord`].
+    #[must_use]
+    pub fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
+        of_each!(self, solid => solid.chord(from_anchor, direction))
+    }
+
+    /// As [`ConvexSolid::surface_point`].
+    #[must_use]
+    pub fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {
+        of_each!(self, solid => solid.surface_point(part, from_anchor))
+    }
+
+    /// As [`ConvexSolid::locate`].
+    #[must_use]
+    pub fn locate(&self, point: DVec3) -> Location {
+        of_each!(self, solid => solid.locate(point))
+    }
+
+    /// As [`ConvexSolid::size`].
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        of_each!(self, solid => solid.size())
+    }
+
+    /// As [`SpawnMargin::of_solid`].
+    #[must_use]
+    pub fn spawn_margin(&self, surface: &SurfacePoint) -> SpawnMargin {
+        of_each!(self, solid => SpawnMargin::of_solid(solid, surface))
+    }
+
     /// Whether its surface is the boundary of a solid with an inside.
     #[must_use]
     pub fn is_closed(&self) -> bool {
@@ -67,14 +120,7 @@ impl AnySolid {
     /// A box that holds it, rounded outward.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
-        match self {
-            Self::Cylinder(cylinder) => cylinder.bounds(),
-            Self::Cone(cone) => cone.bounds(),
-            Self::RoundedCone(cone) => cone.bounds(),
-            Self::Sphere(sphere) => sphere.bounds(),
-            Self::Cuboid(cuboid) => cuboid.bounds(),
-            Self::Disk(disk) => disk.bounds(),
-        }
+        of_each!(self, solid => solid.bounds())
     }
 }
 

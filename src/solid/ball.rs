@@ -27,13 +27,11 @@
 //! term of (1), and `q` the sum that does not cancel; next to the sphere `C` is
 //! computed from exact numbers.
 
-use std::cmp::Ordering;
-
 use glam::DVec3;
 
-use super::Part;
 use super::chord::{Chord, ChordEnd};
 use super::exact::{Expression, Number, cross, difference, dot, quotient, sign, vector};
+use super::{Location, Part};
 use crate::math::{UNIT_ROUNDOFF, power_of_two};
 
 /// The relative error up to which rounded products of `D` will do: the roots then
@@ -97,14 +95,16 @@ pub(super) fn chord_about(
     })
 }
 
-/// Whether the closed ball holds a point, exactly.
-pub(super) fn holds(centre: DVec3, radius: f64, point: DVec3) -> bool {
-    let from = FromBall {
+/// Where a point is, exactly.
+pub(super) fn locate(centre: DVec3, radius: f64, point: DVec3) -> Location {
+    if !point.is_finite() {
+        return Location::Outside;
+    }
+    Location::of_sign(sign(&FromBall {
         point,
         centre,
         radius,
-    };
-    point.is_finite() && sign(&from) != Ordering::Greater
+    }))
 }
 
 /// A point and a ball; as an expression `|point - centre|² - radius²`.
@@ -207,8 +207,10 @@ mod tests {
     #[test]
     fn sphere_belongs_to_the_ball() {
         let (centre, point) = (DVec3::new(1e8, 0.0, 0.0), DVec3::new(1e8 + 3.0, 4.0, 0.0));
-        assert!(holds(centre, 5.0, point));
-        assert!(!holds(centre, 5.0_f64.next_down(), point));
-        assert!(!holds(centre, 5.0, DVec3::INFINITY));
+        assert_eq!(locate(centre, 5.0, point), Location::Boundary);
+        assert_eq!(locate(centre, 5.0_f64.next_up(), point), Location::Inside);
+        let outside = locate(centre, 5.0_f64.next_down(), point);
+        assert_eq!(outside, Location::Outside);
+        assert_eq!(locate(centre, 5.0, DVec3::INFINITY), Location::Outside);
     }
 }

@@ -5,6 +5,7 @@
 //! ray follows from that interval and from which parts of the boundary are
 //! there; `chord.rs` has the one step that turns it into hits.
 
+use std::cmp::Ordering;
 use std::fmt::Debug;
 
 use glam::DVec3;
@@ -59,10 +60,54 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// from_anchor`, its outward unit normal, parameters and error bound.
     fn surface_point(&self, part: super::Part, from_anchor: DVec3) -> SurfacePoint;
 
-    /// Whether the closed solid holds a point. Exact: the point's numbers and
-    /// the solid's are taken as they are.
-    fn contains(&self, point: DVec3) -> bool;
+    /// Where a point is. Exact: the point's numbers and the solid's are taken as
+    /// they are.
+    fn locate(&self, point: DVec3) -> Location;
+
+    /// Whether the closed solid holds a point, as exactly.
+    fn contains(&self, point: DVec3) -> bool {
+        self.locate(point).is_held()
+    }
 
     /// Bounds the distance of any two of its points.
     fn size(&self) -> f64;
+}
+
+/// Where a point is, seen from a closed solid; in the order of how far in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Location {
+    /// Not of the solid. A point that is not finite is outside.
+    Outside,
+    /// Of its boundary, which is all of a solid without an inside.
+    Boundary,
+    /// Of its interior.
+    Inside,
+}
+
+impl Location {
+    /// By the sign of what is positive outside.
+    #[must_use]
+    pub(super) fn of_sign(outside: Ordering) -> Self {
+        match outside {
+            Ordering::Less => Self::Inside,
+            Ordering::Equal => Self::Boundary,
+            Ordering::Greater => Self::Outside,
+        }
+    }
+
+    /// Whether the closed solid holds the point.
+    #[must_use]
+    pub fn is_held(self) -> bool {
+        self != Self::Outside
+    }
+
+    /// As seen from all that is not the solid, which has the same boundary.
+    #[must_use]
+    pub(super) fn of_complement(self) -> Self {
+        match self {
+            Self::Outside => Self::Inside,
+            Self::Boundary => Self::Boundary,
+            Self::Inside => Self::Outside,
+        }
+    }
 }

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::{
-    Chord, Cone, ConvexSolid, Part, SolidKind, SurfacePoint, surface_point, triple_product,
+    Chord, Cone, ConvexSolid, Location, Part, SolidKind, SurfacePoint, surface_point,
+    triple_product,
 };
 use crate::math::{Bounds, UNIT_ROUNDOFF, power_of_two};
 
@@ -210,8 +211,8 @@ impl ConvexSolid for Cylinder {
     }
 
     /// A cone's answer, with equal radii: both are the same set.
-    fn contains(&self, point: DVec3) -> bool {
-        Cone::from_valid(self.p0, self.p1, self.radius, self.radius, self.caps).contains(point)
+    fn locate(&self, point: DVec3) -> Location {
+        Cone::from_valid(self.p0, self.p1, self.radius, self.radius, self.caps).locate(point)
     }
 
     fn size(&self) -> f64 {

@@ -25,7 +25,9 @@ use glam::DVec3;
 use super::cylinder::disc_reach;
 use super::exact::{Expression, Number, cross, difference, dot, sign, vector};
 use super::surface::Around;
-use super::{Chord, ChordEnd, ConvexSolid, Cylinder, Part, SolidKind, SurfacePoint, ball, linear};
+use super::{
+    Chord, ChordEnd, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint, ball, linear,
+};
 use crate::math::{Bounds, UNIT_ROUNDOFF};
 
 /// A flat disk: its centre, a normal of any length and its radius, taken as
@@ -181,10 +183,15 @@ impl ConvexSolid for Disk {
         }
     }
 
-    fn contains(&self, point: DVec3) -> bool {
-        point.is_finite()
+    fn locate(&self, point: DVec3) -> Location {
+        let is_of_it = point.is_finite()
             && sign(&Height { disk: self, point }) == Ordering::Equal
-            && ball::holds(self.centre, self.radius, point)
+            && ball::locate(self.centre, self.radius, point).is_held();
+        if is_of_it {
+            Location::Boundary
+        } else {
+            Location::Outside
+        }
     }
 
     fn size(&self) -> f64 {

@@ -3,6 +3,7 @@
 mod any;
 mod ball;
 mod chord;
+mod composition;
 mod cone;
 mod convex;
 mod cuboid;
@@ -22,8 +23,9 @@ pub mod triple_product;
 
 pub use any::AnySolid;
 pub use chord::{Chord, ChordEnd, Meeting};
+pub use composition::{ComposedMeeting, Composition, Operand};
 pub use cone::{Cone, ConeError};
-pub use convex::ConvexSolid;
+pub use convex::{ConvexSolid, Location};
 pub use cuboid::{Cuboid, CuboidError};
 pub use cylinder::{Caps, Cylinder, CylinderError};
 pub use disk::{Disk, DiskError};
@@ -47,6 +49,12 @@ pub enum SolidKind {
     Cuboid,
     /// A flat disk.
     Disk,
+    /// What is in any of several solids, see [`Composition`].
+    Union,
+    /// What is in all of several solids.
+    Intersection,
+    /// What is in a solid and in none of others.
+    Difference,
 }
 
 impl SolidKind {
@@ -60,6 +68,9 @@ impl SolidKind {
             Self::Sphere => "sphere",
             Self::Cuboid => "cuboid",
             Self::Disk => "disk",
+            Self::Union => "union",
+            Self::Intersection => "intersection",
+            Self::Difference => "difference",
         }
     }
 }

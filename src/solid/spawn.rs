@@ -33,7 +33,7 @@ use crate::math::{Ray, UNIT_ROUNDOFF};
 /// The solvers answer exactly for a ray displaced by at most this times
 /// `|o| + |p0| + |p1| + 2 radius`; `docs/derivations.md`, section 5, adds up
 /// the roundings of the triple-product solver to 22 u.
-const SOLVER_DISPLACEMENT: f64 = 32.0 * UNIT_ROUNDOFF;
+pub(super) const SOLVER_DISPLACEMENT: f64 = 32.0 * UNIT_ROUNDOFF;
 
 /// What a query that starts near a hit may be displaced by, apart from the
 /// error of the hit's point. Lengths in the units of the space it is kept for.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::surface::turn;
-use super::{Chord, ConvexSolid, Cylinder, Part, SolidKind, SurfacePoint, ball};
+use super::{Chord, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint, ball};
 use crate::math::{Bounds, UNIT_ROUNDOFF, unit};
 
 /// A sphere: its centre and radius, taken as exact numbers. The solid is
@@ -109,8 +109,8 @@ impl ConvexSolid for Sphere {
         }
     }
 
-    fn contains(&self, point: DVec3) -> bool {
-        ball::holds(self.centre, self.radius, point)
+    fn locate(&self, point: DVec3) -> Location {
+        ball::locate(self.centre, self.radius, point)
     }
 
     fn size(&self) -> f64 {

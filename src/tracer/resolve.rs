@@ -134,6 +134,9 @@ pub(crate) fn resolve(
         SolidKind::Cone => search.on_solid(&solids.cones[position]),
         SolidKind::RoundedCone => search.on_solid(&solids.rounded_cones[position]),
         SolidKind::Disk => search.on_solid(&solids.disks[position]),
+        SolidKind::Union | SolidKind::Intersection | SolidKind::Difference => {
+            search.on_solid(&solids.compositions[position])
+        }
     };
     let LocalHit {
         meeting,

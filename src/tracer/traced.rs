@@ -11,7 +11,9 @@ use glam::DVec3;
 use super::frame::LocalRay;
 use crate::math::Bounds;
 use crate::scene::Listed;
-use crate::solid::{Chord, ConvexSolid, Meeting, SolidKind, SpawnMargin, SurfacePoint};
+use crate::solid::{
+    Chord, ComposedMeeting, Composition, ConvexSolid, Meeting, SolidKind, SpawnMargin, SurfacePoint,
+};
 
 /// A meeting with a solid.
 #[derive(Clone, Copy, Debug)]
@@ -19,20 +21,27 @@ pub(crate) struct Met {
     pub meeting: Meeting,
     /// Which of the solids that it is made of is met; 0 where it is one.
     pub leaf: u32,
+    /// The number of the crossing, where one solid is entered more than once; 0
+    /// where it is not.
+    pub rank: u32,
 }
 
 impl Met {
     /// A meeting with a solid that is one.
     #[inline(always)]
     pub fn whole(meeting: Meeting) -> Self {
-        Self { meeting, leaf: 0 }
+        Self {
+            meeting,
+            leaf: 0,
+            rank: 0,
+        }
     }
 }
 
 /// A solid as queries know it.
 pub(crate) trait TracedSolid: Listed + Send + Sync {
-    /// What it is called, and which list it is in.
-    const KIND: SolidKind;
+    /// What it is called, which says in which list it is.
+    fn kind(&self) -> SolidKind;
 
     /// A box that holds it.
     fn bounds(&self) -> Bounds;
@@ -59,7 +68,10 @@ fn chord<S: ConvexSolid>(solid: &S, ray: &LocalRay) -> Option<Chord> {
 }
 
 impl<S: ConvexSolid + Listed> TracedSolid for S {
-    const KIND: SolidKind = S::KIND;
+    #[inline(always)]
+    fn kind(&self) -> SolidKind {
+        S::KIND
+    }
 
     fn bounds(&self) -> Bounds {
         ConvexSolid::bounds(self)
@@ -88,5 +100,50 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
 
     fn contains(&self, point: DVec3) -> bool {
         ConvexSolid::contains(self, point)
+    }
+}
+
+impl From<ComposedMeeting> for Met {
+    fn from(met: ComposedMeeting) -> Self {
+        Self {
+            meeting: met.meeting,
+            leaf: met.leaf,
+            rank: met.rank,
+        }
+    }
+}
+
+impl TracedSolid for Composition {
+    fn kind(&self) -> SolidKind {
+        self.kind()
+    }
+
+    fn bounds(&self) -> Bounds {
+        self.bounds()
+    }
+
+    fn first(&self, ray: &LocalRay, t_min: f64, t_max: f64) -> Option<Met> {
+        let from = |anchor| ray.origin_from(anchor);
+        self.first(from, ray.direction, ray.shift, [t_min, t_max])
+            .map(Met::from)
+    }
+
+    fn each_meeting(&self, ray: &LocalRay, t_min: f64, t_max: f64, mut keep: impl FnMut(Met)) {
+        let from = |anchor| ray.origin_from(anchor);
+        let range = [t_min, t_max];
+        self.meetings(from, ray.direction, ray.shift, range, |met| {
+            keep(met.into())
+        });
+    }
+
+    fn surface(&self, ray: &LocalRay, met: &Met) -> (SurfacePoint, SpawnMargin) {
+        let Meeting { part, t_local, .. } = met.meeting;
+        self.surface(met.leaf, part, |anchor| {
+            ray.origin_from(anchor) + ray.direction * t_local
+        })
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        self.contains(point)
     }
 }

@@ -4,6 +4,7 @@
 
 pub mod aim;
 pub mod solids;
+pub mod trees;
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -37,9 +37,8 @@ use super::error::SceneError;
 use super::gathered::{
     Degenerate, Gathered, Refusal, SKIP_HELP, is_degenerate, is_degenerate_cone,
 };
-use super::solid_lists::Composition;
 use super::source::Source;
-use crate::solid::{AnySolid, Caps, Cone, Cylinder, Sphere};
+use crate::solid::{AnySolid, Caps, Composition, Cone, Cylinder, Sphere};
 
 /// How a file is read.
 pub(super) struct BeamLattice {

@@ -5,13 +5,11 @@ pub(super) mod solver;
 mod surface;
 pub(super) mod wall;
 
-use std::cmp::Ordering;
-
 use glam::DVec3;
 
 use super::cylinder::disc_reach;
 use super::exact::{self, Expression, Number, difference, dot};
-use super::{Caps, Chord, ConvexSolid, Cylinder, Part, SolidKind, SurfacePoint};
+use super::{Caps, Chord, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint};
 use crate::math::Bounds;
 use wall::{Fit, Measures};
 
@@ -186,16 +184,18 @@ impl ConvexSolid for Cone {
         surface::surface_point(self, part, from_anchor)
     }
 
-    fn contains(&self, point: DVec3) -> bool {
-        let is_within = |limit| {
-            let cone = self;
-            exact::sign(&Beyond { cone, point, limit }) != Ordering::Greater
-        };
+    fn locate(&self, point: DVec3) -> Location {
+        if !point.is_finite() {
+            return Location::Outside;
+        }
+        let cone = self;
+        let within = |limit| Location::of_sign(exact::sign(&Beyond { cone, point, limit }));
         // The other nappe begins where the slab has ended.
-        point.is_finite()
-            && [Limit::Disc0, Limit::Disc1, Limit::Wall]
-                .into_iter()
-                .all(is_within)
+        let along = within(Limit::Disc0).min(within(Limit::Disc1));
+        match along {
+            Location::Outside => along,
+            _ => along.min(within(Limit::Wall)),
+        }
     }
 
     fn size(&self) -> f64 {

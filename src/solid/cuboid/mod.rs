@@ -2,12 +2,10 @@
 
 mod chord;
 
-use std::cmp::Ordering;
-
 use glam::DVec3;
 
 use super::exact::{Expression, Number, difference, dot, sign, vector};
-use super::{Chord, ConvexSolid, Cylinder, Part, SolidKind, SurfacePoint};
+use super::{Chord, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint};
 use crate::math::{Bounds, Orientation, UNIT_ROUNDOFF, power_of_two};
 
 /// A box that may be turned: its centre, half of its width along each of its own
@@ -164,8 +162,14 @@ impl ConvexSolid for Cuboid {
         }
     }
 
-    fn contains(&self, point: DVec3) -> bool {
-        point.is_finite() && (0..3).all(|axis| self.holds(axis, point))
+    fn locate(&self, point: DVec3) -> Location {
+        if !point.is_finite() {
+            return Location::Outside;
+        }
+        (0..3).fold(Location::Inside, |least, axis| match least {
+            Location::Outside => least,
+            _ => least.min(self.locate_along(axis, point)),
+        })
     }
 
     fn size(&self) -> f64 {
@@ -177,7 +181,7 @@ impl ConvexSolid for Cuboid {
 impl Cuboid {
     /// Whether a point is between the planes of an axis. Rounded numbers, which are
     /// off by less than 6 u of their terms, decide where they do by 2^-48.
-    fn holds(&self, axis: usize, point: DVec3) -> bool {
+    fn locate_along(&self, axis: usize, point: DVec3) -> Location {
         let (terms, half_width) = (
             self.axis(axis) * (point - self.centre),
             self.half_widths[axis],
@@ -185,17 +189,22 @@ impl Cuboid {
         let height = (terms.x + terms.y + terms.z).abs();
         let size = terms.abs().element_sum() + half_width;
         if (height - half_width).abs() > power_of_two(-48) * size && size.is_finite() {
-            return height < half_width;
+            return if height < half_width {
+                Location::Inside
+            } else {
+                Location::Outside
+            };
         }
-        [1.0, -1.0].into_iter().all(|side| {
+        let within = [1.0, -1.0].map(|side| {
             let height = Height {
                 cuboid: self,
                 axis,
                 side,
                 point,
             };
-            sign(&height) != Ordering::Less
-        })
+            Location::of_sign(sign(&height).reverse())
+        });
+        within[0].min(within[1])
     }
 }
 

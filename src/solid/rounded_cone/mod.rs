@@ -3,14 +3,12 @@
 mod solver;
 mod surface;
 
-use std::cmp::Ordering;
-
 use glam::DVec3;
 
 use super::cone::check_ends;
 use super::cone::wall::{Fit, Measures};
 use super::exact::{self, Expression, Number, difference, dot};
-use super::{Chord, ConeError, ConvexSolid, Part, SolidKind, SurfacePoint, ball};
+use super::{Chord, ConeError, ConvexSolid, Location, Part, SolidKind, SurfacePoint, ball};
 use crate::math::Bounds;
 
 /// The surface of the convex hull of two balls: two centres and a radius each,
@@ -105,24 +103,34 @@ impl ConvexSolid for RoundedCone {
         surface::surface_point(self, part, from_anchor)
     }
 
-    fn contains(&self, point: DVec3) -> bool {
-        let beyond = |limit| {
+    fn locate(&self, point: DVec3) -> Location {
+        let within = |limit| {
             let solid = self;
-            exact::sign(&Beyond {
+            Location::of_sign(exact::sign(&Beyond {
                 solid,
                 point,
                 limit,
-            })
+            }))
         };
-        // The discs at the seams are within the balls, so that the first need not
-        // be asked for; and where one ball holds the other, no height is beyond
-        // it and not beyond the other.
-        ball::holds(self.p0, self.radius0, point)
-            || ball::holds(self.p1, self.radius1, point)
-            || point.is_finite()
-                && beyond(Limit::Seam0) == Ordering::Less
-                && beyond(Limit::Seam1) != Ordering::Greater
-                && beyond(Limit::Wall) != Ordering::Greater
+        let balls = ball::locate(self.p0, self.radius0, point).max(ball::locate(
+            self.p1,
+            self.radius1,
+            point,
+        ));
+        // The discs at the seams are inside of the balls but for their rims, so that
+        // the first need not be asked for; and where one ball holds the other, no
+        // height is beyond it and not beyond the other.
+        if balls == Location::Inside
+            || !point.is_finite()
+            || within(Limit::Seam0) != Location::Inside
+        {
+            return balls;
+        }
+        let between = within(Limit::Seam1);
+        match between {
+            Location::Outside => balls,
+            _ => balls.max(between.min(within(Limit::Wall))),
+        }
     }
 
     fn size(&self) -> f64 {

@@ -7,7 +7,7 @@ use super::described::{Described, SolidList};
 use super::ends::{Capped, Ends, EndsKind, Mixed, Open};
 use crate::embree::{self, SceneBuilder};
 use crate::scene::Records;
-use crate::solid::{Cone, Cuboid, Disk, RoundedCone, Sphere};
+use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
 use crate::tracer::options::Layout;
 use crate::tracer::query::Query;
 use crate::tracer::traced::TracedSolid;
@@ -61,7 +61,8 @@ pub(super) fn attach_solids(
     attach_list::<Cuboid>(described, builder)?;
     attach_list::<Cone>(described, builder)?;
     attach_list::<RoundedCone>(described, builder)?;
-    attach_list::<Disk>(described, builder)
+    attach_list::<Disk>(described, builder)?;
+    attach_list::<Composition>(described, builder)
 }
 
 fn attach_list<S: TracedSolid>(

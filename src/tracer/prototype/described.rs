@@ -95,7 +95,15 @@ impl<S: TracedSolid> UserGeometry for SolidList<S> {
     }
 
     fn bounds(&self, primitive: u32) -> Box32 {
-        self.described.grown_box(&self.solid(primitive).bounds())
+        let bounds = self.solid(primitive).bounds();
+        if bounds.is_empty() {
+            // What set operations leave nothing of; Embree wants a box all the same.
+            return Box32 {
+                lower: [0.0; 3],
+                upper: [0.0; 3],
+            };
+        }
+        self.described.grown_box(&bounds)
     }
 
     fn intersect(&self, primitive: u32, query: &mut Query) -> Option<f32> {

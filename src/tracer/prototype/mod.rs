@@ -34,7 +34,7 @@ use crate::embree::{
 };
 use crate::math::Bounds;
 use crate::scene::{Placement, PrototypeIndex, Scene, ViewVolume};
-use crate::solid::{Cone, Cuboid, Disk, RoundedCone, Sphere};
+use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
 use attach::{attach_cylinders, attach_solids};
 use placements::Placements;
 use sight::Sight;
@@ -358,6 +358,7 @@ impl Prototype {
         self.visit_list::<Cone>(query);
         self.visit_list::<RoundedCone>(query);
         self.visit_list::<Disk>(query);
+        self.visit_list::<Composition>(query);
         for placement in 0..self.placements.len() {
             self.placements
                 .visit(placement, query, Self::search_exhaustively);

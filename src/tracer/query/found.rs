@@ -90,12 +90,13 @@ pub(crate) struct Found {
 
 impl Found {
     /// How a hit that is not kept yet compares with this one: by `t`, then by
-    /// the instance path, the primitive, entry before exit, the part, and the leaf.
+    /// the instance path, the primitive, the number of the crossing, entry before exit,
+    /// and the part.
     /// No two hits of a ray are equal.
     #[inline]
     fn order(&self, met: &Met, path: &InstancePath, primitive: u32) -> Ordering {
         let by_t = met.meeting.t.partial_cmp(&self.met.meeting.t);
-        let surface = |met: &Met| (met.meeting.crossing, met.meeting.part, met.leaf);
+        let surface = |met: &Met| (met.rank, met.meeting.crossing, met.meeting.part);
         by_t.expect("a hit's t is a number").then_with(|| {
             (path, primitive, surface(met)).cmp(&(
                 &self.place.path,

@@ -185,7 +185,8 @@ impl Packet {
         rays: RaySet,
         t_far: &mut [f32; GREATEST_PACKET],
     ) -> RaySet {
-        let (solid, member) = (list.solid(record), Member::new(S::KIND, record));
+        let solid = list.solid(record);
+        let member = Member::new(solid.kind(), record);
         let mut shorter = RaySet::EMPTY;
         for ray in rays {
             if let Some(met) = self.first_of_solid(solid, ray, self.bound(ray))

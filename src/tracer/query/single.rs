@@ -155,7 +155,8 @@ impl Query {
     #[inline]
     pub fn visit_solid<S: TracedSolid>(&mut self, list: &SolidList<S>, record: u32) {
         counters::solved(1);
-        let (solid, member) = (list.solid(record), Member::new(S::KIND, record));
+        let solid = list.solid(record);
+        let member = Member::new(solid.kind(), record);
         let (ray, bound, t_min) = (self.level().ray, self.bound(), self.t_min);
         match self.keep {
             Keep::First(_) => {
