@@ -8,12 +8,10 @@ mod contains;
 mod parity;
 mod placed;
 
-use std::sync::Arc;
-
 use cyltrace::math::{Random, Ray};
 use cyltrace::scene::Prototype;
 use cyltrace::solid::{AnySolid, Caps, Cone, Crossing, Cylinder, SolidKind};
-use cyltrace::tracer::{Hit, Options, Tracer};
+use cyltrace::tracer::{Hit, Layout, MemoryEstimate, Options, Tracer};
 use glam::DVec3;
 use rayon::prelude::*;
 use support::solids::{KIND_NAMES, crowd, prototype_of, ray_through, true_hits};
@@ -254,7 +252,8 @@ fn statistics_count_the_other_kinds() {
         ),
         (50, 100)
     );
-    let held = &tracer.scene().prototypes[1];
-    assert!(statistics.records_bytes >= held.solids.records_bytes());
-    let _shared: &Arc<_> = tracer.scene();
+    let contents = tracer.scene().contents();
+    assert_eq!(contents[1].others.count, 50);
+    let estimate = MemoryEstimate::of(&contents, Layout::Single, None);
+    assert_eq!(estimate.records_bytes, statistics.records_bytes as u64);
 }
