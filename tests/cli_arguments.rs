@@ -31,7 +31,14 @@ fn help_of_every_command_mentions_every_flag() {
         ),
         (
             "trace",
-            &["--rays", "--output", "-o", "--all", "--max-memory"][..],
+            &[
+                "--rays",
+                "--points",
+                "--output",
+                "-o",
+                "--all",
+                "--max-memory",
+            ][..],
         ),
         ("info", &["--max-memory"][..]),
         (

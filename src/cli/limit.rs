@@ -9,7 +9,7 @@ use std::path::Path;
 use anyhow::anyhow;
 use clap::{Args, ValueEnum};
 use cyltrace::embree::MaxIsa;
-use cyltrace::scene::{Contents, PlacedCount};
+use cyltrace::scene::{Contents, OtherSolids, PlacedCount};
 use cyltrace::tracer::{Layout, MemoryEstimate};
 
 use super::memory::{kibibytes_of, parse_size, readable};
@@ -135,6 +135,8 @@ fn takers(contents: &[Contents], estimate: &MemoryEstimate, need: Need, needed: 
         let (cylinders, name) = (prototype.cylinders, quoted(&prototype.name));
         let bytes = MemoryEstimate::of_records(cylinders, prototype.records, 0);
         lines.push((bytes, format!("{cylinders} cylinders in {name}")));
+        let OtherSolids { count, bytes } = prototype.others;
+        lines.push((bytes, format!("{count} solids of other kinds in {name}")));
         for &PlacedCount { of, count } in &prototype.placed {
             let bytes = MemoryEstimate::of_records(0, prototype.records, count);
             let of = quoted(&contents[of.0 as usize].name);

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::cylinder_list::Records;
 use super::description::{Placement, PrototypeIndex, Scene};
+use super::solid_lists::{Listed, SolidRecord};
 
 /// What a prototype holds, counted.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,10 +18,32 @@ pub struct Contents {
     pub cylinders: u64,
     /// How they are kept.
     pub records: Records,
+    /// Its own solids of other kinds.
+    pub others: OtherSolids,
     /// Its own placements, by what is placed.
     pub placed: Vec<PlacedCount>,
     /// Whether the root places it, itself or through others, or is it.
     pub is_used: bool,
+}
+
+/// The solids of a prototype that are no cylinders, counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OtherSolids {
+    /// How many.
+    pub count: u64,
+    /// The bytes of their records.
+    pub bytes: u64,
+}
+
+impl OtherSolids {
+    /// These and `count` of one kind more.
+    pub(super) fn and<S: Listed>(self, count: usize) -> Self {
+        let bytes = (count * size_of::<SolidRecord<S>>()) as u64;
+        Self {
+            count: self.count.saturating_add(count as u64),
+            bytes: self.bytes.saturating_add(bytes),
+        }
+    }
 }
 
 /// How often a prototype is placed.
@@ -38,6 +61,7 @@ impl Contents {
         name: &str,
         cylinders: u64,
         records: Records,
+        others: OtherSolids,
         placed: impl IntoIterator<Item = (PrototypeIndex, u64)>,
     ) -> Self {
         let mut counts: HashMap<PrototypeIndex, u64> = HashMap::new();
@@ -54,6 +78,7 @@ impl Contents {
             name: name.to_owned(),
             cylinders,
             records,
+            others,
             placed,
             is_used: false,
         }
@@ -93,6 +118,10 @@ impl Scene {
                     &prototype.name,
                     prototype.cylinders.len() as u64,
                     prototype.cylinders.records(),
+                    OtherSolids {
+                        count: prototype.solids.len() as u64,
+                        bytes: prototype.solids.records_bytes() as u64,
+                    },
                     counted(&prototype.placements),
                 )
             })
@@ -121,11 +150,15 @@ mod tests {
     #[test]
     fn contents_joined_and_marked_from_the_root() {
         let at = PrototypeIndex;
+        let holding = |name, placed: &[(PrototypeIndex, u64)]| {
+            let others = OtherSolids::default();
+            Contents::new(name, 1, Records::F64, others, placed.iter().copied())
+        };
         let mut contents = [
-            Contents::new("", 0, Records::F64, [(at(2), 3), (at(1), 5), (at(2), 4)]),
-            Contents::new("a", 1, Records::F64, []),
-            Contents::new("b", 1, Records::F64, [(at(2), 1)]),
-            Contents::new("c", 1, Records::F64, [(at(1), u64::MAX), (at(2), 1)]),
+            holding("", &[(at(2), 3), (at(1), 5), (at(2), 4)]),
+            holding("a", &[]),
+            holding("b", &[(at(2), 1)]),
+            holding("c", &[(at(1), u64::MAX), (at(2), 1)]),
         ];
         mark_used(&mut contents);
         assert_eq!(contents[0].placements(), 12);

@@ -48,7 +48,7 @@ mod view_volume;
 
 pub use aimed_camera::AimedCamera;
 pub use census::Census;
-pub use contents::{Contents, PlacedCount};
+pub use contents::{Contents, OtherSolids, PlacedCount};
 pub use cylinder_list::{CylinderList, CylinderRecord32, Iter as CylinderIter, Records};
 pub use description::{
     Camera, CylinderRecord, Film, Frame, Integrator, Material, MaterialIndex, Placement,

@@ -5,14 +5,16 @@ use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 
-use super::contents::{Contents, mark_used};
+use super::contents::{Contents, OtherSolids, mark_used};
 use super::description::{PrototypeIndex, Scene};
 use super::document::{Body, Document};
 use super::error::SceneError;
 use super::lines::lines;
 use super::load::{lower, records};
+use super::solid_lists::Composition;
 use super::source::Source;
 use super::values::Keys;
+use crate::solid::{Cone, Cuboid, Disk, RoundedCone, Sphere};
 
 /// A scene file that has been read; the files that it names have not.
 pub struct SceneFile {
@@ -99,7 +101,15 @@ impl SceneFile {
             let placed = placed
                 .into_iter()
                 .filter_map(|(of, count)| Some((of?, count)));
-            Contents::new(body.name, cylinders, records, placed)
+            let compositions = body.union.len() + body.intersection.len() + body.difference.len();
+            let others = OtherSolids::default()
+                .and::<Sphere>(body.sphere.len())
+                .and::<Cuboid>(body.cuboid.len())
+                .and::<Cone>(body.cone.len())
+                .and::<RoundedCone>(body.rounded_cone.len())
+                .and::<Disk>(body.disk.len())
+                .and::<Composition>(compositions);
+            Contents::new(body.name, cylinders, records, others, placed)
         };
         let mut contents: Vec<_> = self.document.bodies().map(count).collect();
         mark_used(&mut contents);

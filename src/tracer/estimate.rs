@@ -76,7 +76,7 @@ impl Layout {
 /// What a scene's memory should come to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MemoryEstimate {
-    /// The records of cylinders and placements, those that are not built too.
+    /// The records of solids and placements, those that are not built too.
     pub records_bytes: u64,
     /// The tracer's copies of cylinders.
     pub copies_bytes: u64,
@@ -96,13 +96,18 @@ impl MemoryEstimate {
         for prototype in contents {
             let (cylinders, placements) = (prototype.cylinders, prototype.placements());
             let own = Self::of_records(cylinders, prototype.records, placements);
+            let others = prototype.others;
             sum.records_bytes = sum.records_bytes.saturating_add(own);
+            sum.records_bytes = sum.records_bytes.saturating_add(others.bytes);
             if !prototype.is_used {
                 continue;
             }
             let copies = layout.copies_bytes(cylinders, prototype.records);
             sum.copies_bytes = sum.copies_bytes.saturating_add(copies);
-            let primitives = layout.primitives(cylinders).saturating_add(placements);
+            let cylinders = layout.primitives(cylinders);
+            let primitives = cylinders
+                .saturating_add(others.count)
+                .saturating_add(placements);
             let tree = tree_bytes(primitives, is_wide);
             sum.embree_bytes = sum.embree_bytes.saturating_add(tree);
             let building = primitives
@@ -170,7 +175,7 @@ mod tests {
         Box32, Device, DeviceOptions, GREATEST_PACKET, RaySet, SceneBuilder, UserGeometry,
     };
     use crate::math::Random;
-    use crate::scene::PrototypeIndex;
+    use crate::scene::{OtherSolids, PrototypeIndex};
 
     /// Boxes that nothing meets.
     struct Boxes(Vec<Box32>);
@@ -248,6 +253,7 @@ mod tests {
             name: String::new(),
             cylinders,
             records,
+            others: OtherSolids::default(),
             placed: Vec::new(),
             is_used: true,
         }]

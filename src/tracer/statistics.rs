@@ -87,8 +87,12 @@ impl Counted {
             (!made.is_touched()).then(|| {
                 let estimate =
                     MemoryEstimate::of(slice::from_ref(contents), options.layout, options.max_isa);
+                let others = match contents.others.count {
+                    0 => String::new(),
+                    count => format!(", {count} solids of other kinds"),
+                };
                 format!(
-                    "{name} was reached by no ray: not built ({} cylinders and {} placements), which saves about {:.1} MB",
+                    "{name} was reached by no ray: not built ({} cylinders{others} and {} placements), which saves about {:.1} MB",
                     contents.cylinders,
                     contents.placements(),
                     (estimate.embree_bytes + estimate.copies_bytes) as f64 / 1e6

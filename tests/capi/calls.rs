@@ -18,7 +18,11 @@ struct Loaded(*mut CyltraceScene);
 
 impl Loaded {
     fn new(name: &str) -> Self {
-        let path = CString::new(format!("{}/{name}", super::ROOT)).expect("no NUL");
+        Self::at(&format!("{}/{name}", super::ROOT))
+    }
+
+    fn at(path: &str) -> Self {
+        let path = CString::new(path).expect("no NUL");
         // SAFETY: a text with its NUL.
         let scene = unsafe { cyltrace_scene_load(path.as_ptr()) };
         assert!(!scene.is_null(), "{}", last_error());
@@ -105,6 +109,91 @@ fn rays_get_the_tracer_s_answers() {
         );
     }
     assert!((50..490).contains(&seen), "{seen}");
+}
+
+/// One of each kind at x = 0, 10, 20 ...
+const KINDS: &str = r#"
+[[cuboid]]
+half_widths = [1, 1, 1]
+[[cylinder]]
+p0 = [10, 0, -1]
+p1 = [10, 0, 1]
+radius = 1
+[[cone]]
+p0 = [20, 0, -1]
+p1 = [20, 0, 1]
+radius0 = 1
+radius1 = 0.5
+[[rounded_cone]]
+p0 = [30, 0, 0]
+p1 = [30, 0, 1]
+radius0 = 1
+radius1 = 0.5
+[[sphere]]
+center = [40, 0, 0]
+radius = 1
+[[disk]]
+center = [50, 0, 0]
+normal = [0, 0, 1]
+radius = 1
+"#;
+
+#[test]
+fn every_kind_of_solid_and_every_face_has_its_code() {
+    let folder = tempfile::tempdir().expect("directory");
+    let path = folder.path().join("kinds.toml");
+    std::fs::write(&path, KINDS).expect("written");
+    let loaded = Loaded::at(path.to_str().expect("UTF-8"));
+    let towards = |x: f64, from: [f64; 3]| CyltraceRay {
+        origin: [x + 5.0 * from[0], 5.0 * from[1], 5.0 * from[2]],
+        direction: from.map(|x| -x),
+        t_min: 0.0,
+        t_max: f64::INFINITY,
+    };
+    let down = [0.0, 0.0, 1.0];
+    for (ray, solid, part) in [
+        (
+            towards(0.0, [-1.0, 0.0, 0.0]),
+            CYLTRACE_SOLID_CUBOID,
+            CYLTRACE_X_MIN,
+        ),
+        (
+            towards(0.0, [1.0, 0.0, 0.0]),
+            CYLTRACE_SOLID_CUBOID,
+            CYLTRACE_X_MAX,
+        ),
+        (
+            towards(0.0, [0.0, -1.0, 0.0]),
+            CYLTRACE_SOLID_CUBOID,
+            CYLTRACE_Y_MIN,
+        ),
+        (
+            towards(0.0, [0.0, 1.0, 0.0]),
+            CYLTRACE_SOLID_CUBOID,
+            CYLTRACE_Y_MAX,
+        ),
+        (
+            towards(0.0, [0.0, 0.0, -1.0]),
+            CYLTRACE_SOLID_CUBOID,
+            CYLTRACE_Z_MIN,
+        ),
+        (towards(0.0, down), CYLTRACE_SOLID_CUBOID, CYLTRACE_Z_MAX),
+        (towards(10.0, down), CYLTRACE_SOLID_CYLINDER, CYLTRACE_CAP1),
+        (towards(20.0, down), CYLTRACE_SOLID_CONE, CYLTRACE_CAP1),
+        (
+            towards(30.0, down),
+            CYLTRACE_SOLID_ROUNDED_CONE,
+            CYLTRACE_CAP1,
+        ),
+        (towards(40.0, down), CYLTRACE_SOLID_SPHERE, CYLTRACE_SIDE),
+        (towards(50.0, down), CYLTRACE_SOLID_DISK, CYLTRACE_SIDE),
+    ] {
+        let mut hit = CyltraceHit::MISS;
+        // SAFETY: one ray and one hit.
+        let code = unsafe { cyltrace_closest(loaded.0, &raw const ray, 1, &raw mut hit) };
+        assert_eq!((code, hit.is_hit), (CYLTRACE_OK, 1), "{ray:?}");
+        assert_eq!((hit.solid, hit.part), (solid, part), "{ray:?}");
+    }
 }
 
 /// What the intersector of these tests does and has seen.

@@ -33,7 +33,7 @@ fn points_are_held_by_what_exact_arithmetic_says() {
     let prototype = prototype_of(&solids);
     for options in support::ways_to_trace() {
         let tracer = traced(vec![prototype.clone()], &options);
-        let held: usize = (0..3_000_u64)
+        let held: usize = (0..500_u64)
             .into_par_iter()
             .map(|number| {
                 let mut random = Random::new(SEED, 600_000 + number);
@@ -51,7 +51,7 @@ fn points_are_held_by_what_exact_arithmetic_says() {
                 truth.len()
             })
             .sum();
-        assert!(held > 1_000, "{held}");
+        assert!(held > 150, "{held}");
     }
 }
 
@@ -61,7 +61,9 @@ fn points_of_the_surface_are_held_and_their_neighbours_are_not() {
         Cuboid::new(DVec3::ZERO, DVec3::splat(0.5), Orientation::IDENTITY)
             .unwrap()
             .into(),
-        Sphere::new(DVec3::new(3.0, 0.0, 0.0), 0.5).unwrap().into(),
+        Sphere::new(DVec3::new(3.0, 0.0, 0.0), 0.625)
+            .unwrap()
+            .into(),
         // A tube: its ends are open, but what it surrounds is the solid.
         Cylinder::new(DVec3::ZERO, DVec3::Z, 0.25, Caps::None)
             .unwrap()
@@ -73,25 +75,19 @@ fn points_of_the_surface_are_held_and_their_neighbours_are_not() {
         (DVec3::splat(0.5), &[0][..]),
         (DVec3::new(-0.5, 0.5, -0.5), &[0]),
         (DVec3::new(out, 0.5, 0.5), &[]),
-        (DVec3::new(0.0, -out, 0.0), &[2][..0]),
+        (DVec3::new(0.0, -out, 0.0), &[]),
         (DVec3::new(0.0, 0.0, 0.5), &[0, 2]),
         (DVec3::new(0.0, 0.0, 1.0), &[2]),
         (DVec3::new(0.0, 0.0, 1.0_f64.next_up()), &[]),
         (DVec3::new(0.25, 0.0, 0.0), &[0, 2]),
-        (DVec3::new(3.5, 0.0, 0.0), &[1]),
-        (DVec3::new(3.5_f64.next_up(), 0.0, 0.0), &[]),
-        (DVec3::new(3.0, 0.3, 0.4), &[1][..0]),
+        (DVec3::new(3.625, 0.0, 0.0), &[1]),
+        (DVec3::new(3.625_f64.next_up(), 0.0, 0.0), &[]),
+        (DVec3::new(3.0, 0.375, 0.5), &[1]),
+        (DVec3::new(3.0, 0.375, out), &[]),
         (DVec3::new(1e300, 0.0, 0.0), &[]),
         (DVec3::new(f64::NAN, 0.0, 0.0), &[]),
         (DVec3::new(0.0, f64::INFINITY, 0.0), &[]),
     ] {
-        // 0.3² + 0.4² of the f64 numbers is more than 0.25 by 6e-18 or not: ask truth.
-        let expected = if point.y == 0.3 {
-            let holds = truly_holds(&solids[1], point);
-            if holds { vec![1] } else { vec![] }
-        } else {
-            expected.to_vec()
-        };
         assert_eq!(numbers(&tracer.contains(point)), expected, "{point:?}");
     }
 }

@@ -73,7 +73,8 @@ fn what_is_entered_is_left_and_held_in_between() {
                         Crossing::Enter => inside.push(pair[0].primitive),
                         Crossing::Leave => inside.retain(|one| *one != pair[0].primitive),
                     }
-                    if (pair[1].t - pair[0].t) * ray.direction.length() > 1e-9 {
+                    // In a shorter chord the point, once rounded, might be outside.
+                    if (pair[1].t - pair[0].t) * ray.direction.length() > 1e-5 {
                         let t = pair[0].t.midpoint(pair[1].t);
                         let holding = tracer.contains(ray.origin + ray.direction * t);
                         let holding: Vec<u32> = holding.iter().map(|one| one.primitive).collect();

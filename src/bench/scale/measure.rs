@@ -12,7 +12,9 @@ use crate::bench::traversal::{
 };
 use crate::math::Random;
 use crate::report::readable;
-use crate::scene::{Contents, PlacedCount, Placement, Prototype, PrototypeIndex, Records, Scene};
+use crate::scene::{
+    Contents, OtherSolids, PlacedCount, Placement, Prototype, PrototypeIndex, Records, Scene,
+};
 use crate::tracer::{Layout, MemoryEstimate, Options, Tracer};
 
 /// What grows.
@@ -64,6 +66,7 @@ impl Series {
             name: String::new(),
             cylinders: cylinders as u64,
             records: Records::F64,
+            others: OtherSolids::default(),
             placed: vec![PlacedCount {
                 of: PrototypeIndex(1),
                 count: placements as u64,

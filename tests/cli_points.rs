@@ -1,0 +1,167 @@
+//! `cyltrace trace --points`: tables of points in, tables of the solids that hold them
+//! out; and that commands which know cylinders only refuse other solids.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use serde_json::Value;
+use tempfile::TempDir;
+
+const SCENE: &str = r#"
+[[sphere]]
+center = [0, 0, 0]
+radius = 1
+
+[[cuboid]]
+center = [1, 0, 0]
+half_widths = [1, 1, 1]
+
+[[instance]]
+of = "balls, two"
+translate = [10, 0, 0]
+
+[[prototype]]
+name = "balls, two"
+[[prototype.cylinder]]
+p0 = [0, 0, 0]
+p1 = [0, 0, 2]
+radius = 0.5
+caps = "none"
+[[prototype.sphere]]
+center = [0, 0, 0]
+radius = 1
+"#;
+
+const POINTS: &str = "\
+# in both, on the corner, in the placed ones, outside
+z, x, y
+
+0,0.5,0
+1,2,1
+0.25,10,0
+-1.5,0,0
+";
+
+const ROWS: &str = "\
+point,inside,prototype,solid,primitive,instance
+0,1,,sphere,0,
+0,1,,cuboid,1,
+1,1,,cuboid,1,
+2,1,\"balls, two\",cylinder,0,0
+2,1,\"balls, two\",sphere,1,0
+3,0,,,,
+";
+
+fn workplace(points: &str) -> TempDir {
+    let directory = tempfile::tempdir().expect("directory");
+    fs::write(directory.path().join("scene.toml"), SCENE).expect("written");
+    fs::write(directory.path().join("points.csv"), points).expect("written");
+    directory
+}
+
+fn cyltrace(directory: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let output = Command::cargo_bin("cyltrace")
+        .expect("the program is built")
+        .current_dir(directory)
+        .args(arguments)
+        .output()
+        .expect("the program runs");
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8 output");
+    let code = output.status.code().expect("no signal");
+    (code, text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn points_have_a_row_for_each_solid_that_holds_them() {
+    let directory = workplace(POINTS);
+    let in_scene = ["trace", "scene.toml", "--points", "points.csv"];
+    let (code, out, err) = cyltrace(directory.path(), &[&in_scene[..], &["-o", "-"]].concat());
+    assert_eq!((code, out.as_str()), (0, ROWS), "{err}");
+
+    let to_files = ["-o", "inside.csv", "--json", "figures.json", "--quiet"];
+    let (code, out, err) = cyltrace(directory.path(), &[&in_scene[..], &to_files].concat());
+    assert_eq!((code, out.as_str()), (0, ""), "{err}");
+    let written = fs::read_to_string(directory.path().join("inside.csv")).expect("written");
+    assert_eq!(written, ROWS);
+    let figures = fs::read_to_string(directory.path().join("figures.json")).expect("written");
+    let figures: Value = serde_json::from_str(&figures).expect("JSON");
+    for (key, value) in [
+        ("points", 4),
+        ("inside_points", 3),
+        ("containing_solids", 5),
+    ] {
+        assert_eq!(figures[key], value, "{key}");
+    }
+    assert_eq!(figures["other_solids"]["unique"], 3);
+}
+
+#[test]
+fn bad_tables_of_points_are_refused_at_their_place() {
+    for (points, expected) in [
+        (
+            "x,y\n1,2\n",
+            "points.csv:1: column \"z\" is missing: the header must name x,y,z",
+        ),
+        (
+            "x,y,z,w\n",
+            "points.csv:1: there is no column \"w\": columns are x,y,z",
+        ),
+        (
+            "x,y,z\n1,2,3\n1,2\n",
+            "points.csv:3: the row has 2 cells where the header has 3",
+        ),
+        (
+            "x,y,z\n1,inf,3\n",
+            "points.csv:2: column \"y\": \"inf\" must be a finite number",
+        ),
+        (
+            "# nothing\n",
+            "points.csv: there is no header; it must name the columns x,y,z",
+        ),
+    ] {
+        let directory = workplace(points);
+        let arguments = [
+            "trace",
+            "scene.toml",
+            "--points",
+            "points.csv",
+            "-o",
+            "out.csv",
+        ];
+        let (code, _, err) = cyltrace(directory.path(), &arguments);
+        assert_eq!(code, 2, "{err}");
+        assert!(err.contains(expected), "{err}");
+        assert!(!directory.path().join("out.csv").exists());
+    }
+}
+
+#[test]
+fn rays_and_points_and_all_do_not_go_together() {
+    let directory = workplace(POINTS);
+    let points = ["trace", "scene.toml", "-o", "-", "--points", "points.csv"];
+    for more in [&["--rays", "points.csv"][..], &["--all"]] {
+        let (code, _, err) = cyltrace(directory.path(), &[&points[..], more].concat());
+        assert_eq!(code, 2);
+        assert!(err.contains("cannot be used with"), "{err}");
+    }
+    let (code, _, err) = cyltrace(directory.path(), &points[..4]);
+    assert_eq!(code, 2);
+    assert!(err.contains("--rays <FILE>|--points <FILE>"), "{err}");
+}
+
+#[test]
+fn commands_that_know_cylinders_only_refuse_other_solids() {
+    let directory = workplace(POINTS);
+    for arguments in [
+        &["check", "scene.toml", "--rays", "10"][..],
+        &["tessellate", "scene.toml", "-o", "scene.obj"],
+    ] {
+        let (code, _, err) = cyltrace(directory.path(), arguments);
+        assert_eq!(code, 2, "{err}");
+        assert!(
+            err.contains("the scene holds 3 solids that are no cylinders"),
+            "{err}"
+        );
+    }
+}
