@@ -1,6 +1,7 @@
 //! The truncated cone as users state it.
 
 pub(super) mod heights;
+mod rounded;
 pub(super) mod solver;
 mod surface;
 pub(super) mod wall;
