@@ -12,11 +12,16 @@ use cyltrace::math::{Random, Ray, power_of_two};
 use cyltrace::solid::exact::{self, ExactHit};
 use cyltrace::solid::formulations::{Answer, Precision, Problem, by_name};
 use cyltrace::solid::{Caps, Crossing, Cylinder, Meeting, Part, triple_product};
-use cyltrace::stress::{Witness, to_bits};
+use cyltrace::stress::{TrueAnswer, Witness, to_bits};
 use glam::DVec3;
 use rayon::prelude::*;
 
 const SEED: u64 = 29;
+
+/// What bounds the error of the triple product's `t`.
+fn bound_of(truth: &TrueAnswer) -> f64 {
+    truth.t_bound.expect("a cylinder has a bound")
+}
 
 /// Cases of each family and kind of inputs, where no oracle is asked and
 /// where one is.
@@ -284,9 +289,9 @@ struct Judged {
 impl Judged {
     /// Holds the library's promise about the first hit, where it gives one.
     fn new(problem: Problem, index: u64, inputs: Inputs, what: &str) -> Self {
-        let witness = Witness::new(problem, index, inputs);
+        let witness = Witness::new(problem.into(), index, inputs);
         let found = meetings(&problem);
-        if witness.is_decided {
+        if witness.is_decided() {
             let case = || format!("{what}, case {index}: {}", to_bits(&problem));
             let truth = witness.truth.as_ref();
             assert_eq!(
@@ -297,7 +302,7 @@ impl Judged {
             );
             if let (Some(one), Some(truth)) = (found.first(), truth) {
                 let off = truth.error_of(one.t).abs();
-                assert!(off <= truth.t_bound, "{off:e}, {truth:?}, {}", case());
+                assert!(off <= bound_of(truth), "{off:e}, {truth:?}, {}", case());
             }
         }
         Self { witness, found }
@@ -305,7 +310,7 @@ impl Judged {
 
     /// The bound of the first hit's error.
     fn t_bound(&self) -> f64 {
-        self.witness.truth.map_or(0.0, |truth| truth.t_bound)
+        self.witness.truth.map_or(0.0, |truth| bound_of(&truth))
     }
 }
 
@@ -325,7 +330,7 @@ fn assert_promised(
             let both = change(&drawn, &mut random)
                 .map(|problem| Judged::new(problem, index, inputs, &name));
             let [one, other] = &both;
-            if one.witness.is_decided && other.witness.is_decided {
+            if one.witness.is_decided() && other.witness.is_decided() {
                 decided += 1;
                 assert!(
                     agree(one, other),

@@ -5,14 +5,13 @@
 use std::thread;
 
 use cyltrace::cases::{Inputs, TaperCase, TaperFamily, TaperSolid};
-use cyltrace::math::{Random, Ray};
+use cyltrace::math::Ray;
 use cyltrace::oracle::{
     Exact, TrueHit, cone_gap, cone_hits, cone_holds, distance_to_cone, distance_to_rounded_cone,
     exact, rounded_cone_gap, rounded_cone_hits, rounded_cone_holds, to_f64,
 };
 use cyltrace::solid::{
-    Caps, Chord, Cone, ConeError, ConvexSolid, Cylinder, Meeting, Part, RoundedCone, surface_point,
-    triple_product,
+    Caps, Chord, Cone, ConvexSolid, Cylinder, Meeting, surface_point, triple_product,
 };
 use glam::DVec3;
 
@@ -352,67 +351,4 @@ fn cone_with_equal_radii_is_the_cylinder() {
         }
     }
     assert!(hits > cases(), "{hits}");
-}
-
-#[test]
-fn ball_that_holds_the_other_is_the_rounded_cone() {
-    let (p0, p1) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 2.0, 5.0));
-    for (p1, radius1, part) in [
-        (p1, 1.0, Part::Cap0),
-        (p1, 5.0, Part::Cap1),
-        (p0, 3.0, Part::Cap0),
-    ] {
-        let solid = RoundedCone::new(p0, p1, 3.0, radius1).unwrap();
-        let chord = solid.chord(DVec3::new(-10.0, 0.0, 0.0), DVec3::X).unwrap();
-        assert_eq!((chord.enter.part, chord.leave.part), (part, part));
-        let outer = RoundedCone::new(
-            if part == Part::Cap0 { p0 } else { p1 },
-            if part == Part::Cap0 { p0 } else { p1 },
-            if part == Part::Cap0 { 3.0 } else { 5.0 },
-            0.0,
-        );
-        let outer = outer.unwrap();
-        for index in 0..1000 {
-            let mut random = Random::new(SEED, index);
-            let point = p0 + random.direction() * random.uniform(2.5, 7.5);
-            assert_eq!(solid.contains(point), outer.contains(point));
-        }
-    }
-}
-
-#[test]
-fn numbers_that_are_no_cone_are_refused() {
-    let new = |p1, r0, r1| Cone::new(DVec3::ZERO, p1, r0, r1, Caps::Both);
-    assert!(matches!(new(DVec3::Z, 0.0, 0.0), Err(ConeError::NoRadius)));
-    assert!(matches!(
-        new(DVec3::ZERO, 1.0, 0.0),
-        Err(ConeError::Length { .. })
-    ));
-    assert!(matches!(
-        new(DVec3::Z, -1.0, 1.0),
-        Err(ConeError::Radius {
-            which: "radius0",
-            ..
-        })
-    ));
-    assert!(matches!(
-        new(DVec3::Z, 1.0, f64::NAN),
-        Err(ConeError::Radius {
-            which: "radius1",
-            ..
-        })
-    ));
-    assert!(matches!(
-        new(DVec3::INFINITY, 1.0, 1.0),
-        Err(ConeError::Endpoint { which: "p1", .. })
-    ));
-    assert!(
-        new(DVec3::Z, 1.0, -0.0)
-            .unwrap()
-            .radius1()
-            .is_sign_positive()
-    );
-    let rounded = |r0, r1| RoundedCone::new(DVec3::ZERO, DVec3::ZERO, r0, r1);
-    assert!(rounded(1.0, 2.0).is_ok());
-    assert!(rounded(0.0, 0.0).is_err());
 }

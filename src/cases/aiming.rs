@@ -189,8 +189,12 @@ pub(super) fn sign(random: &mut Random) -> f64 {
     if random.below(2) == 0 { 1.0 } else { -1.0 }
 }
 
+/// A whole number up to `greatest` in size.
+pub(super) fn whole_number(random: &mut Random, greatest: u64) -> f64 {
+    random.below(2 * greatest + 1) as f64 - greatest as f64
+}
+
 /// A vector of whole numbers up to `greatest` in size.
 pub(super) fn whole(random: &mut Random, greatest: u64) -> DVec3 {
-    let mut number = || random.below(2 * greatest + 1) as f64 - greatest as f64;
-    DVec3::new(number(), number(), number())
+    DVec3::from_array([(); 3].map(|()| whole_number(random, greatest)))
 }

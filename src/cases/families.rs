@@ -65,10 +65,12 @@ pub enum Family {
 
 /// A name that is no family's.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no family {name:?}; the families are {}", Family::ALL.map(Family::name).join(", "))]
+#[error("there is no family {name:?}; the families are {}", known.join(", "))]
 pub struct UnknownFamily {
     /// The name as given.
     pub name: String,
+    /// The names that there are.
+    pub known: Vec<String>,
 }
 
 impl FromStr for Family {
@@ -76,7 +78,10 @@ impl FromStr for Family {
 
     fn from_str(name: &str) -> Result<Self, UnknownFamily> {
         let found = Self::ALL.into_iter().find(|family| family.name() == name);
-        found.ok_or_else(|| UnknownFamily { name: name.into() })
+        found.ok_or_else(|| UnknownFamily {
+            name: name.into(),
+            known: Self::ALL.map(|family| family.name().to_owned()).into(),
+        })
     }
 }
 

@@ -7,6 +7,7 @@
 //! are the case, and a solver is never blamed for a rounding of the family.
 
 mod aiming;
+mod any;
 mod cuboids;
 mod disks;
 mod families;
@@ -14,6 +15,7 @@ mod shapes;
 mod spheres;
 mod tapers;
 
+pub use any::{AnyFamily, Case};
 pub use cuboids::CuboidFamily;
 pub use disks::DiskFamily;
 pub use families::{Family, UnknownFamily};

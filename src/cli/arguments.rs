@@ -4,7 +4,7 @@ use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use cyltrace::cases::{Family, Inputs};
+use cyltrace::cases::{AnyFamily, Family, Inputs};
 use cyltrace::check::{Class, Replay};
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{Film, Integrator};
@@ -184,9 +184,9 @@ pub struct TessellateArguments {
 /// Exits with 1 when a promise of the library's own solvers is broken.
 #[derive(Args, Debug)]
 pub struct StressArguments {
-    /// Only this family; may be repeated [default: all twenty]
+    /// Only this family; may be repeated [default: all]
     #[arg(long, value_name = "NAME")]
-    pub family: Vec<Family>,
+    pub family: Vec<AnyFamily>,
     /// Cases of each family and kind of inputs
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
     pub cases: u64,
@@ -196,7 +196,8 @@ pub struct StressArguments {
     /// Only cases of f32 or of f64 numbers [default: both]
     #[arg(long, value_name = "KIND", value_parser = parse_inputs)]
     pub inputs: Option<Inputs>,
-    /// Only this formulation, in f32 and f64; may be repeated [default: all]
+    /// Only this formulation of cylinders, in f32 and f64, or the solver of this
+    /// kind of solid; may be repeated [default: all]
     #[arg(long, value_name = "NAME")]
     pub formulation: Vec<String>,
     /// Write the tables, the figures and maps into DIR

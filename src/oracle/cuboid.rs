@@ -70,8 +70,8 @@ pub fn cuboid_holds(cuboid: &Cuboid, point: glam::DVec3) -> bool {
 
 /// The least change, the same relative change for every number of the case, after
 /// which its answer may be another: to first order, that which makes the line go
-/// through an edge's line or brings the origin to a face's plane. Events that are out of the ray's range count too, so
-/// that it is a lower bound.
+/// through an edge's line or brings the origin to a face's plane. Events that are out
+/// of the ray's range count too, so that it is a lower bound.
 ///
 /// # Panics
 /// When the ray is not valid.
@@ -167,7 +167,10 @@ mod tests {
     use crate::math::Orientation;
     use glam::DVec3;
 
-    fn answer(origin: [f64; 3], direction: [f64; 3]) -> Option<([(f64, Part); 2], Option<Part>)> {
+    /// Both ends, and the face that the line lies in.
+    type Answer = ([(f64, Part); 2], Option<Part>);
+
+    fn answer(origin: [f64; 3], direction: [f64; 3]) -> Option<Answer> {
         // Its own y and z are the world's z and -y.
         let turned = Orientation::IDENTITY.rotated_x(90.0);
         let cuboid = Cuboid::new(DVec3::X, DVec3::new(1.0, 2.0, 3.0), turned).unwrap();

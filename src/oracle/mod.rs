@@ -5,6 +5,7 @@
 //! some thousand times slower than a solver and decides what is right.
 
 mod affine;
+mod any;
 mod change;
 mod chord;
 mod cone;
@@ -22,6 +23,7 @@ mod taper;
 mod taper_points;
 
 pub use affine::{ExactAffine, ExactMatrix};
+pub use any::{first_hit_of_any, gap_of_any, outward_normal_of_any};
 pub use chord::TrueChord;
 pub use cone::{cone_gap, cone_hits};
 pub use cuboid::{cuboid_chord, cuboid_gap, cuboid_holds};

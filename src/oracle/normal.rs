@@ -28,16 +28,25 @@ pub fn outward_normal(cylinder: &Cylinder, ray: &Ray, hit: &TrueHit) -> DVec3 {
         }
         part => part.not_of_a_cylinder(),
     };
+    unit(&outward).expect("a cylinder has a normal everywhere")
+}
+
+/// The unit vector along another that is not zero.
+pub(super) fn unit(outward: &ExactVector) -> Option<DVec3> {
     // Divided by the largest component first, so that squares stay in range.
     let largest = outward.0.iter().fold(zero(), |largest, x| {
         let size = if *x < zero() { -x } else { x.clone() };
         if size > largest { size } else { largest }
     });
+    if largest == zero() {
+        return None;
+    }
     let scale = largest.with_precision(64).value();
-    let divided = outward
-        .0
-        .map(|x| to_f64(&(x.with_precision(64).value() / &scale)));
-    DVec3::from_array(divided).normalize()
+    let divided = std::array::from_fn(|i| {
+        let x = outward.0[i].clone().with_precision(64).value();
+        to_f64(&(x / &scale))
+    });
+    Some(DVec3::from_array(divided).normalize())
 }
 
 #[cfg(test)]

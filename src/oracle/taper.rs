@@ -125,6 +125,15 @@ impl Taper {
         roots
     }
 
+    /// Half the gradient of the wall's polynomial at `p0 + q`: an outward normal on
+    /// the wall of the nappe where the radius is positive, zero at the apex.
+    pub fn gradient(&self, q: &ExactVector) -> ExactVector {
+        let aq = self.a.dot(q);
+        let radius = &self.r0 * &self.aa + &self.delta * &aq;
+        let across = &q.times(&self.aa) - &self.a.times(&aq);
+        &across.times(&self.beta) - &self.a.times(&(radius * &self.delta))
+    }
+
     /// Whether the line is one of those that the wall is made of.
     pub fn is_along(&self) -> bool {
         let Quadratic { a, b, c } = self.wall();

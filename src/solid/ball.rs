@@ -18,10 +18,11 @@
 //! the origin slides along the ray, so no square of the distance enters `D` and
 //! is taken off again. Rounded products leave an error of at most `3 u |x| |d|`
 //! in the length of `x × d`, u = 2^-53; its square and that of the radius round by
-//! a few u of themselves. Where that is not small against `D`, as for lines that
-//! graze the ball and for origins far away, `D` is computed from exact numbers: so
-//! its sign, which is all that tells a hit from a miss, is that of the exact `D`
-//! always.
+//! a few u of themselves. Where that leaves the sign of `D` open, or displaces the sum
+//! `|x·d| + √D` too much, as for lines that graze the ball, `D` is computed from exact
+//! numbers: so its sign, which is all that tells a hit from a miss, is that of the
+//! exact `D` always. (For an origin `k` radii away the relative error of `D` is some
+//! `k u`, but `√D` is a k-th of that sum.)
 //!
 //! Where the two terms of a root cancel, it is `C / q`, with `C` the constant
 //! term of (1), and `q` the sum that does not cancel; next to the sphere `C` is
@@ -37,6 +38,10 @@ use crate::math::{UNIT_ROUNDOFF, power_of_two};
 /// The relative error up to which rounded products of `D` will do: the roots then
 /// have half of it, 2^-13 of an ulp of f32.
 const GOOD: f64 = power_of_two(-36);
+
+/// How much of the sum that does not cancel the error of `√D` may be otherwise: the
+/// point of a hit is then within 2^-44 of the way to it.
+const GOOD_FROM_AFAR: f64 = power_of_two(-44);
 
 /// Below this, relative to `radius²`, `C` is computed from exact numbers; see
 /// the triple-product solver's limit.
@@ -68,11 +73,12 @@ pub(super) fn chord_about(
         return None;
     }
     let dd = d.dot(d);
-    let discriminant = from.discriminant(x, d, dd);
+    let b = x.dot(d);
+    let discriminant = from.discriminant(x, d, dd, b);
     if discriminant < 0.0 {
         return None;
     }
-    let (b, s) = (x.dot(d), discriminant.sqrt());
+    let s = discriminant.sqrt();
     let (first, second) = (-b - s, s - b);
     let root = |sum: f64, other: f64| {
         if sum.abs() < 0.5 * b.abs() {
@@ -116,8 +122,9 @@ struct FromBall {
 }
 
 impl FromBall {
-    /// `D` of (2), of the line through the point; `x` is the rounded difference.
-    fn discriminant(&self, x: DVec3, d: DVec3, dd: f64) -> f64 {
+    /// `D` of (2), of the line through the point; `x` is the rounded difference, `dd`
+    /// is `|d|²` and `b` is `x·d`.
+    fn discriminant(&self, x: DVec3, d: DVec3, dd: f64, b: f64) -> f64 {
         let across = x.cross(d);
         let (squared, reach) = (across.dot(across), self.radius * self.radius * dd);
         let rounded = reach - squared;
@@ -127,10 +134,17 @@ impl FromBall {
         let error = 8.0
             * UNIT_ROUNDOFF
             * (reach + squared + (squared * spread).sqrt() + 2.0 * UNIT_ROUNDOFF * spread);
-        if GOOD * rounded.abs() < error {
-            return quotient(&Discriminant { from: *self, d }, 1.0);
+        // Written so that a number that is none is taken as it is.
+        if rounded < -error || !(GOOD * rounded.abs() < error) {
+            return rounded;
         }
-        rounded
+        // A relative error of at most a quarter is less than doubled in the root.
+        let s = rounded.sqrt();
+        let displaced = s * (error / rounded);
+        if error <= 0.25 * rounded && displaced <= GOOD_FROM_AFAR * (b.abs() + s) {
+            return rounded;
+        }
+        quotient(&Discriminant { from: *self, d }, 1.0)
     }
 
     /// `C` of (1); `x` is the rounded difference.

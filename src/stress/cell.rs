@@ -1,29 +1,30 @@
-//! The figures of one formulation on one family.
+//! The figures of one contender on one family.
 //!
 //! What is compared, for a ray that truly hits and is said to:
 //!
 //! - `t` in ulps of the true `t`, in f32 ulps with `t` rounded to f32 first
-//!   (so a correctly rounded answer has at most 0.5), and, for a formulation
+//!   (so a correctly rounded answer has at most 0.5), and, for a contender
 //!   that computes in f64, in f64 ulps as well;
-//! - the position along the ray, `|dt| |d| / r`;
+//! - the position along the ray, `|dt| |d| / r`, with half its size for the `r` of a
+//!   solid that is no cylinder;
 //! - the normal's angle to the true one, up to its sign, where the part is
 //!   right.
 
-use crate::cases::{Family, Inputs};
+use crate::cases::{AnyFamily, Inputs};
 use crate::math::power_of_two;
 use crate::solid::formulations::{Answer, Precision};
 
 use super::quantiles::Quantiles;
 use super::witness::{TrueAnswer, Witness};
 
-/// The figures of a formulation on a family.
+/// The figures of a contender on a family.
 #[derive(Clone, Debug)]
 pub struct Cell {
     /// The family.
-    pub family: Family,
+    pub family: AnyFamily,
     /// The kind of inputs.
     pub inputs: Inputs,
-    /// The formulation's name.
+    /// The name of the formulation, or of the kind of solid.
     pub formulation: &'static str,
     /// What it computes in.
     pub precision: Precision,
@@ -74,7 +75,7 @@ pub struct Figures {
     pub non_finite: u64,
     /// Errors of `t` rounded to f32, in f32 ulps.
     pub t_f32_ulps: Quantiles,
-    /// Errors of `t` in f64 ulps, where the formulation computes in f64.
+    /// Errors of `t` in f64 ulps, where the contender computes in f64.
     pub t_f64_ulps: Quantiles,
     /// The greatest error of `t` of promised cases, in units of its bound.
     pub t_bound_used: f64,
@@ -121,12 +122,12 @@ impl Figures {
     ) {
         self.cases += 1;
         self.hits += u64::from(witness.truth.is_some());
-        let outside = u64::from(witness.gap > inputs.unit_roundoff());
-        let decided = u64::from(witness.is_decided);
+        let outside = || u64::from(witness.gap() > inputs.unit_roundoff());
+        let decided = || u64::from(witness.is_decided());
         match (&witness.truth, answer) {
             (_, Some(answer)) if !answer.t.is_finite() || !answer.normal.is_finite() => {
                 self.non_finite += 1;
-                self.note(3, witness.gap, witness.index);
+                self.note(3, witness.gap(), witness.index);
             }
             (Some(truth), Some(answer)) => {
                 let t_error = self.compare(witness, truth, answer, precision, inputs);
@@ -134,17 +135,17 @@ impl Figures {
                     self.note(0, t_error, witness.index);
                 } else {
                     self.wrong_part += 1;
-                    self.wrong_part_outside += outside;
-                    self.wrong_decided += decided;
-                    self.note(1, witness.gap, witness.index);
+                    self.wrong_part_outside += outside();
+                    self.wrong_decided += decided();
+                    self.note(1, witness.gap(), witness.index);
                 }
             }
             (None, None) => {}
             _ => {
                 self.wrong_hit += 1;
-                self.wrong_hit_outside += outside;
-                self.wrong_decided += decided;
-                self.note(2, witness.gap, witness.index);
+                self.wrong_hit_outside += outside();
+                self.wrong_decided += decided();
+                self.note(2, witness.gap(), witness.index);
             }
         }
     }
@@ -169,16 +170,19 @@ impl Figures {
                 ulps = f64_ulps;
             }
         }
-        let (cylinder, ray) = (&witness.problem.cylinder, &witness.problem.ray);
-        self.position
-            .push(error * ray.direction.length() / cylinder.radius());
-        if truth.part == answer.part {
-            let sine = truth.normal.cross(answer.normal).length();
-            let cosine = truth.normal.dot(answer.normal).abs();
+        let speed = witness.case.ray.direction.length();
+        self.position.push(error * speed / witness.length);
+        if let Some(normal) = truth.normal
+            && truth.part == answer.part
+        {
+            let sine = normal.cross(answer.normal).length();
+            let cosine = normal.dot(answer.normal).abs();
             self.normal.push(libm::atan2(sine, cosine));
         }
-        if witness.is_decided {
-            self.t_bound_used = self.t_bound_used.max(error.abs() / truth.t_bound);
+        if let Some(bound) = truth.t_bound
+            && witness.is_decided()
+        {
+            self.t_bound_used = self.t_bound_used.max(error.abs() / bound);
         }
         ulps
     }

@@ -12,7 +12,9 @@ use crate::cases::{Family, Inputs};
 use crate::oracle;
 use crate::render::Film;
 use crate::solid::Part;
-use crate::solid::formulations::{Answer, Formulation, Problem};
+use crate::solid::formulations::{Answer, Problem};
+
+use super::contender::Contender;
 
 /// Rays across a tile, an odd number so that the case itself is in the middle.
 const ACROSS: i32 = 65;
@@ -50,12 +52,7 @@ pub struct UlpMap {
 
 /// The map of a family's hardest case.
 #[must_use]
-pub fn ulp_map(
-    formulations: &[Box<dyn Formulation>],
-    family: Family,
-    inputs: Inputs,
-    seed: u64,
-) -> UlpMap {
+pub fn ulp_map(contenders: &[Contender], family: Family, inputs: Inputs, seed: u64) -> UlpMap {
     let centre = hardest(family, inputs, seed);
     let problems = neighbours(&centre, inputs);
     let truth: Vec<Option<Part>> = problems
@@ -74,7 +71,10 @@ pub fn ulp_map(
             .map(|&truth| colour(truth, truth))
             .collect::<Vec<_>>(),
     ];
-    for formulation in formulations {
+    for contender in contenders {
+        let Contender::Formulation(formulation) = contender else {
+            continue;
+        };
         let answers = formulation.answers(&problems);
         let found = |answer: &Option<Answer>| answer.map(|answer| answer.part);
         let pairs = || truth.iter().zip(answers.iter().map(found));

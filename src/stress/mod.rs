@@ -1,10 +1,12 @@
-//! Formulations against the oracle, on families of hard cases.
+//! Formulations of the cylinder and solvers of the other solids against the oracle,
+//! on families of hard cases.
 //!
-//! Every case is put to the oracle once and to each formulation; what comes
-//! out is one [`Cell`] for each family, kind of inputs and formulation. The
-//! figures are the same for any number of threads.
+//! Every case is put to the oracle once and to each [`Contender`] for its kind of
+//! solid; what comes out is one [`Cell`] for each family, kind of inputs and
+//! contender. A family without a contender is left out. The figures are the same for any number of threads.
 
 mod cell;
+mod contender;
 mod map;
 mod promises;
 mod quantiles;
@@ -13,32 +15,31 @@ mod self_hits;
 mod witness;
 
 pub use cell::{Cell, Figures};
+pub use contender::Contender;
 pub use map::{UlpMap, ulp_map};
 pub use promises::{Claim, PROMISES, Promise};
 pub use quantiles::Quantiles;
-pub use replay::{ReplayError, from_bits, to_bits};
-pub use self_hits::is_own;
+pub use replay::{ReplayError, from_word, to_bits, to_word};
 pub use witness::{TrueAnswer, Witness};
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use crate::cases::{Family, Inputs};
-use crate::solid::formulations::{Formulation, Problem};
+use crate::cases::{AnyFamily, Case, Inputs};
 
-/// Cases that are worked on at a time: enough for a formulation's own loop to
+/// Cases that are worked on at a time: enough for a contender's own loop to
 /// count, few enough that threads end together.
 const BLOCK: u64 = 500;
 
 /// What to run.
 pub struct Settings {
     /// The families, in order.
-    pub families: Vec<Family>,
+    pub families: Vec<AnyFamily>,
     /// The kinds of inputs, in order.
     pub inputs: Vec<Inputs>,
-    /// The formulations, in order.
-    pub formulations: Vec<Box<dyn Formulation>>,
+    /// Who answers, in order.
+    pub contenders: Vec<Contender>,
     /// Cases of each family and kind of inputs.
     pub cases: u64,
     /// Chooses the cases.
@@ -49,7 +50,18 @@ impl Settings {
     /// How many cases will be put to the oracle.
     #[must_use]
     pub fn all_cases(&self) -> u64 {
-        self.cases * self.families.len() as u64 * self.inputs.len() as u64
+        self.cases * self.judged_families().count() as u64 * self.inputs.len() as u64
+    }
+
+    /// The families for which there is a contender.
+    fn judged_families(&self) -> impl Iterator<Item = AnyFamily> {
+        let families = self.families.iter().copied();
+        families.filter(|family| self.contenders_for(*family).next().is_some())
+    }
+
+    fn contenders_for(&self, family: AnyFamily) -> impl Iterator<Item = &Contender> {
+        let contenders = self.contenders.iter();
+        contenders.filter(move |contender| contender.kind() == family.kind())
     }
 }
 
@@ -62,14 +74,14 @@ pub fn run(
 ) -> Option<Vec<Cell>> {
     let mut cells = Vec::new();
     for &inputs in &settings.inputs {
-        for &family in &settings.families {
+        for family in settings.judged_families() {
             let figures = run_family(settings, family, inputs, progress, stop)?;
-            let named = settings.formulations.iter().zip(figures);
-            cells.extend(named.map(|(formulation, figures)| Cell {
+            let named = settings.contenders_for(family).zip(figures);
+            cells.extend(named.map(|(contender, figures)| Cell {
                 family,
                 inputs,
-                formulation: formulation.name(),
-                precision: formulation.precision(),
+                formulation: contender.name(),
+                precision: contender.precision(),
                 seed: settings.seed,
                 figures,
             }));
@@ -78,17 +90,17 @@ pub fn run(
     Some(cells)
 }
 
-/// One set of figures a formulation.
+/// One set of figures a contender.
 fn run_family(
     settings: &Settings,
-    family: Family,
+    family: AnyFamily,
     inputs: Inputs,
     progress: &(dyn Fn(u64) + Sync),
     stop: &AtomicBool,
 ) -> Option<Vec<Figures>> {
     let none = || -> Vec<Figures> {
-        let formulations = settings.formulations.iter();
-        formulations.map(|_| Figures::default()).collect()
+        let contenders = settings.contenders_for(family);
+        contenders.map(|_| Figures::default()).collect()
     };
     let figures = (0..settings.cases.div_ceil(BLOCK))
         .into_par_iter()
@@ -113,25 +125,24 @@ fn run_family(
 
 fn run_block(
     settings: &Settings,
-    family: Family,
+    family: AnyFamily,
     inputs: Inputs,
     indices: std::ops::Range<u64>,
 ) -> Vec<Figures> {
     let witnesses: Vec<Witness> = indices
         .map(|index| Witness::new(family.case(settings.seed, index, inputs), index, inputs))
         .collect();
-    let problems: Vec<Problem> = witnesses.iter().map(|witness| witness.problem).collect();
-    let formulations = settings.formulations.iter();
-    formulations
-        .map(|formulation| {
+    let cases: Vec<Case> = witnesses.iter().map(|witness| witness.case).collect();
+    settings
+        .contenders_for(family)
+        .map(|contender| {
             let mut figures = Figures::default();
-            let answers = formulation.answers(&problems);
+            let answers = contender.answers(&cases);
             for (witness, answer) in witnesses.iter().zip(&answers) {
-                figures.judge(witness, answer.as_ref(), formulation.precision(), inputs);
+                figures.judge(witness, answer.as_ref(), contender.precision(), inputs);
             }
-            if self_hits::is_own(formulation.as_ref()) {
-                let spawned =
-                    self_hits::count(formulation.as_ref(), &witnesses, &answers, settings.seed);
+            if contender.is_own() {
+                let spawned = self_hits::count(contender, &witnesses, &answers, settings.seed);
                 figures.spawned += spawned.rays;
                 figures.self_hits += spawned.self_hits;
             }

@@ -10,7 +10,7 @@ use super::cell::Cell;
 /// A row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Promise {
-    /// The names of the formulations; their precision is f64.
+    /// The names of the contenders; their precision is f64.
     pub formulations: &'static [&'static str],
     /// For which inputs.
     pub inputs: Inputs,
@@ -27,6 +27,8 @@ pub enum Claim {
     Right,
     /// The same of cases that are promised, see [`super::Witness::new`].
     RightWhereDecided,
+    /// The same where [`Witness::gap`](super::Witness::gap) is above 4 u.
+    RightBeyondRounding,
     /// The share of 0.999 of `t` rounded to f32 is within so many f32 ulps.
     ThousandthF32Ulps(f64),
     /// Every `t` is within so many f64 ulps.
@@ -45,10 +47,14 @@ const EXACT: &[&str] = &["exact", "exact-rounded"];
 /// The same with every `t` rounded, as the library does for a final hit.
 const EXACT_ROUNDED: &[&str] = &["exact-rounded"];
 
+/// The solvers of the solids that are no cylinders, by their kinds.
+const SOLVERS: &[&str] = &["cone", "rounded_cone", "sphere", "cuboid", "disk"];
+
 /// (3) to (6) are those of `docs/derivations.md`, section 2.
 const DERIVED: &str = "derived, (3) to (6)";
 const MEASURED: &str = "measured, 20 families of 10^6";
 const CERTIFIED: &str = "certified by construction";
+const EXACT_SIGNS: &str = "signs decided exactly, section 8";
 const SPAWN: &str = "derived, section 5";
 
 const fn promise(
@@ -101,6 +107,18 @@ pub const PROMISES: &[Promise] = &[
         CERTIFIED,
     ),
     promise(EXACT, Inputs::F64, Claim::NoSelfHit, SPAWN),
+    promise(SOLVERS, Inputs::F32, Claim::Right, EXACT_SIGNS),
+    promise(SOLVERS, Inputs::F32, ROUNDED_TO_F32, EXACT_SIGNS),
+    promise(SOLVERS, Inputs::F32, Claim::Finite, EXACT_SIGNS),
+    promise(SOLVERS, Inputs::F32, Claim::NoSelfHit, SPAWN),
+    promise(
+        SOLVERS,
+        Inputs::F64,
+        Claim::RightBeyondRounding,
+        EXACT_SIGNS,
+    ),
+    promise(SOLVERS, Inputs::F64, Claim::Finite, EXACT_SIGNS),
+    promise(SOLVERS, Inputs::F64, Claim::NoSelfHit, SPAWN),
 ];
 
 impl Promise {
@@ -125,7 +143,7 @@ impl Promise {
         let figures = &cell.figures;
         match self.claim {
             Claim::Right => figures.wrong_hit == 0 && figures.wrong_part == 0,
-            Claim::RightWhereDecided => figures.wrong_decided == 0,
+            Claim::RightWhereDecided | Claim::RightBeyondRounding => figures.wrong_decided == 0,
             Claim::ThousandthF32Ulps(most) => figures.t_f32_ulps.at(0.999) <= most,
             Claim::EveryF64Ulps(most) => figures.t_f64_ulps.greatest() <= most,
             Claim::WithinBound => figures.t_bound_used <= 1.0,
@@ -142,6 +160,7 @@ impl fmt::Display for Claim {
             Self::RightWhereDecided => f.write_str(
                 "no wrong hit, miss or part where wall gap > 20 u (1 + |x|/r + k) and gap > 64 u",
             ),
+            Self::RightBeyondRounding => f.write_str("no wrong hit, miss or part where gap > 4 u"),
             Self::ThousandthF32Ulps(most) => {
                 write!(f, "99.9 % of t within {most} f32 ulps")
             }

@@ -1,11 +1,14 @@
-//! A case as one word, bit for bit, to be passed on and replayed.
+//! A case as one word, to be passed on and replayed.
 //!
-//! Fifteen numbers in hexadecimal, the bits of their f64, joined by `:` (zero
+//! Of cylinders bit for bit: fifteen numbers in hexadecimal, the bits of their f64, joined by `:` (zero
 //! is written `0`): p0, p1, radius, origin, direction, t_min, t_max. The discs
-//! come last: `none`, `p0`, `p1` or `both`.
+//! come last: `none`, `p0`, `p1` or `both`. Of other solids by what it is drawn from:
+//! the name of the family, the inputs, the seed and the index, as in
+//! `cone-rim:f32:0:17`.
 
 use glam::DVec3;
 
+use crate::cases::{AnyFamily, Case, Inputs};
 use crate::math::Ray;
 use crate::solid::formulations::Problem;
 use crate::solid::{Caps, Cylinder, CylinderError};
@@ -21,7 +24,10 @@ const CAPS: [(&str, Caps); 4] = [
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReplayError {
     /// There are more or fewer parts.
-    #[error("a case has 16 parts joined by ':', fifteen numbers and the discs; there are {0}")]
+    #[error(
+        "a case has 16 parts joined by ':', fifteen numbers and the discs, or 4, family, inputs, \
+         seed and index; there are {0}"
+    )]
     Parts(usize),
     /// A number is not hexadecimal.
     #[error("{0:?} is not the bits of a number in hexadecimal")]
@@ -37,7 +43,32 @@ pub enum ReplayError {
     Ray,
 }
 
-/// The word for a case.
+/// The word for case `index` of a family.
+#[must_use]
+pub fn to_word(family: AnyFamily, inputs: Inputs, seed: u64, index: u64) -> String {
+    match family {
+        AnyFamily::Cylinder(family) => to_bits(&family.case(seed, index, inputs)),
+        _ => format!("{}:{}:{seed}:{index}", family.name(), inputs.name()),
+    }
+}
+
+/// The case that a word of [`to_word`] stands for.
+///
+/// # Errors
+/// When the word is malformed or stands for no cylinder and ray.
+pub fn from_word(word: &str) -> Result<Case, ReplayError> {
+    let parts: Vec<&str> = word.trim().split(':').collect();
+    if let [family, inputs, seed, index] = parts[..]
+        && let Ok(family) = family.parse::<AnyFamily>()
+        && let Some(inputs) = Inputs::ALL.into_iter().find(|one| one.name() == inputs)
+        && let (Ok(seed), Ok(index)) = (seed.parse(), index.parse::<u32>())
+    {
+        return Ok(family.case(seed, index.into(), inputs));
+    }
+    from_bits(word).map(Case::from)
+}
+
+/// The word for a cylinder and a ray.
 #[must_use]
 pub fn to_bits(problem: &Problem) -> String {
     let Problem { cylinder, ray } = problem;
@@ -56,11 +87,7 @@ pub fn to_bits(problem: &Problem) -> String {
     parts.join(":")
 }
 
-/// The case that a word stands for.
-///
-/// # Errors
-/// When the word is malformed or stands for no cylinder and ray.
-pub fn from_bits(word: &str) -> Result<Problem, ReplayError> {
+fn from_bits(word: &str) -> Result<Problem, ReplayError> {
     let parts: Vec<&str> = word.trim().split(':').collect();
     let [numbers @ .., caps] = parts.as_slice() else {
         return Err(ReplayError::Parts(parts.len()));
@@ -93,13 +120,14 @@ pub fn from_bits(word: &str) -> Result<Problem, ReplayError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cases::{Family, Inputs};
+    use crate::cases::Family;
 
     #[test]
     fn word_read_back_is_the_same_case() {
-        for family in Family::ALL {
+        for family in AnyFamily::all() {
             let case = family.case(1, 2, Inputs::F64);
-            assert_eq!(from_bits(&to_bits(&case)), Ok(case));
+            let word = to_word(family, Inputs::F64, 1, 2);
+            assert_eq!(from_word(&word), Ok(case), "{word}");
         }
     }
 
@@ -108,6 +136,7 @@ mod tests {
         let good = to_bits(&Family::Nominal.case(1, 2, Inputs::F64));
         let error = |word: &str| from_bits(word).unwrap_err().to_string();
         assert!(error("").contains("16 parts"));
+        assert!(from_word("cone-knot:f32:0:1").is_err() && from_word("cone-rim:f16:0:1").is_err());
         assert!(error(&good.replace("both", "all")).contains("\"all\""));
         assert!(error(&format!("zz{good}")).contains("hexadecimal"));
         let zero_ray = format!(

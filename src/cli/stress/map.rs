@@ -5,8 +5,7 @@ use std::path::Path;
 use cyltrace::cases::{Family, Inputs};
 use cyltrace::render::Output;
 use cyltrace::report::Table;
-use cyltrace::solid::formulations::Formulation;
-use cyltrace::stress::{to_bits, ulp_map};
+use cyltrace::stress::{Contender, to_bits, ulp_map};
 
 use crate::cli::arguments::StressArguments;
 use crate::cli::print::print;
@@ -15,14 +14,14 @@ use crate::cli::print::print;
 pub fn run(
     arguments: &StressArguments,
     family: Family,
-    formulations: &[Box<dyn Formulation>],
+    contenders: &[Contender],
 ) -> anyhow::Result<()> {
     let inputs = arguments.inputs.unwrap_or(Inputs::F32);
     let directory = arguments.report.as_deref().unwrap_or(Path::new("."));
     let name = format!("ulp_map_{}_{}.png", family.name(), inputs.name());
     let path = directory.join(name);
     Output::check(&path)?;
-    let map = ulp_map(formulations, family, inputs, arguments.seed);
+    let map = ulp_map(contenders, family, inputs, arguments.seed);
     Output::create(&path)?.write(&map.film)?;
     if arguments.common.prints() {
         let mut table = Table::new(&["tile", "wrong %"], 1);

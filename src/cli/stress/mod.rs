@@ -7,9 +7,8 @@ mod tables;
 use std::time::Instant;
 
 use anyhow::bail;
-use cyltrace::cases::{Family, Inputs};
-use cyltrace::solid::formulations::{self, Formulation};
-use cyltrace::stress::{self, Cell, Promise, Settings};
+use cyltrace::cases::{AnyFamily, Inputs};
+use cyltrace::stress::{self, Cell, Contender, Promise, Settings};
 use serde_json::{Value, json};
 
 use super::arguments::StressArguments;
@@ -24,9 +23,9 @@ pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
         print(&tables::promises())?;
         return Ok(GOOD);
     }
-    let formulations = chosen(&arguments.formulation)?;
+    let contenders = chosen(&arguments.formulation)?;
     if let Some(word) = &arguments.replay {
-        replay::run(word, &formulations)?;
+        replay::run(word, &contenders)?;
         return Ok(GOOD);
     }
     json::check(common)?;
@@ -36,19 +35,19 @@ pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
     interrupt::install()?;
     let workers = scene::workers(common)?;
     if let Some(family) = arguments.map {
-        workers.install(|| map::run(arguments, family, &formulations))?;
+        workers.install(|| map::run(arguments, family, &contenders))?;
         return Ok(GOOD);
     }
 
     let settings = Settings {
         families: match arguments.family.as_slice() {
-            [] => Family::ALL.to_vec(),
+            [] => AnyFamily::all(),
             some => some.to_vec(),
         },
         inputs: arguments
             .inputs
             .map_or(Inputs::ALL.to_vec(), |one| vec![one]),
-        formulations,
+        contenders,
         cases: arguments.cases,
         seed: arguments.seed,
     };
@@ -92,9 +91,10 @@ pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
     })
 }
 
-/// The formulations of these names in both precisions, or all.
-fn chosen(names: &[String]) -> anyhow::Result<Vec<Box<dyn Formulation>>> {
-    let known: Vec<&str> = formulations::all().iter().map(|one| one.name()).collect();
+/// The contenders of these names in both precisions, or all.
+fn chosen(names: &[String]) -> anyhow::Result<Vec<Contender>> {
+    let mut contenders = Contender::all();
+    let known: Vec<&str> = contenders.iter().map(Contender::name).collect();
     if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
         let mut known = known;
         known.dedup();
@@ -103,9 +103,8 @@ fn chosen(names: &[String]) -> anyhow::Result<Vec<Box<dyn Formulation>>> {
             known.join(", ")
         );
     }
-    let mut formulations = formulations::all();
-    formulations.retain(|one| names.is_empty() || names.iter().any(|name| name == one.name()));
-    Ok(formulations)
+    contenders.retain(|one| names.is_empty() || names.iter().any(|name| name == one.name()));
+    Ok(contenders)
 }
 
 /// A cell as a row of the JSON.

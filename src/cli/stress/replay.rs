@@ -1,43 +1,42 @@
 //! `cyltrace stress --replay`: one case, and what everyone says of it.
 
+use cyltrace::cases::Case;
 use cyltrace::math::UNIT_ROUNDOFF;
 use cyltrace::oracle;
 use cyltrace::report::Table;
-use cyltrace::solid::formulations::{Formulation, Problem};
-use cyltrace::stress::from_bits;
+use cyltrace::solid::AnySolid;
+use cyltrace::stress::{Contender, from_word};
+use glam::DVec3;
 
 use crate::cli::print::print;
 
 /// Prints the case of a word and the answers to it.
-pub fn run(word: &str, formulations: &[Box<dyn Formulation>]) -> anyhow::Result<()> {
-    let problem = from_bits(word)?;
-    let Problem { cylinder, ray } = &problem;
-    let (p0, p1, o, d) = (cylinder.p0(), cylinder.p1(), ray.origin, ray.direction);
-    let mut text = format!(
-        "p0        {:?} {:?} {:?}\np1        {:?} {:?} {:?}\nradius    {:?}\ncaps      {:?}\n",
-        p0.x,
-        p0.y,
-        p0.z,
-        p1.x,
-        p1.y,
-        p1.z,
-        cylinder.radius(),
-        cylinder.caps()
-    );
-    text += &format!(
-        "origin    {:?} {:?} {:?}\ndirection {:?} {:?} {:?}\nrange     {:?} {:?}\n",
-        o.x, o.y, o.z, d.x, d.y, d.z, ray.t_min, ray.t_max
-    );
+pub fn run(word: &str, contenders: &[Contender]) -> anyhow::Result<()> {
+    let case = from_word(word)?;
+    let Case { solid, ray } = &case;
+    let mut text = match solid {
+        AnySolid::Cylinder(cylinder) => format!(
+            "{}{}radius    {:?}\ncaps      {:?}\n",
+            row_of("p0", cylinder.p0()),
+            row_of("p1", cylinder.p1()),
+            cylinder.radius(),
+            cylinder.caps()
+        ),
+        other => format!("solid     {other:?}\n"),
+    };
+    text += &row_of("origin", ray.origin);
+    text += &row_of("direction", ray.direction);
+    text += &format!("range     {:?} {:?}\n", ray.t_min, ray.t_max);
 
-    let truth = oracle::first_hit(cylinder, ray);
-    let gap = oracle::gap(cylinder, ray, truth.hit.as_ref());
+    let truth = oracle::first_hit_of_any(solid, ray);
+    let gap = oracle::gap_of_any(solid, ray);
     text += &format!(
         "gap       {gap:e}, {:e} units of 2^-53\n",
         gap / UNIT_ROUNDOFF
     );
 
     let mut table = Table::new(&["who", "in", "part", "t", "normal"], 5);
-    let row = |who: &str, precision: &str, found: Option<(&str, f64, glam::DVec3)>| {
+    let row = |who: &str, precision: &str, found: Option<(&str, f64, DVec3)>| {
         let (part, t, normal) = match found {
             Some((part, t, n)) => (
                 part,
@@ -54,19 +53,20 @@ pub fn run(word: &str, formulations: &[Box<dyn Formulation>]) -> anyhow::Result<
             normal,
         ]
     };
-    let exact = truth.hit.as_ref().map(|hit| {
-        let normal = oracle::outward_normal(cylinder, ray, hit);
-        (hit.part.name(), hit.t_f64(), normal)
+    let exact = truth.as_ref().map(|hit| {
+        let normal = oracle::outward_normal_of_any(solid, ray, hit);
+        (hit.part.name(), hit.t_f64(), normal.unwrap_or(DVec3::NAN))
     });
     table.push(row("oracle", "", exact));
-    for formulation in formulations {
-        let answer = formulation.answers(&[problem])[0];
+    for contender in contenders.iter().filter(|one| one.kind() == solid.kind()) {
+        let answer = contender.answers(&[case])[0];
         let found = answer.map(|answer| (answer.part.name(), answer.t, answer.normal));
-        table.push(row(
-            formulation.name(),
-            formulation.precision().name(),
-            found,
-        ));
+        table.push(row(contender.name(), contender.precision().name(), found));
     }
     print(&format!("{text}{table}"))
+}
+
+/// A line with the digits of a vector.
+fn row_of(name: &str, vector: DVec3) -> String {
+    format!("{name:<10}{:?} {:?} {:?}\n", vector.x, vector.y, vector.z)
 }

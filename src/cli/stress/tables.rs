@@ -2,9 +2,8 @@
 
 use std::fmt::Write as _;
 
-use cyltrace::cases::Inputs;
 use cyltrace::report::{Table, figure};
-use cyltrace::stress::{Cell, PROMISES, Promise, Settings, to_bits};
+use cyltrace::stress::{Cell, PROMISES, Promise, Settings, to_word};
 
 /// The table of promises.
 pub fn promises() -> String {
@@ -77,9 +76,11 @@ fn errors<'a>(cells: impl Iterator<Item = &'a Cell>) -> Table {
         let figures = &cell.figures;
         let percent = |count: u64| figure(100.0 * count as f64 / figures.cases as f64);
         let t = cell.t_ulps();
-        let mut row: Vec<String> = [cell.family.name(), cell.formulation, cell.precision.name()]
-            .map(str::to_owned)
-            .into();
+        let mut row: Vec<String> = vec![
+            cell.family.name(),
+            cell.formulation.to_owned(),
+            cell.precision.name().to_owned(),
+        ];
         row.extend(
             [
                 figures.wrong_hit,
@@ -114,7 +115,7 @@ fn worst<'a>(cells: impl Iterator<Item = &'a Cell>) -> Table {
             _ => format!("t off {size} ulp"),
         };
         table.push(vec![
-            cell.family.name().to_owned(),
+            cell.family.name(),
             cell.formulation.to_owned(),
             cell.precision.name().to_owned(),
             what,
@@ -127,6 +128,5 @@ fn worst<'a>(cells: impl Iterator<Item = &'a Cell>) -> Table {
 /// The worst case of a cell as a word for `--replay`.
 pub fn worst_bits(cell: &Cell) -> Option<String> {
     let worst = cell.figures.worst.as_ref()?;
-    let inputs: Inputs = cell.inputs;
-    Some(to_bits(&cell.family.case(cell.seed, worst.index, inputs)))
+    Some(to_word(cell.family, cell.inputs, cell.seed, worst.index))
 }

@@ -5,7 +5,7 @@
 //! the circles in which it does, at `-r0 Δ` and `|a|² - r1 Δ`, the seams.
 //!
 //! At a root of the wall the rounded height is off by some u of its terms and by
-//! what `t` is off, 2^-37 of itself (`wall.rs`). Within [`NEAR`] of an end the
+//! what `t` is off, at most 2^-29 of itself (`wall.rs`). Within [`NEAR`] of an end the
 //! question is settled exactly: with `Â = β A`, `B̂ = β B` and `Ê = |a|² E`, the roots
 //! are `t = (-B̂ ∓ √R) / Â`, `R = β |a|² Ê`, so that
 //!
@@ -25,7 +25,7 @@ use crate::math::power_of_two;
 use crate::solid::exact::{Expression, Number, dot, quotient, sign, vector};
 
 /// How near to an end rounded heights do not tell, relative to their terms.
-const NEAR: f64 = power_of_two(-34);
+const NEAR: f64 = power_of_two(-28);
 
 /// Below this share of its terms a sum is computed exactly.
 const CANCELS: f64 = power_of_two(-20);

@@ -1,6 +1,7 @@
 //! The truncated cone as users state it.
 
 pub(super) mod heights;
+mod rounded;
 pub(super) mod solver;
 mod surface;
 pub(super) mod wall;
@@ -231,5 +232,44 @@ impl Expression for Beyond<'_> {
                 Measures::new(&a, cone.radius0, cone.radius1, Fit::Discs).outside(&a, &x)
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_that_are_no_cone_are_refused() {
+        let new = |p1, r0, r1| Cone::new(DVec3::ZERO, p1, r0, r1, Caps::Both);
+        assert!(matches!(new(DVec3::Z, 0.0, 0.0), Err(ConeError::NoRadius)));
+        assert!(matches!(
+            new(DVec3::ZERO, 1.0, 0.0),
+            Err(ConeError::Length { .. })
+        ));
+        assert!(matches!(
+            new(DVec3::Z, -1.0, 1.0),
+            Err(ConeError::Radius {
+                which: "radius0",
+                ..
+            })
+        ));
+        assert!(matches!(
+            new(DVec3::Z, 1.0, f64::NAN),
+            Err(ConeError::Radius {
+                which: "radius1",
+                ..
+            })
+        ));
+        assert!(matches!(
+            new(DVec3::INFINITY, 1.0, 1.0),
+            Err(ConeError::Endpoint { which: "p1", .. })
+        ));
+        assert!(
+            new(DVec3::Z, 1.0, -0.0)
+                .unwrap()
+                .radius1()
+                .is_sign_positive()
+        );
     }
 }

@@ -42,22 +42,15 @@
 //! parallel to a line of the wall; `h` tells which of the half-lines is on the nappe
 //! of the solid.
 //!
-//! **Rounding.** Each of `A`, `B`, `C` and `E` is a difference; the bounds of
-//! [`Rounded::new`] follow from `|δn| <= 3 u |a| |d|`, `|δm| <= 3 u |a| |x|`,
-//! `|δ(x × d)| <= 3 u |x| |d|` and `|δ(d·a)| <= 3 u |a| |d|`, u = 2^-53. Where
-//! one exceeds [`GOOD`] of the value, which is rare but for lines that graze the
-//! wall or are nearly along it, the value is computed from exact numbers: then its
-//! sign is exact, and its relative error a few u. Of the two roots one has no
-//! cancellation in its sum `q`; where the other's terms cancel it is `C / q`.
+//! Each of `A`, `B`, `C` and `E` is a difference. `rounded.rs` says when rounded
+//! products will do for it. Where they do not, it is computed from exact numbers: then
+//! its sign is exact, and its relative error a few u, u = 2^-53. Of the two roots one
+//! has no cancellation in its sum `q`; where the other's terms cancel it is `C / q`.
 
 use glam::DVec3;
 
-use crate::math::{UNIT_ROUNDOFF, power_of_two};
+use super::rounded::Rounded;
 use crate::solid::exact::{Expression, Number, cross, dot, quotient, vector};
-
-/// The relative error up to which rounded products will do: a root then has less
-/// than 2^-11 of an ulp of f32.
-const GOOD: f64 = power_of_two(-36);
 
 /// Which cone belongs to two radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,9 +112,11 @@ impl Taper {
             return None;
         }
         let rounded = Rounded::new(self, x, d);
-        let [a, b, e] = [rounded.a, rounded.b, rounded.e].map(|one| one.value);
+        if rounded.passes_by() {
+            return None;
+        }
         let (a, b, e) = if rounded.is_good() {
-            (a, b, e)
+            (rounded.a.value, rounded.b.value, rounded.e.value)
         } else {
             let exactly = |term| self.exactly(term, x, d, rounded.beta);
             (exactly(Term::A), exactly(Term::B), exactly(Term::E))
@@ -167,11 +162,7 @@ impl Taper {
     /// `C` of (2).
     fn constant_term(&self, rounded: &Rounded, x: DVec3, d: DVec3) -> f64 {
         let c = rounded.constant_term(self, x);
-        if c.is_good() {
-            c.value
-        } else {
-            self.exactly(Term::C, x, d, rounded.beta)
-        }
+        c.unwrap_or_else(|| self.exactly(Term::C, x, d, rounded.beta))
     }
 
     fn exactly(&self, term: Term, x: DVec3, d: DVec3, beta: f64) -> f64 {
@@ -213,111 +204,6 @@ impl Taper {
                 let (m, g) = (cross(&a, x), measures.g(&dot(x, &a)));
                 beta.times(&dot(&m, &n)).minus(&g.times(&h))
             }
-        }
-    }
-}
-
-/// A rounded difference and a bound of its error.
-#[derive(Clone, Copy, Debug)]
-struct Difference {
-    value: f64,
-    error: f64,
-}
-
-impl Difference {
-    /// Whether the error is small against the value, or the value no number.
-    fn is_good(&self) -> bool {
-        !(GOOD * self.value.abs() < self.error)
-    }
-}
-
-/// What rounded products make of (2) and (4).
-#[derive(Clone, Copy, Debug)]
-struct Rounded {
-    aa: f64,
-    beta: f64,
-    h: f64,
-    m: DVec3,
-    /// `|x| |a|`, which bounds `|m|`.
-    reach: f64,
-    a: Difference,
-    b: Difference,
-    e: Difference,
-    /// `|a|² √(E/β)`.
-    s: f64,
-}
-
-impl Rounded {
-    fn new(taper: &Taper, x: DVec3, d: DVec3) -> Self {
-        const U: f64 = UNIT_ROUNDOFF;
-        let (axis, r0) = (taper.a, taper.radius0);
-        let delta = taper.radius1 - r0;
-        let (aa, dd, beta) = (axis.dot(axis), d.dot(d), taper.beta());
-        let (length, speed, distance) = (aa.sqrt(), dd.sqrt(), x.length());
-        let (n, m, l) = (axis.cross(d), axis.cross(x), x.cross(d));
-        let (nn, w, slope) = (n.dot(n), x.dot(n), d.dot(axis));
-        let (k, h) = (n * r0 + l * delta, delta * slope);
-        let (kk, ww, tilt) = (k.dot(k), w * w, (beta + delta * delta) / aa);
-        let (reach, pace) = (distance * length, length * speed);
-
-        // |δn| <= 3 u pace, also in h, which rounds by 2 u more.
-        let steep = pace * nn.sqrt() + nn + (delta * delta / beta) * (pace * slope.abs());
-        let a = Difference {
-            value: nn - h * h / beta,
-            error: 16.0 * U * (steep + 9.0 * U * pace * pace),
-        };
-        // |m·n| <= reach |n|, each with 3 u of reach and of pace.
-        let g = r0 * aa + delta * x.dot(axis);
-        let size = r0 * aa + delta.abs() * reach;
-        let b = Difference {
-            value: m.dot(n) - g * h / beta,
-            error: 16.0 * U * (reach * pace + size * (delta.abs() * pace) / beta),
-        };
-        // |δk| <= 5 u K with K = |d| (r0 |a| + |Δ| |x|), |δw| <= 6 u |x| |a| |d|.
-        let (moment, triple) = (
-            speed * (r0 * length + delta.abs() * distance),
-            reach * speed,
-        );
-        let first = k.length() * moment + tilt * (w.abs() * triple) + kk + tilt * ww;
-        let second = moment * moment + tilt * (triple * triple);
-        let value = kk - ww * tilt;
-        let e = Difference {
-            value,
-            error: 16.0 * U * (first + 3.0 * U * second),
-        };
-        Self {
-            aa,
-            beta,
-            h,
-            m,
-            reach,
-            a,
-            b,
-            e,
-            s: aa * (value / beta).sqrt(),
-        }
-    }
-
-    /// Whether the roots, but for `C`, are good: an error of `B` matters against
-    /// the sum that does not cancel.
-    fn is_good(&self) -> bool {
-        let sum = Difference {
-            value: self.b.value.abs() + self.s,
-            error: self.b.error,
-        };
-        self.a.is_good() && self.e.is_good() && sum.is_good()
-    }
-
-    fn constant_term(&self, taper: &Taper, x: DVec3) -> Difference {
-        let delta = taper.radius1 - taper.radius0;
-        let g = taper.radius0 * self.aa + delta * x.dot(taper.a);
-        let size = taper.radius0 * self.aa + delta.abs() * self.reach;
-        let mm = self.m.dot(self.m);
-        let wide = self.reach * mm.sqrt() + mm + g.abs() * (size / self.beta);
-        let second = self.reach * self.reach + size * (size / self.beta);
-        Difference {
-            value: mm - g * (g / self.beta),
-            error: 16.0 * UNIT_ROUNDOFF * (wide + 3.0 * UNIT_ROUNDOFF * second),
         }
     }
 }

@@ -169,3 +169,42 @@ impl Expression for Beyond<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Random;
+
+    #[test]
+    fn ball_that_holds_the_other_is_the_rounded_cone() {
+        let (p0, p1) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 2.0, 5.0));
+        for (p1, radius1, part) in [
+            (p1, 1.0, Part::Cap0),
+            (p1, 5.0, Part::Cap1),
+            (p0, 3.0, Part::Cap0),
+        ] {
+            let solid = RoundedCone::new(p0, p1, 3.0, radius1).unwrap();
+            let chord = solid.chord(DVec3::new(-10.0, 0.0, 0.0), DVec3::X).unwrap();
+            assert_eq!((chord.enter.part, chord.leave.part), (part, part));
+            let outer = RoundedCone::new(
+                if part == Part::Cap0 { p0 } else { p1 },
+                if part == Part::Cap0 { p0 } else { p1 },
+                if part == Part::Cap0 { 3.0 } else { 5.0 },
+                0.0,
+            );
+            let outer = outer.unwrap();
+            for index in 0..1000 {
+                let mut random = Random::new(23, index);
+                let point = p0 + random.direction() * random.uniform(2.5, 7.5);
+                assert_eq!(solid.contains(point), outer.contains(point));
+            }
+        }
+    }
+
+    #[test]
+    fn ends_may_coincide_but_one_radius_is_positive() {
+        let rounded = |r0, r1| RoundedCone::new(DVec3::ZERO, DVec3::ZERO, r0, r1);
+        assert!(rounded(1.0, 2.0).is_ok());
+        assert!(rounded(0.0, 0.0).is_err());
+    }
+}

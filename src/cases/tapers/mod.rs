@@ -4,12 +4,17 @@
 //! cone through two discs, or the hull of two balls. Where a ray is aimed at the
 //! wall, at its rims or along it, that is the wall of the solid in question.
 
+mod grids;
+mod target;
+
 use glam::DVec3;
 
 use super::Inputs;
 use super::aiming::{Aim, sign, valid};
 use crate::math::{Random, Ray};
 use crate::solid::{Caps, Cone, RoundedCone};
+use grids::{tangent_plane, through_apex};
+use target::Target;
 
 /// Which solid a case is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -255,193 +260,4 @@ impl TaperFamily {
         };
         Aim::new(point, heading.normalize()).ray(distance, speed, inputs)
     }
-}
-
-/// A solid as rays are aimed at it.
-struct Target {
-    p0: DVec3,
-    p1: DVec3,
-    radius0: f64,
-    radius1: f64,
-    solid: TaperSolid,
-}
-
-impl Target {
-    fn axis(&self) -> DVec3 {
-        (self.p1 - self.p0).normalize()
-    }
-
-    fn radius(&self) -> f64 {
-        self.radius0.max(self.radius1)
-    }
-
-    fn size(&self) -> f64 {
-        (self.p1 - self.p0).length() + self.radius()
-    }
-
-    /// A unit vector across the axis.
-    fn across(&self, random: &mut Random) -> DVec3 {
-        loop {
-            let across = self.axis().cross(random.direction());
-            if across.length_squared() > 1e-6 {
-                return across.normalize();
-            }
-        }
-    }
-
-    /// The point of the wall at a share of the way, and unit vectors: outward,
-    /// and along the wall.
-    fn wall(&self, share: f64, outward: DVec3) -> [DVec3; 3] {
-        let (axis, length) = (self.axis(), (self.p1 - self.p0).length());
-        let delta = self.radius1 - self.radius0;
-        let (middle, radius) = (self.p0.lerp(self.p1, share), self.radius0 + delta * share);
-        match self.solid {
-            TaperSolid::Cone => {
-                let slant = length.hypot(delta);
-                let normal = (outward * length - axis * delta) / slant;
-                let along = (axis * length + outward * delta) / slant;
-                [middle + outward * radius, normal, along]
-            }
-            TaperSolid::RoundedCone => {
-                let sine = (delta / length).clamp(-1.0, 1.0);
-                let cosine = (1.0 - sine * sine).sqrt();
-                let normal = outward * cosine - axis * sine;
-                [
-                    middle + normal * radius,
-                    normal,
-                    axis * cosine + outward * sine,
-                ]
-            }
-        }
-    }
-
-    fn inside(&self, random: &mut Random) -> DVec3 {
-        let outward = self.across(random);
-        let share = random.uniform(0.02, 0.98);
-        let radius = self.radius0 + (self.radius1 - self.radius0) * share;
-        let off = outward * (0.95 * radius * random.unit().sqrt());
-        self.p0.lerp(self.p1, share) + off
-    }
-
-    fn case(&self, ray: Ray) -> Option<TaperCase> {
-        let Self {
-            p0,
-            p1,
-            radius0,
-            radius1,
-            solid,
-        } = *self;
-        match solid {
-            TaperSolid::Cone => drop(Cone::new(p0, p1, radius0, radius1, Caps::Both).ok()?),
-            TaperSolid::RoundedCone => drop(RoundedCone::new(p0, p1, radius0, radius1).ok()?),
-        }
-        Some(TaperCase {
-            p0,
-            p1,
-            radius0,
-            radius1,
-            ray,
-        })
-    }
-}
-
-/// A small whole number, of either sign.
-fn whole(random: &mut Random, greatest: u64) -> f64 {
-    random.below(2 * greatest + 1) as f64 - greatest as f64
-}
-
-fn whole_vector(random: &mut Random, greatest: u64) -> DVec3 {
-    DVec3::new(
-        whole(random, greatest),
-        whole(random, greatest),
-        whole(random, greatest),
-    )
-}
-
-/// The case, or that with its ends exchanged.
-fn either_way(random: &mut Random, case: TaperCase) -> TaperCase {
-    if random.below(2) == 0 {
-        return case;
-    }
-    TaperCase {
-        p0: case.p1,
-        p1: case.p0,
-        radius0: case.radius1,
-        radius1: case.radius0,
-        ray: case.ray,
-    }
-}
-
-/// A ray exactly through the apex: it starts a whole number of directions before.
-fn through_apex(random: &mut Random) -> Option<TaperCase> {
-    let [apex, a, d] = std::array::from_fn(|_| whole_vector(random, 200));
-    let radius = random.below(300) as f64 + 1.0;
-    let ray = valid(apex - d * (random.below(50) as f64 + 1.0), d)?;
-    let case = TaperCase {
-        p0: apex,
-        p1: apex + a,
-        radius0: 0.0,
-        radius1: radius,
-        ray,
-    };
-    (a != DVec3::ZERO).then(|| either_way(random, case))
-}
-
-/// A ray in a plane that touches the wall along a line; half of them along that
-/// line itself, one in sixteen of these an ulp beside it.
-///
-/// The axis is along z, and the half-plane of the line is turned by the angle of a
-/// Pythagorean triple, so that all its points are whole. For balls the half-angle
-/// of the cone is one of a triple as well.
-fn tangent_plane(random: &mut Random, solid: TaperSolid) -> Option<TaperCase> {
-    const TRIPLES: [[f64; 3]; 4] = [
-        [3.0, 4.0, 5.0],
-        [4.0, 3.0, 5.0],
-        [5.0, 12.0, 13.0],
-        [8.0, 15.0, 17.0],
-    ];
-    let [u, v, unit] = TRIPLES[random.below(4) as usize];
-    let (outward, flat) = (DVec3::new(u, v, 0.0), DVec3::new(-v, u, 0.0));
-    let (few, steps) = (random.below(20) as f64, random.below(20) as f64 + 1.0);
-    let (length, radius0, radius1, start, way) = match solid {
-        TaperSolid::Cone => {
-            let other = random.below(20) as f64;
-            let way = outward * (other - few) + DVec3::Z * steps;
-            (steps, few * unit, other * unit, outward * few, way)
-        }
-        TaperSolid::RoundedCone => {
-            let [sine, cosine, whole] = TRIPLES[random.below(4) as usize];
-            let (normal, part) = (
-                outward * cosine - DVec3::Z * (sine * unit),
-                whole * whole * unit,
-            );
-            let way = normal * sine + DVec3::Z * part;
-            let (radius0, radius1) = (few * unit * whole, (few + steps * sine) * unit * whole);
-            (steps * part, radius0, radius1, normal * few, way)
-        }
-    };
-    if radius0 == radius1 {
-        return None;
-    }
-    let aside = if random.below(2) == 0 {
-        0.0
-    } else {
-        whole(random, 9)
-    };
-    let d = (way * (random.below(5) as f64) + flat * aside) * sign(random);
-    let through = start + way * whole(random, 30);
-    let beside = if random.below(16) == 0 {
-        DVec3::X * f64::from(f32::EPSILON)
-    } else {
-        DVec3::ZERO
-    };
-    let ray = valid(through - d * (random.below(9) as f64) + beside, d)?;
-    let case = TaperCase {
-        p0: DVec3::ZERO,
-        p1: DVec3::Z * length,
-        radius0,
-        radius1,
-        ray,
-    };
-    Some(either_way(random, case))
 }

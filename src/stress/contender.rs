@@ -1,0 +1,156 @@
+//! Who answers the cases: the formulations for cylinders, and the solver of each
+//! other kind of solid.
+
+use glam::DVec3;
+
+use crate::cases::Case;
+use crate::math::Ray;
+use crate::solid::formulations::{self, Answer, Formulation, Precision, Problem};
+use crate::solid::{AnySolid, ConvexSolid, Meeting, Part, SolidKind, SpawnMargin, SurfacePoint};
+
+/// Someone who answers cases of one kind of solid.
+pub enum Contender {
+    /// A formulation of the cylinder.
+    Formulation(Box<dyn Formulation>),
+    /// The library's solver of another kind.
+    Solver(SolidKind),
+}
+
+impl Contender {
+    /// All, in the order of tables.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let solvers = [
+            SolidKind::Cone,
+            SolidKind::RoundedCone,
+            SolidKind::Sphere,
+            SolidKind::Cuboid,
+            SolidKind::Disk,
+        ];
+        let formulations = formulations::all().into_iter().map(Self::Formulation);
+        formulations.chain(solvers.map(Self::Solver)).collect()
+    }
+
+    /// The name in tables and on the command line.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Formulation(formulation) => formulation.name(),
+            Self::Solver(kind) => kind.name(),
+        }
+    }
+
+    /// The precision it computes in.
+    #[must_use]
+    pub fn precision(&self) -> Precision {
+        match self {
+            Self::Formulation(formulation) => formulation.precision(),
+            Self::Solver(_) => Precision::F64,
+        }
+    }
+
+    /// The kind of solids that it knows.
+    #[must_use]
+    pub fn kind(&self) -> SolidKind {
+        match self {
+            Self::Formulation(_) => SolidKind::Cylinder,
+            Self::Solver(kind) => *kind,
+        }
+    }
+
+    /// Whether the library itself traces with it and so promises something about it.
+    #[must_use]
+    pub fn is_own(&self) -> bool {
+        let own = [
+            "triple-product",
+            "triple-product-prepared",
+            "exact",
+            "exact-rounded",
+        ];
+        match self {
+            Self::Formulation(formulation) => {
+                formulation.precision() == Precision::F64 && own.contains(&formulation.name())
+            }
+            Self::Solver(_) => true,
+        }
+    }
+
+    /// The first hit of each case, which are of its kind.
+    ///
+    /// # Panics
+    /// When a formulation is given another solid than a cylinder.
+    #[must_use]
+    pub fn answers(&self, cases: &[Case]) -> Vec<Option<Answer>> {
+        let problem = |case: &Case| match case.solid {
+            AnySolid::Cylinder(cylinder) => Problem {
+                cylinder,
+                ray: case.ray,
+            },
+            other => unreachable!("a formulation of the cylinder was given {other:?}"),
+        };
+        match self {
+            Self::Formulation(formulation) => {
+                let problems: Vec<Problem> = cases.iter().map(problem).collect();
+                formulation.answers(&problems)
+            }
+            Self::Solver(_) => cases.iter().map(first_answer).collect(),
+        }
+    }
+}
+
+fn first_answer(case: &Case) -> Option<Answer> {
+    let (solid, ray) = (solver(&case.solid), &case.ray);
+    let Meeting { t, part, .. } = solid.first(ray)?;
+    let on_ray = (ray.origin - solid.anchor()) + ray.direction * t;
+    let normal = solid.surface_point(part, on_ray).normal;
+    Some(Answer { t, part, normal })
+}
+
+/// What is asked of a solid of any kind.
+pub(super) trait Solver {
+    /// The first point of a ray on the surface.
+    fn first(&self, ray: &Ray) -> Option<Meeting>;
+    /// As [`ConvexSolid::anchor`].
+    fn anchor(&self) -> DVec3;
+    /// As [`ConvexSolid::surface_point`].
+    fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint;
+    /// What a ray that starts near a point of the surface may be displaced by.
+    fn spawn_margin(&self, surface: &SurfacePoint) -> SpawnMargin;
+    /// A length to measure errors in: half of its size.
+    fn half_size(&self) -> f64;
+}
+
+impl<S: ConvexSolid> Solver for S {
+    fn first(&self, ray: &Ray) -> Option<Meeting> {
+        let x = ray.origin - ConvexSolid::anchor(self);
+        ConvexSolid::first(self, x, ray.direction, 0.0, ray.t_min, ray.t_max)
+    }
+
+    fn anchor(&self) -> DVec3 {
+        ConvexSolid::anchor(self)
+    }
+
+    fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {
+        ConvexSolid::surface_point(self, part, from_anchor)
+    }
+
+    fn spawn_margin(&self, surface: &SurfacePoint) -> SpawnMargin {
+        SpawnMargin::of_solid(self, surface)
+    }
+
+    fn half_size(&self) -> f64 {
+        0.5 * self.size()
+    }
+}
+
+/// The solid, of whichever kind.
+pub(super) fn solver(solid: &AnySolid) -> &dyn Solver {
+    match solid {
+        AnySolid::Cylinder(cylinder) => cylinder,
+        AnySolid::Cone(cone) => cone,
+        AnySolid::RoundedCone(cone) => cone,
+        AnySolid::Sphere(sphere) => sphere,
+        AnySolid::Cuboid(cuboid) => cuboid,
+        AnySolid::Disk(disk) => disk,
+    }
+}
