@@ -43,6 +43,9 @@ impl Tracer {
     ///
     /// The point's numbers and the solid's are taken as they are, and in the root the
     /// answer is exact. Through placements the point is rounded as the origin of a ray.
+    ///
+    /// Of a scene that was built for a view ([`Options::view`](super::Options::view))
+    /// it is known only what holds points in that.
     #[must_use]
     pub fn contains(&self, point: DVec3) -> Vec<Containing> {
         self.containing(point, Prototype::search)
