@@ -11,10 +11,9 @@ use super::document::{Body, Document};
 use super::error::SceneError;
 use super::lines::lines;
 use super::load::{lower, records};
-use super::solid_lists::Composition;
 use super::source::Source;
 use super::values::Keys;
-use crate::solid::{Cone, Cuboid, Disk, RoundedCone, Sphere};
+use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
 
 /// A scene file that has been read; the files that it names have not.
 pub struct SceneFile {
