@@ -42,7 +42,7 @@ fn what_is_entered_is_left_and_held_in_between() {
         .map(|scene| {
             let tracer = tracer_of(vec![prototype_of(&overlapping(SEED + scene))]);
             let (mut hits, mut points) = (0, 0);
-            for number in 0..200 {
+            for number in 0..300 {
                 let mut random = Random::new(SEED, 500_000 + 1_000 * scene + number);
                 let ray = Ray {
                     t_min: f64::NEG_INFINITY,

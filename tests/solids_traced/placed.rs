@@ -88,7 +88,12 @@ fn placed_three_deep_a_solid_is_hit_where_its_image_is() {
         .into_par_iter()
         .map(|number| {
             let mut random = Random::new(SEED, 300_000 + number);
-            let ray = ray_through(&mut random);
+            let images = levels.each_ref().map(|images| {
+                let any = random.below(images.len() as u64) as usize;
+                images[any]
+            });
+            let image = images[0] * images[1] * images[2];
+            let ray = support::aim::carried(&image, &ray_through(&mut random));
             let found = all_hits(&tracer, &ray);
             let mut expected = 0;
             for (i, outer) in levels[0].iter().enumerate() {
