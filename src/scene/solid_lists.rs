@@ -92,15 +92,18 @@ impl Solids {
         self.len() == 0
     }
 
-    /// The bytes of the records. What a composition holds of its own is left out.
+    /// The bytes of the records, with what the compositions are made of.
     #[must_use]
     pub fn records_bytes(&self) -> usize {
+        let parts = self.compositions.iter();
+        let parts: usize = parts.map(|record| record.solid.heap_bytes()).sum();
         size_of_val(self.spheres.as_slice())
             + size_of_val(self.cuboids.as_slice())
             + size_of_val(self.cones.as_slice())
             + size_of_val(self.rounded_cones.as_slice())
             + size_of_val(self.disks.as_slice())
             + size_of_val(self.compositions.as_slice())
+            + parts
     }
 
     /// A box around all of them.

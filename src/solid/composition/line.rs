@@ -17,8 +17,6 @@
 //! - **A line within a face** follows the sets themselves: what is subtracted takes
 //!   away its open inside only.
 //!
-//! Of an intersection's operands that all begin or end at a station, the first is the
-//! one that is met; unions are the complements of the intersections of complements.
 //! A crossing has the `t` and the part of its leaf, bit for bit.
 //!
 //! **Stations that are one.** Faces are meant to coincide (a bore as long as its block),
@@ -44,6 +42,7 @@ use smallvec::SmallVec;
 
 use super::super::spawn::SOLVER_DISPLACEMENT;
 use super::Composition;
+use super::change::Change;
 use crate::math::power_of_two;
 use crate::solid::{AnySolid, Chord, ChordEnd, Crossing, Location, Meeting};
 
@@ -114,7 +113,7 @@ impl Composition {
         for station in 0..stations {
             let change = line.change(self, station);
             let (leaf, crossings) = match change.mark {
-                Some(leaf) => (leaf, change.crossings(&line.leaves[leaf as usize], station)),
+                Some(leaf) => (leaf, line.leaves[leaf as usize].crossings(change, station)),
                 None => (0, SmallVec::new()),
             };
             let begins = line.range_of(station);
@@ -194,6 +193,29 @@ impl Leaf<'_> {
             after: at(station < leave),
             mark: is_end.then_some(leaf),
         }
+    }
+
+    /// The crossings of the surface that a change makes, at the ends of the chord.
+    fn crossings(&self, change: Change, station: usize) -> SmallVec<[(Crossing, ChordEnd); 2]> {
+        let mut is_held = change.before.is_held();
+        if !change.is_touched() && is_held == change.after.is_held() {
+            // From the surface to the inside.
+            return SmallVec::new();
+        }
+        let ends = [false, true].into_iter().filter_map(|is_exit| {
+            let is_here = self.stations[usize::from(is_exit)] == station;
+            self.end(is_exit).filter(|_| is_here).copied()
+        });
+        ends.map(|end| {
+            is_held = !is_held;
+            let crossing = if is_held {
+                Crossing::Enter
+            } else {
+                Crossing::Leave
+            };
+            (crossing, end)
+        })
+        .collect()
     }
 
     /// Bounds how far solid and line may be displaced.
@@ -305,37 +327,11 @@ impl<'a> Line<'a> {
     /// What of the composition the line is in before and behind a station.
     fn change(&self, composition: &Composition, station: usize) -> Change {
         let mut next = 0;
-        self.change_of(composition, station, &mut next)
-    }
-
-    /// The same of a part of the tree, of which `next` is the first leaf.
-    fn change_of(&self, part: &Composition, station: usize, next: &mut u32) -> Change {
-        let mut of = |part: &Composition| self.change_of(part, station, next);
-        match part {
-            Composition::Solid(_) => {
-                let leaf = *next;
-                *next += 1;
-                self.leaves[leaf as usize].change(leaf, station)
-            }
-            Composition::Union(parts) => {
-                let parts = parts.iter().map(|part| of(part).complement());
-                parts
-                    .reduce(Change::intersect)
-                    .map_or(Change::NONE, Change::complement)
-            }
-            Composition::Intersection(parts) => {
-                let parts = parts.iter().map(of);
-                parts.reduce(Change::intersect).unwrap_or(Change::NONE)
-            }
-            Composition::Difference(parts) => {
-                let Some((first, others)) = parts.split_first() else {
-                    return Change::NONE;
-                };
-                let first = of(first);
-                let others = others.iter().map(|part| of(part).complement());
-                others.fold(first, Change::intersect)
-            }
-        }
+        Change::of(composition, &mut || {
+            let leaf = next;
+            next += 1;
+            self.leaves[leaf as usize].change(leaf, station)
+        })
     }
 
     /// The meeting where the range of a ray starts that runs within the surface
@@ -355,92 +351,5 @@ impl<'a> Line<'a> {
                 },
             ))
         })
-    }
-}
-
-/// What of a solid the line is in before and behind a station, and the leaf that the
-/// change is made by. With a mark and no change, the leaf is touched in a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Change {
-    before: Location,
-    after: Location,
-    mark: Option<u32>,
-}
-
-impl Change {
-    /// Outside.
-    const NONE: Self = Self {
-        before: Location::Outside,
-        after: Location::Outside,
-        mark: None,
-    };
-
-    /// The same for all that is not the solid.
-    fn complement(self) -> Self {
-        Self {
-            before: self.before.of_complement(),
-            after: self.after.of_complement(),
-            mark: self.mark,
-        }
-    }
-
-    fn is_touched(self) -> bool {
-        self.before == self.after && self.mark.is_some()
-    }
-
-    /// For the intersection of two.
-    fn intersect(self, other: Self) -> Self {
-        let (before, after) = (self.before.min(other.before), self.after.min(other.after));
-        let mark = if before != after {
-            // Who is the lesser where the less is: that one changes here.
-            let has_least = if before < after {
-                self.before == before
-            } else {
-                self.after == after
-            };
-            if has_least { self.mark } else { other.mark }
-        } else {
-            let touched = [self, other]
-                .into_iter()
-                .filter(|one| one.is_touched() && one.before == before);
-            match before {
-                // Touched from outside, in a point that the other has too.
-                Location::Outside if self == Self::NONE || other == Self::NONE => None,
-                // A line within the surface is on it anyway.
-                Location::Boundary => None,
-                Location::Outside | Location::Inside => {
-                    touched.into_iter().find_map(|one| one.mark)
-                }
-            }
-        };
-        Self {
-            before,
-            after,
-            mark,
-        }
-    }
-
-    /// The crossings of the surface, at the ends of the chord of the leaf that makes
-    /// them.
-    fn crossings(self, leaf: &Leaf, station: usize) -> SmallVec<[(Crossing, ChordEnd); 2]> {
-        let ends = [false, true].into_iter().filter_map(|is_exit| {
-            let is_here = leaf.stations[usize::from(is_exit)] == station;
-            leaf.end(is_exit).filter(|_| is_here).copied()
-        });
-        let mut is_held = self.before.is_held();
-        if !self.is_touched() && is_held == self.after.is_held() {
-            // From the surface to the inside.
-            return SmallVec::new();
-        }
-        ends.map(|end| {
-            is_held = !is_held;
-            let crossing = if is_held {
-                Crossing::Enter
-            } else {
-                Crossing::Leave
-            };
-            (crossing, end)
-        })
-        .collect()
     }
 }

@@ -10,6 +10,7 @@
 //!
 //! **What a line meets** is in `line.rs`.
 
+mod change;
 mod line;
 
 use glam::DVec3;
@@ -93,6 +94,18 @@ impl Composition {
                 for (position, part) in parts.iter().enumerate() {
                     part.for_each_leaf(is_subtracted ^ (position > 0), each);
                 }
+            }
+        }
+    }
+
+    /// The memory that it holds beside itself.
+    #[must_use]
+    pub fn heap_bytes(&self) -> usize {
+        match self {
+            Self::Solid(_) => 0,
+            Self::Union(parts) | Self::Intersection(parts) | Self::Difference(parts) => {
+                let nested: usize = parts.iter().map(Self::heap_bytes).sum();
+                size_of::<Self>() * parts.capacity() + nested
             }
         }
     }
