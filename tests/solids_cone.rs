@@ -7,8 +7,9 @@ use std::thread;
 use cyltrace::cases::{Inputs, TaperCase, TaperFamily, TaperSolid};
 use cyltrace::math::Ray;
 use cyltrace::oracle::{
-    Exact, TrueHit, cone_gap, cone_hits, cone_holds, distance_to_cone, distance_to_rounded_cone,
-    exact, rounded_cone_gap, rounded_cone_hits, rounded_cone_holds, to_f64,
+    Exact, ExactRay, TrueHit, cone_gap, cone_hits, cone_holds, distance_to_cone,
+    distance_to_rounded_cone, exact, rounded_cone_gap, rounded_cone_hits, rounded_cone_holds,
+    to_f64,
 };
 use cyltrace::solid::{
     Caps, Chord, Cone, ConvexSolid, Cylinder, Meeting, surface_point, triple_product,
@@ -47,11 +48,15 @@ fn answer(solid: TaperSolid, case: &TaperCase, caps: Caps) -> Answer {
     match solid {
         TaperSolid::Cone => {
             let cone = case.cone(caps);
-            of(cone, &case.ray, cone_hits(&cone, &case.ray))
+            of(cone, &case.ray, cone_hits(&cone, &ExactRay::new(&case.ray)))
         }
         TaperSolid::RoundedCone => {
             let rounded = case.rounded_cone();
-            of(rounded, &case.ray, rounded_cone_hits(&rounded, &case.ray))
+            of(
+                rounded,
+                &case.ray,
+                rounded_cone_hits(&rounded, &ExactRay::new(&case.ray)),
+            )
         }
     }
 }

@@ -6,9 +6,12 @@
 
 use glam::DVec3;
 
+use super::affine::ExactAffine;
+use super::cone::cylinder_hits;
 use super::cylinder::{TrueHit, first_hit};
 use super::normal::{outward_normal, unit};
 use super::number::{ExactVector, exact};
+use super::ray::ExactRay;
 use super::taper::{Taper, numbers_of};
 use super::{
     cone_gap, cone_hits, cuboid_chord, cuboid_gap, disk_chord, disk_gap, gap, rounded_cone_gap,
@@ -23,15 +26,46 @@ use crate::solid::{AnySolid, Part};
 /// When the ray is not valid ([`Ray::is_valid`]).
 #[must_use]
 pub fn first_hit_of_any(solid: &AnySolid, ray: &Ray) -> Option<TrueHit> {
+    match solid {
+        AnySolid::Cylinder(cylinder) => first_hit(cylinder, ray).hit,
+        _ => hits_of_any(solid, ray).into_iter().next(),
+    }
+}
+
+/// All points in the ray's range in which it meets the surface, in order: an entry
+/// and an exit at most, and a tangent is both. Of a disk they are at the same
+/// parameter, unless the ray runs within its plane.
+///
+/// # Panics
+/// When the ray is not valid.
+#[must_use]
+pub fn hits_of_any(solid: &AnySolid, ray: &Ray) -> Vec<TrueHit> {
+    hits(solid, &ExactRay::new(ray))
+}
+
+/// The same of a solid that is placed in the ray's space, with the ray's parameters.
+///
+/// # Panics
+/// When the ray is not valid, or the placement's matrix is singular.
+#[must_use]
+pub fn placed_hits_of_any(
+    solid: &AnySolid,
+    world_from_object: &ExactAffine,
+    ray: &Ray,
+) -> Vec<TrueHit> {
+    hits(solid, &ExactRay::through(world_from_object, ray))
+}
+
+fn hits(solid: &AnySolid, ray: &ExactRay) -> Vec<TrueHit> {
     let chord = match solid {
-        AnySolid::Cylinder(cylinder) => return first_hit(cylinder, ray).hit,
-        AnySolid::Cone(cone) => return cone_hits(cone, ray).into_iter().next(),
-        AnySolid::RoundedCone(cone) => return rounded_cone_hits(cone, ray).into_iter().next(),
+        AnySolid::Cylinder(cylinder) => return cylinder_hits(cylinder, ray),
+        AnySolid::Cone(cone) => return cone_hits(cone, ray),
+        AnySolid::RoundedCone(cone) => return rounded_cone_hits(cone, ray),
         AnySolid::Sphere(sphere) => sphere_chord(sphere, ray),
         AnySolid::Cuboid(cuboid) => cuboid_chord(cuboid, ray),
         AnySolid::Disk(disk) => disk_chord(disk, ray),
     };
-    chord.and_then(|chord| chord.hits(ray).into_iter().next())
+    chord.map_or(Vec::new(), |chord| chord.hits(ray))
 }
 
 /// The least relative change of the numbers after which the first hit may be another.
@@ -62,8 +96,8 @@ pub fn outward_normal_of_any(solid: &AnySolid, ray: &Ray, hit: &TrueHit) -> Opti
         AnySolid::Cylinder(cylinder) => return Some(outward_normal(cylinder, ray, hit)),
         AnySolid::Cone(cone) => {
             let ends = [cone.p0(), cone.p1()];
-            let numbers = numbers_of(ends, [cone.radius0(), cone.radius1()], ray);
-            let taper = Taper::new(&numbers.map(exact), false);
+            let numbers = numbers_of(ends, [cone.radius0(), cone.radius1()], &ExactRay::new(ray));
+            let taper = Taper::new(&numbers, false);
             match hit.part {
                 Part::Cap0 => taper.a.times(&exact(-1.0)),
                 Part::Cap1 => taper.a,
@@ -75,8 +109,9 @@ pub fn outward_normal_of_any(solid: &AnySolid, ray: &Ray, hit: &TrueHit) -> Opti
             Part::Cap1 => from(cone.p1()),
             _ => {
                 let ends = [cone.p0(), cone.p1()];
-                let numbers = numbers_of(ends, [cone.radius0(), cone.radius1()], ray);
-                Taper::new(&numbers.map(exact), true).gradient(&from(cone.p0()))
+                let numbers =
+                    numbers_of(ends, [cone.radius0(), cone.radius1()], &ExactRay::new(ray));
+                Taper::new(&numbers, true).gradient(&from(cone.p0()))
             }
         },
         AnySolid::Sphere(sphere) => from(sphere.centre()),

@@ -10,8 +10,10 @@ use super::number::{Exact, exact, long, to_f64};
 use crate::math::power_of_two;
 
 /// The least change of any of the conditions.
-pub(super) fn least_change(numbers: &[f64], conditions: impl Fn(&[Exact]) -> Vec<Exact>) -> f64 {
-    let mut numbers: Vec<Exact> = numbers.iter().map(|one| exact(*one)).collect();
+pub(super) fn least_change(
+    mut numbers: Vec<Exact>,
+    conditions: impl Fn(&[Exact]) -> Vec<Exact>,
+) -> f64 {
     let values = conditions(&numbers);
     let mut changes = vec![exact(0.0); values.len()];
     let (step, steps) = (exact(power_of_two(-40)), exact(power_of_two(40)));

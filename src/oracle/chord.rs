@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 
 use super::cylinder::TrueHit;
 use super::number::{Exact, ExactVector, Surd, exact, sign};
-use crate::math::Ray;
+use super::ray::ExactRay;
 use crate::solid::{Crossing, Part};
 
 /// The closed interval in which a line is within a closed convex solid.
@@ -38,7 +38,7 @@ impl TrueChord {
     /// tangent is two at the same parameter. A ray within the surface touches it
     /// all the way: the start of its range stands for an entry before it.
     #[must_use]
-    pub fn hits(&self, ray: &Ray) -> Vec<TrueHit> {
+    pub fn hits(&self, ray: &ExactRay) -> Vec<TrueHit> {
         let is_in_range = |end: &TrueEnd| {
             end.t.cmp_f64(ray.t_min) != Ordering::Less
                 && end.t.cmp_f64(ray.t_max) != Ordering::Greater

@@ -11,20 +11,28 @@ use std::cmp::Ordering;
 use super::change::least_change;
 use super::cylinder::TrueHit;
 use super::ends::{TrueEnd, hits};
-use super::number::{Exact, Surd, exact, sign, zero};
+use super::number::{Exact, Surd, sign, zero};
+use super::ray::ExactRay;
 use super::taper::{Taper, numbers_of};
 use crate::math::Ray;
-use crate::solid::{Cone, Part};
+use crate::solid::{Caps, Cone, Cylinder, Part};
 
 /// All points in the ray's range in which it meets the surface, in order; a
 /// tangent is an entry and an exit.
-///
-/// # Panics
-/// When the ray is not valid ([`Ray::is_valid`]).
 #[must_use]
-pub fn cone_hits(cone: &Cone, ray: &Ray) -> Vec<TrueHit> {
-    assert!(ray.is_valid(), "the oracle was asked about {ray:?}");
-    let taper = Taper::new(&numbers(cone, ray).map(exact), false);
+pub fn cone_hits(cone: &Cone, ray: &ExactRay) -> Vec<TrueHit> {
+    hits_between_discs(&Taper::new(&numbers(cone, ray), false), cone.caps(), ray)
+}
+
+/// The same of a cylinder, which is the cone of equal radii.
+#[must_use]
+pub(super) fn cylinder_hits(cylinder: &Cylinder, ray: &ExactRay) -> Vec<TrueHit> {
+    let ends = [cylinder.p0(), cylinder.p1()];
+    let numbers = numbers_of(ends, [cylinder.radius(); 2], ray);
+    hits_between_discs(&Taper::new(&numbers, false), cylinder.caps(), ray)
+}
+
+fn hits_between_discs(taper: &Taper, caps: Caps, ray: &ExactRay) -> Vec<TrueHit> {
     let (ax, ad, aa) = (&taper.ax, &taper.ad, &taper.aa);
     let along = taper.is_along();
     let mut points = Vec::new();
@@ -46,7 +54,7 @@ pub fn cone_hits(cone: &Cone, ray: &Ray) -> Vec<TrueHit> {
     }
     if sign(ad) == Ordering::Equal {
         let lies_on = disc_at(sign(ax), ax.cmp(aa)).flatten();
-        return hits(&points, lies_on, cone.caps(), ray);
+        return hits(&points, lies_on, caps, ray);
     }
     for (part, height) in [(Part::Cap0, zero()), (Part::Cap1, aa.clone())] {
         let to_rim = sign(&taper.wall_at(&height));
@@ -58,7 +66,7 @@ pub fn cone_hits(cone: &Cone, ray: &Ray) -> Vec<TrueHit> {
             });
         }
     }
-    hits(&points, along.then_some(Part::Side), cone.caps(), ray)
+    hits(&points, along.then_some(Part::Side), caps, ray)
 }
 
 /// The least change, the same relative change for every number of the case, after
@@ -70,8 +78,7 @@ pub fn cone_hits(cone: &Cone, ray: &Ray) -> Vec<TrueHit> {
 /// When the ray is not valid.
 #[must_use]
 pub fn cone_gap(cone: &Cone, ray: &Ray) -> f64 {
-    assert!(ray.is_valid(), "the gap was asked for of {ray:?}");
-    least_change(&numbers(cone, ray), |numbers: &[Exact]| {
+    least_change(numbers(cone, &ExactRay::new(ray)), |numbers: &[Exact]| {
         let taper = Taper::new(numbers, false);
         let wall = taper.wall();
         let (rim0, rim1) = (taper.wall_at(&zero()), taper.wall_at(&taper.aa));
@@ -81,7 +88,7 @@ pub fn cone_gap(cone: &Cone, ray: &Ray) -> f64 {
 }
 
 /// The numbers of a case, as `Taper::new` takes them.
-fn numbers(cone: &Cone, ray: &Ray) -> [f64; 14] {
+fn numbers(cone: &Cone, ray: &ExactRay) -> Vec<Exact> {
     numbers_of(
         [cone.p0(), cone.p1()],
         [cone.radius0(), cone.radius1()],

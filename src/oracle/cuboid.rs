@@ -11,6 +11,7 @@ use std::cmp::Ordering;
 use super::change::least_change;
 use super::chord::{TrueChord, TrueEnd};
 use super::number::{Exact, ExactVector, Surd, exact, sign, vector_of, zero};
+use super::ray::ExactRay;
 use crate::math::Ray;
 use crate::solid::{Cuboid, Part};
 
@@ -25,16 +26,12 @@ struct OwnLine {
 }
 
 /// Where the ray's line is within the closed cuboid, if it is.
-///
-/// # Panics
-/// When the ray is not valid ([`Ray::is_valid`]).
 #[must_use]
-pub fn cuboid_chord(cuboid: &Cuboid, ray: &Ray) -> Option<TrueChord> {
-    assert!(ray.is_valid(), "the oracle was asked about {ray:?}");
+pub fn cuboid_chord(cuboid: &Cuboid, ray: &ExactRay) -> Option<TrueChord> {
     let line = OwnLine {
-        start: own_coordinates(cuboid, ray.origin),
-        slope: along_axes(cuboid, &ExactVector::new(ray.direction)),
-        half_widths: cuboid.half_widths().to_array().map(exact),
+        start: along_axes(cuboid, &ray.origin_from(cuboid.centre())),
+        slope: along_axes(cuboid, &ray.direction),
+        half_widths: cuboid.half_widths().to_array().map(|one| ray.length(one)),
     };
     let mut ends: Vec<TrueEnd> = Vec::new();
     for axis in 0..3 {
@@ -62,7 +59,8 @@ pub fn cuboid_chord(cuboid: &Cuboid, ray: &Ray) -> Option<TrueChord> {
 #[must_use]
 pub fn cuboid_holds(cuboid: &Cuboid, point: glam::DVec3) -> bool {
     let half_widths = cuboid.half_widths().to_array().map(exact);
-    own_coordinates(cuboid, point)
+    let from_centre = &ExactVector::new(point) - &ExactVector::new(cuboid.centre());
+    along_axes(cuboid, &from_centre)
         .iter()
         .zip(half_widths)
         .all(|(own, half_width)| -&half_width <= *own && *own <= half_width)
@@ -84,10 +82,10 @@ pub fn cuboid_gap(cuboid: &Cuboid, ray: &Ray) -> f64 {
         ray.origin,
         ray.direction,
     ];
-    let numbers = vectors.map(|vector| vector.to_array()).concat();
+    let numbers = vectors.map(|vector| vector.to_array().map(exact)).concat();
     let is_along =
         along_axes(cuboid, &ExactVector::new(ray.direction)).map(|slope| slope == zero());
-    least_change(&numbers, |numbers: &[Exact]| {
+    least_change(numbers, |numbers: &[Exact]| {
         let [half_widths, centre, origin, d] =
             [0, 3, 6, 9].map(|first| vector_of(&numbers[first..]));
         let start = along_axes(cuboid, &(&origin - &centre));
@@ -115,11 +113,6 @@ pub fn cuboid_gap(cuboid: &Cuboid, ray: &Ray) -> f64 {
 fn along_axes(cuboid: &Cuboid, vector: &ExactVector) -> [Exact; 3] {
     let frame = cuboid.orientation().world_from_object();
     std::array::from_fn(|axis| ExactVector::new(frame.col(axis)).dot(vector))
-}
-
-fn own_coordinates(cuboid: &Cuboid, point: glam::DVec3) -> [Exact; 3] {
-    let centre = ExactVector::new(cuboid.centre());
-    along_axes(cuboid, &(&ExactVector::new(point) - &centre))
 }
 
 impl OwnLine {
@@ -175,7 +168,7 @@ mod tests {
         let turned = Orientation::IDENTITY.rotated_x(90.0);
         let cuboid = Cuboid::new(DVec3::X, DVec3::new(1.0, 2.0, 3.0), turned).unwrap();
         let ray = Ray::new(DVec3::from(origin), DVec3::from(direction));
-        cuboid_chord(&cuboid, &ray).map(|chord| {
+        cuboid_chord(&cuboid, &ExactRay::new(&ray)).map(|chord| {
             (
                 chord.ends().map(|hit| (hit.t_f64(), hit.part)),
                 chord.lies_on,

@@ -23,6 +23,7 @@ use std::cmp::Ordering;
 
 use super::affine::ExactAffine;
 use super::number::{Exact, ExactVector, Surd, exact, long, sign, to_f64, zero};
+use super::ray::ExactRay;
 use crate::math::Ray;
 use crate::solid::{Caps, Crossing, Cylinder, Part};
 
@@ -81,19 +82,10 @@ struct Problem {
 /// When the ray is not valid ([`Ray::is_valid`]).
 #[must_use]
 pub fn first_hit(cylinder: &Cylinder, ray: &Ray) -> CylinderTruth {
-    assert!(ray.is_valid(), "the oracle was asked about {ray:?}");
-    let p0 = ExactVector::new(cylinder.p0());
-    let a = &ExactVector::new(cylinder.p1()) - &p0;
-    let x = &ExactVector::new(ray.origin) - &p0;
-    let d = ExactVector::new(ray.direction);
-    Problem::new(cylinder.caps(), a, x, d, &exact(cylinder.radius())).solve(ray)
+    truth(cylinder, &ExactRay::new(ray))
 }
 
 /// The same for a cylinder that is placed in the ray's space.
-///
-/// The ray is taken to the cylinder's space by the adjugate of the placement's
-/// matrix, which is its inverse times its determinant; the cylinder is
-/// enlarged by the determinant to match.
 ///
 /// # Panics
 /// When the ray is not valid, or the placement's matrix is singular.
@@ -103,20 +95,24 @@ pub fn placed_first_hit(
     world_from_object: &ExactAffine,
     ray: &Ray,
 ) -> CylinderTruth {
-    assert!(ray.is_valid(), "the oracle was asked about {ray:?}");
-    let (adjugate, determinant) = world_from_object.adjugate();
-    assert!(
-        sign(&determinant) != Ordering::Equal,
-        "the placement is singular"
-    );
-    let p0 = ExactVector::new(cylinder.p0()).times(&determinant);
-    let p1 = ExactVector::new(cylinder.p1()).times(&determinant);
-    let radius = exact(cylinder.radius()) * &determinant;
-    let origin = &ExactVector::new(ray.origin) - world_from_object.translation();
-    let x = &adjugate.times(&origin) - &p0;
-    let d = adjugate.times(&ExactVector::new(ray.direction));
-    let a = &p1 - &p0;
-    Problem::new(cylinder.caps(), a, x, d, &radius).solve(ray)
+    truth(cylinder, &ExactRay::through(world_from_object, ray))
+}
+
+fn truth(cylinder: &Cylinder, ray: &ExactRay) -> CylinderTruth {
+    let a = &ray.point(cylinder.p1()) - &ray.point(cylinder.p0());
+    let x = ray.origin_from(cylinder.p0());
+    let (d, radius) = (ray.direction.clone(), ray.length(cylinder.radius()));
+    let problem = Problem {
+        caps: cylinder.caps(),
+        aa: a.dot(&a),
+        ax: a.dot(&x),
+        ad: a.dot(&d),
+        rr: &radius * &radius,
+        a,
+        x,
+        d,
+    };
+    problem.solve(ray)
 }
 
 /// Of two candidates at one `t`, the disc and the entry come first.
@@ -125,20 +121,7 @@ fn rank(candidate: &Candidate) -> (bool, Crossing) {
 }
 
 impl Problem {
-    fn new(caps: Caps, a: ExactVector, x: ExactVector, d: ExactVector, radius: &Exact) -> Self {
-        Self {
-            caps,
-            aa: a.dot(&a),
-            ax: a.dot(&x),
-            ad: a.dot(&d),
-            rr: radius * radius,
-            a,
-            x,
-            d,
-        }
-    }
-
-    fn solve(&self, ray: &Ray) -> CylinderTruth {
+    fn solve(&self, ray: &ExactRay) -> CylinderTruth {
         let mut candidates = Vec::new();
         let wall_gap = self.list_wall(ray, &mut candidates);
         if sign(&self.ad) != Ordering::Equal {
@@ -182,7 +165,7 @@ impl Problem {
     }
 
     /// Lists where the line meets the wall and answers with the gap.
-    fn list_wall(&self, ray: &Ray, candidates: &mut Vec<Candidate>) -> f64 {
+    fn list_wall(&self, ray: &ExactRay, candidates: &mut Vec<Candidate>) -> f64 {
         let dd = self.d.dot(&self.d);
         let xd = self.x.dot(&self.d);
         let a = &self.aa * &dd - &self.ad * &self.ad;
@@ -225,7 +208,7 @@ impl Problem {
     }
 
     /// A line within the wall, parallel to the axis: from rim to rim.
-    fn list_line_on_wall(&self, ray: &Ray, candidates: &mut Vec<Candidate>) {
+    fn list_line_on_wall(&self, ray: &ExactRay, candidates: &mut Vec<Candidate>) {
         let at_p0 = Surd::quotient(-&self.ax, self.ad.clone());
         let at_p1 = Surd::quotient(&self.aa - &self.ax, self.ad.clone());
         let rim = |cap| if self.has(cap) { cap } else { Part::Side };
@@ -249,7 +232,7 @@ impl Problem {
     /// A line within the plane of a disc touches the disc between the roots.
     fn list_line_in_disc(
         &self,
-        ray: &Ray,
+        ray: &ExactRay,
         roots: &[(Surd, Crossing); 2],
         candidates: &mut Vec<Candidate>,
     ) {
@@ -267,7 +250,7 @@ impl Problem {
     /// between which the line runs within `part`.
     fn list_start(
         &self,
-        ray: &Ray,
+        ray: &ExactRay,
         one: &Surd,
         other: &Surd,
         part: Part,

@@ -9,29 +9,23 @@ use std::cmp::Ordering;
 use super::change::least_change;
 use super::chord::{TrueChord, TrueEnd, in_ball};
 use super::number::{Exact, ExactVector, Surd, exact, sign, vector_of, zero};
+use super::ray::ExactRay;
 use crate::math::Ray;
 use crate::solid::{Disk, Part};
 
 /// Where the ray's line is within the closed disk, if it is: in one point, or along a
 /// line within its plane.
-///
-/// # Panics
-/// When the ray is not valid ([`Ray::is_valid`]).
 #[must_use]
-pub fn disk_chord(disk: &Disk, ray: &Ray) -> Option<TrueChord> {
-    assert!(ray.is_valid(), "the oracle was asked about {ray:?}");
-    let x = &ExactVector::new(ray.origin) - &ExactVector::new(disk.centre());
-    let (n, d) = (
-        ExactVector::new(disk.normal()),
-        ExactVector::new(ray.direction),
-    );
-    let (height, slope, radius) = (n.dot(&x), n.dot(&d), exact(disk.radius()));
+pub fn disk_chord(disk: &Disk, ray: &ExactRay) -> Option<TrueChord> {
+    let (x, d) = (ray.origin_from(disk.centre()), &ray.direction);
+    let (n, radius) = (ExactVector::new(disk.normal()), ray.length(disk.radius()));
+    let (height, slope) = (n.dot(&x), n.dot(d));
     let is_along = sign(&slope) == Ordering::Equal;
     let [enter, leave] = if is_along {
         if sign(&height) != Ordering::Equal {
             return None;
         }
-        in_ball(&x, &d, &radius)?
+        in_ball(&x, d, &radius)?
     } else {
         // The point times the slope, so that nothing is divided.
         let point = &x.times(&slope) - &d.times(&height);
@@ -74,11 +68,11 @@ pub fn disk_holds(disk: &Disk, point: glam::DVec3) -> bool {
 #[must_use]
 pub fn disk_gap(disk: &Disk, ray: &Ray) -> f64 {
     assert!(ray.is_valid(), "the gap was asked for of {ray:?}");
-    let mut numbers = vec![disk.radius()];
+    let mut numbers = vec![exact(disk.radius())];
     for vector in [disk.centre(), disk.normal(), ray.origin, ray.direction] {
-        numbers.extend(vector.to_array());
+        numbers.extend(vector.to_array().map(exact));
     }
-    least_change(&numbers, |numbers: &[Exact]| {
+    least_change(numbers, |numbers: &[Exact]| {
         let [centre, n, origin, d] = [1, 4, 7, 10].map(|first| vector_of(&numbers[first..]));
         let x = &origin - &centre;
         let (height, slope) = (n.dot(&x), n.dot(&d));
@@ -97,7 +91,7 @@ mod tests {
     fn textbook_cases_have_their_known_answers() {
         let disk = Disk::new(DVec3::Z, DVec3::Z * 7.0, 5.0).unwrap();
         let ends = |origin, direction| {
-            disk_chord(&disk, &Ray::new(origin, direction))
+            disk_chord(&disk, &ExactRay::new(&Ray::new(origin, direction)))
                 .map(|chord| chord.ends().map(|hit| hit.t_f64()))
         };
         let rim = DVec3::new(3.0, 4.0, 1.0);

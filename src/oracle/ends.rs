@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 
 use super::cylinder::TrueHit;
 use super::number::{Surd, exact};
-use crate::math::Ray;
+use super::ray::ExactRay;
 use crate::solid::{Caps, Crossing, Part};
 
 /// A point of the boundary.
@@ -29,7 +29,7 @@ pub(super) fn hits(
     points: &[TrueEnd],
     lies_on: Option<Part>,
     caps: Caps,
-    ray: &Ray,
+    ray: &ExactRay,
 ) -> Vec<TrueHit> {
     let by_t = |one: &&TrueEnd, other: &&TrueEnd| one.t.value().cmp(&other.t.value());
     let (Some(enter), Some(leave)) = (points.iter().min_by(by_t), points.iter().max_by(by_t))

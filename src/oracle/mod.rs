@@ -17,13 +17,16 @@ mod ends;
 mod gap;
 mod normal;
 mod number;
+mod ray;
 mod rounded_cone;
 mod sphere;
 mod taper;
 mod taper_points;
 
 pub use affine::{ExactAffine, ExactMatrix};
-pub use any::{first_hit_of_any, gap_of_any, outward_normal_of_any};
+pub use any::{
+    first_hit_of_any, gap_of_any, hits_of_any, outward_normal_of_any, placed_hits_of_any,
+};
 pub use chord::TrueChord;
 pub use cone::{cone_gap, cone_hits};
 pub use cuboid::{cuboid_chord, cuboid_gap, cuboid_holds};
@@ -33,6 +36,7 @@ pub use distance::distance_to_part;
 pub use gap::gap;
 pub use normal::outward_normal;
 pub use number::{Exact, ExactVector, exact, to_f64};
+pub use ray::ExactRay;
 pub use rounded_cone::{rounded_cone_gap, rounded_cone_hits};
 pub use sphere::{sphere_chord, sphere_gap, sphere_holds};
 pub use taper_points::{

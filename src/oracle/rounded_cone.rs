@@ -11,21 +11,18 @@ use std::cmp::Ordering;
 use super::change::least_change;
 use super::cylinder::TrueHit;
 use super::ends::{TrueEnd, hits};
-use super::number::{Exact, exact, sign};
+use super::number::{Exact, sign};
+use super::ray::ExactRay;
 use super::taper::{Taper, numbers_of};
 use crate::math::Ray;
 use crate::solid::{Caps, Part, RoundedCone};
 
 /// All points in the ray's range in which it meets the surface, in order; a
 /// tangent is an entry and an exit.
-///
-/// # Panics
-/// When the ray is not valid ([`Ray::is_valid`]).
 #[must_use]
-pub fn rounded_cone_hits(solid: &RoundedCone, ray: &Ray) -> Vec<TrueHit> {
-    assert!(ray.is_valid(), "the oracle was asked about {ray:?}");
-    let taper = Taper::new(&numbers(solid, ray).map(exact), true);
-    let (r0, r1) = (exact(solid.radius0()), exact(solid.radius1()));
+pub fn rounded_cone_hits(solid: &RoundedCone, ray: &ExactRay) -> Vec<TrueHit> {
+    let taper = Taper::new(&numbers(solid, ray), true);
+    let (r0, r1) = (ray.length(solid.radius0()), ray.length(solid.radius1()));
     let is_hull = sign(&taper.beta) == Ordering::Greater;
     let (seam0, seam1) = seams(&taper, &r0, &r1);
     let (to_seam0, to_seam1) = (&taper.ax - seam0, &taper.ax - seam1);
@@ -77,24 +74,26 @@ pub fn rounded_cone_hits(solid: &RoundedCone, ray: &Ray) -> Vec<TrueHit> {
 /// When the ray is not valid.
 #[must_use]
 pub fn rounded_cone_gap(solid: &RoundedCone, ray: &Ray) -> f64 {
-    assert!(ray.is_valid(), "the gap was asked for of {ray:?}");
-    least_change(&numbers(solid, ray), |numbers: &[Exact]| {
-        let taper = Taper::new(numbers, true);
-        let (r0, r1) = (&numbers[6], &numbers[7]);
-        let (wall, ball0, ball1) = (taper.wall(), taper.ball(0.0, r0), taper.ball(1.0, r1));
-        let (seam0, seam1) = seams(&taper, r0, r1);
-        vec![
-            wall.discriminant(),
-            ball0.discriminant(),
-            ball1.discriminant(),
-            taper.wall_at(&seam0),
-            taper.wall_at(&seam1),
-            wall.c,
-            ball0.c,
-            ball1.c,
-            taper.beta,
-        ]
-    })
+    least_change(
+        numbers(solid, &ExactRay::new(ray)),
+        |numbers: &[Exact]| {
+            let taper = Taper::new(numbers, true);
+            let (r0, r1) = (&numbers[6], &numbers[7]);
+            let (wall, ball0, ball1) = (taper.wall(), taper.ball(0.0, r0), taper.ball(1.0, r1));
+            let (seam0, seam1) = seams(&taper, r0, r1);
+            vec![
+                wall.discriminant(),
+                ball0.discriminant(),
+                ball1.discriminant(),
+                taper.wall_at(&seam0),
+                taper.wall_at(&seam1),
+                wall.c,
+                ball0.c,
+                ball1.c,
+                taper.beta,
+            ]
+        },
+    )
 }
 
 /// The heights of the circles in which the wall touches the balls.
@@ -103,7 +102,7 @@ fn seams(taper: &Taper, r0: &Exact, r1: &Exact) -> (Exact, Exact) {
 }
 
 /// The numbers of a case, as `Taper::new` takes them.
-fn numbers(solid: &RoundedCone, ray: &Ray) -> [f64; 14] {
+fn numbers(solid: &RoundedCone, ray: &ExactRay) -> Vec<Exact> {
     let ends = [solid.p0(), solid.p1()];
     let radii = [solid.radius0(), solid.radius1()];
     numbers_of(ends, radii, ray)

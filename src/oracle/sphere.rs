@@ -3,19 +3,18 @@
 use super::change::least_change;
 use super::chord::{TrueChord, TrueEnd, in_ball};
 use super::number::{Exact, ExactVector, exact, vector_of};
+use super::ray::ExactRay;
 use crate::math::Ray;
 use crate::solid::{Part, Sphere};
 
 /// Where the ray's line is within the closed ball, if it is.
-///
-/// # Panics
-/// When the ray is not valid ([`Ray::is_valid`]).
 #[must_use]
-pub fn sphere_chord(sphere: &Sphere, ray: &Ray) -> Option<TrueChord> {
-    assert!(ray.is_valid(), "the oracle was asked about {ray:?}");
-    let x = &ExactVector::new(ray.origin) - &ExactVector::new(sphere.centre());
-    let d = ExactVector::new(ray.direction);
-    let [enter, leave] = in_ball(&x, &d, &exact(sphere.radius()))?.map(|t| TrueEnd {
+pub fn sphere_chord(sphere: &Sphere, ray: &ExactRay) -> Option<TrueChord> {
+    let (x, radius) = (
+        ray.origin_from(sphere.centre()),
+        ray.length(sphere.radius()),
+    );
+    let [enter, leave] = in_ball(&x, &ray.direction, &radius)?.map(|t| TrueEnd {
         t,
         part: Part::Side,
     });
@@ -47,11 +46,11 @@ pub fn sphere_holds(sphere: &Sphere, point: glam::DVec3) -> bool {
 #[must_use]
 pub fn sphere_gap(sphere: &Sphere, ray: &Ray) -> f64 {
     assert!(ray.is_valid(), "the gap was asked for of {ray:?}");
-    let mut numbers = vec![sphere.radius()];
+    let mut numbers = vec![exact(sphere.radius())];
     for vector in [sphere.centre(), ray.origin, ray.direction] {
-        numbers.extend(vector.to_array());
+        numbers.extend(vector.to_array().map(exact));
     }
-    least_change(&numbers, |numbers: &[Exact]| {
+    least_change(numbers, |numbers: &[Exact]| {
         let [centre, origin, d] = [1, 4, 7].map(|first| vector_of(&numbers[first..]));
         let (x, rr) = (&origin - &centre, &numbers[0] * &numbers[0]);
         let (dd, xd) = (d.dot(&d), x.dot(&d));
@@ -70,7 +69,8 @@ mod tests {
         let sphere = Sphere::new(DVec3::X * 10.0, 5.0).unwrap();
         let ends = |y: f64| {
             let ray = Ray::new(DVec3::Y * y, DVec3::X * 2.0);
-            sphere_chord(&sphere, &ray).map(|chord| chord.ends().map(|hit| hit.t_f64()))
+            sphere_chord(&sphere, &ExactRay::new(&ray))
+                .map(|chord| chord.ends().map(|hit| hit.t_f64()))
         };
         assert_eq!(ends(3.0), Some([3.0, 7.0]));
         assert_eq!(ends(5.0), Some([5.0, 5.0]));

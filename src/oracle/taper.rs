@@ -15,7 +15,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::number::{Exact, ExactVector, Surd, exact, sign, zero};
-use crate::math::Ray;
+use super::ray::ExactRay;
 
 /// What of a line is asked for.
 pub(super) struct Taper {
@@ -160,11 +160,8 @@ impl Taper {
 }
 
 /// The numbers of a case, as [`Taper::new`] takes them.
-pub(super) fn numbers_of(ends: [DVec3; 2], radii: [f64; 2], ray: &Ray) -> [f64; 14] {
-    let mut numbers = [0.0; 14];
-    let [p0, p1] = ends.map(|end| end.to_array());
-    let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
-    let stated = [&p0[..], &p1, &radii, &o, &d].concat();
-    numbers.copy_from_slice(&stated);
-    numbers
+pub(super) fn numbers_of(ends: [DVec3; 2], radii: [f64; 2], ray: &ExactRay) -> Vec<Exact> {
+    let [p0, p1] = ends.map(|end| ray.point(end).0);
+    let radii = radii.map(|radius| ray.length(radius));
+    [&p0[..], &p1, &radii, &ray.origin.0, &ray.direction.0].concat()
 }

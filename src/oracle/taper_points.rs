@@ -11,6 +11,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::number::{Exact, exact, long, sign, to_f64, zero};
+use super::ray::ExactRay;
 use super::taper::{Taper, numbers_of};
 use crate::math::Ray;
 use crate::solid::{Cone, Part, RoundedCone};
@@ -83,8 +84,8 @@ pub fn distance_to_rounded_cone(solid: &RoundedCone, part: Part, point: DVec3) -
 
 /// The solid and the point, in the place of a ray's origin.
 fn of(ends: [DVec3; 2], radii: [f64; 2], point: DVec3, touches_balls: bool) -> Taper {
-    let numbers = numbers_of(ends, radii, &Ray::new(point, DVec3::X));
-    Taper::new(&numbers.map(exact), touches_balls)
+    let ray = ExactRay::new(&Ray::new(point, DVec3::X));
+    Taper::new(&numbers_of(ends, radii, &ray), touches_balls)
 }
 
 /// A point in the half-plane of the axis.

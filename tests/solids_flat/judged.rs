@@ -1,7 +1,7 @@
 //! Each kind of solid, with the oracle's truth about it.
 
 use cyltrace::math::Ray;
-use cyltrace::oracle::{self, ExactVector, TrueChord, exact, to_f64};
+use cyltrace::oracle::{self, ExactRay, ExactVector, TrueChord, exact, to_f64};
 use cyltrace::solid::{ConvexSolid, Cuboid, Disk, Part, Sphere};
 use glam::DVec3;
 
@@ -23,7 +23,7 @@ impl Judged for Sphere {
     }
 
     fn true_chord(&self, ray: &Ray) -> Option<TrueChord> {
-        oracle::sphere_chord(self, ray)
+        oracle::sphere_chord(self, &ExactRay::new(ray))
     }
 
     fn truly_holds(&self, point: DVec3) -> bool {
@@ -49,7 +49,7 @@ impl Judged for Cuboid {
     }
 
     fn true_chord(&self, ray: &Ray) -> Option<TrueChord> {
-        oracle::cuboid_chord(self, ray)
+        oracle::cuboid_chord(self, &ExactRay::new(ray))
     }
 
     fn truly_holds(&self, point: DVec3) -> bool {
@@ -92,7 +92,7 @@ impl Judged for Disk {
     }
 
     fn true_chord(&self, ray: &Ray) -> Option<TrueChord> {
-        oracle::disk_chord(self, ray)
+        oracle::disk_chord(self, &ExactRay::new(ray))
     }
 
     fn truly_holds(&self, point: DVec3) -> bool {

@@ -10,7 +10,7 @@ use std::ops::AddAssign;
 
 use cyltrace::cases::{CuboidFamily, DiskFamily, Inputs, SphereFamily};
 use cyltrace::math::{Random, Ray, UNIT_ROUNDOFF, power_of_two_below};
-use cyltrace::oracle::{Exact, ExactAffine, ExactVector, TrueChord, exact, to_f64};
+use cyltrace::oracle::{Exact, ExactAffine, ExactRay, ExactVector, TrueChord, exact, to_f64};
 use cyltrace::solid::{ChordEnd, ConvexSolid, Disk, Sphere};
 use glam::{DAffine3, DVec3};
 use judged::{Judged, between};
@@ -76,7 +76,7 @@ fn agrees<S: Judged>(solid: &S, ray: &Ray, truth: Option<&TrueChord>) -> bool {
     };
     let [enter, leave] = truth.ends();
     let meetings = found.meetings(solid.caps(), 0.0, ray.t_min, ray.t_max);
-    let hits = truth.hits(ray);
+    let hits = truth.hits(&ExactRay::new(ray));
     found.enter.part == enter.part
         && found.leave.part == leave.part
         && found.lies_on == truth.lies_on

@@ -9,12 +9,13 @@ mod parity;
 mod placed;
 
 use cyltrace::math::{Random, Ray};
+use cyltrace::oracle::hits_of_any;
 use cyltrace::scene::Prototype;
 use cyltrace::solid::{AnySolid, Caps, Cone, Crossing, Cylinder, SolidKind};
 use cyltrace::tracer::{Hit, Layout, MemoryEstimate, Options, Tracer};
 use glam::DVec3;
 use rayon::prelude::*;
-use support::solids::{KIND_NAMES, crowd, prototype_of, ray_through, true_hits};
+use support::solids::{KIND_NAMES, crowd, prototype_of, ray_through};
 
 const SEED: u64 = 61;
 
@@ -48,7 +49,7 @@ fn all_hits(tracer: &Tracer, ray: &Ray) -> Vec<Hit> {
 fn judge(solids: &[AnySolid], ray: &Ray, found: &[Hit]) -> [u64; 6] {
     let mut hits = [0; 6];
     for (number, solid) in (0..).zip(solids) {
-        let truth = true_hits(solid, ray);
+        let truth = hits_of_any(solid, ray);
         let of_solid: Vec<&Hit> = found.iter().filter(|hit| hit.primitive == number).collect();
         let case = || {
             format!(
@@ -219,7 +220,7 @@ fn spawned_rays_do_not_meet_the_solid_they_left() {
             let next = hit.spawn(direction);
             let case = || format!("seed {SEED}, {solid:?}, {hit:?}: {}", support::bits(&next));
             assert!(
-                true_hits(solid, &next).is_empty(),
+                hits_of_any(solid, &next).is_empty(),
                 "starts below: {}",
                 case()
             );

@@ -1,12 +1,13 @@
 //! Through placements: as the placed solid itself, and as the exhaustive search.
 
 use cyltrace::math::{Orientation, Random};
+use cyltrace::oracle::hits_of_any;
 use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 use cyltrace::tracer::Hit;
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
-use crate::support::solids::{KINDS, any_solid, crowd, prototype_of, ray_through, true_hits};
+use crate::support::solids::{KINDS, any_solid, crowd, prototype_of, ray_through};
 use crate::support::{self, bits, nested_placements, placed, placing};
 use crate::{SEED, all_hits, tracer_of};
 
@@ -102,7 +103,7 @@ fn placed_three_deep_a_solid_is_hit_where_its_image_is() {
                         let path = [i, j, k].map(|place| place as u32);
                         let image = *outer * *middle * *inner;
                         for (primitive, solid) in (0..).zip(&solids) {
-                            let truth = true_hits(&moved(solid, &image), &ray);
+                            let truth = hits_of_any(&moved(solid, &image), &ray);
                             let is_same =
                                 |hit: &&Hit| hit.primitive == primitive && hit.instance == path;
                             let of_solid: Vec<_> = found.iter().filter(is_same).collect();

@@ -1,7 +1,7 @@
 //! Solids of all kinds, mixed, and their truth.
 
 use cyltrace::math::{Orientation, Random, Ray};
-use cyltrace::oracle::{self, TrueHit};
+use cyltrace::oracle;
 use cyltrace::scene::{CylinderRecord, MaterialIndex, Prototype, SolidRecord};
 use cyltrace::solid::{
     AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, SolidKind, Sphere,
@@ -88,21 +88,6 @@ fn as_cone(cylinder: &Cylinder) -> Cone {
     .unwrap()
 }
 
-/// All that exact arithmetic finds of a ray on a solid.
-pub fn true_hits(solid: &AnySolid, ray: &Ray) -> Vec<TrueHit> {
-    let of_chord = |chord: Option<oracle::TrueChord>| {
-        chord.map_or(Vec::new(), |chord: oracle::TrueChord| chord.hits(ray))
-    };
-    match solid {
-        AnySolid::Cylinder(one) => oracle::cone_hits(&as_cone(one), ray),
-        AnySolid::Cone(one) => oracle::cone_hits(one, ray),
-        AnySolid::RoundedCone(one) => oracle::rounded_cone_hits(one, ray),
-        AnySolid::Sphere(one) => of_chord(oracle::sphere_chord(one, ray)),
-        AnySolid::Cuboid(one) => of_chord(oracle::cuboid_chord(one, ray)),
-        AnySolid::Disk(one) => of_chord(oracle::disk_chord(one, ray)),
-    }
-}
-
 /// Whether a solid holds a point, in exact arithmetic.
 pub fn truly_holds(solid: &AnySolid, point: DVec3) -> bool {
     match solid {
@@ -122,6 +107,15 @@ pub fn ray_through(random: &mut Random) -> Ray {
     let back = random.log_uniform(4.0, 100.0);
     let direction = (to - from) * random.log_uniform(1e-3, 1e3);
     Ray::new(from - (to - from).normalize() * back, direction)
+}
+
+/// A ray from up to 100 away that passes a solid's centre by up to half its size.
+pub fn ray_near(random: &mut Random, solid: &AnySolid) -> Ray {
+    let heading = random.direction();
+    let aside = random.direction() * (0.5 * solid.size() * random.unit());
+    let back = heading * random.log_uniform(4.0, 100.0);
+    let direction = heading * random.log_uniform(1e-3, 1e3);
+    Ray::new(solid.centre() + aside - back, direction)
 }
 
 /// The kinds by number.
