@@ -8,7 +8,7 @@ use std::sync::Arc;
 use cyltrace::check::{Agreement, TracedMesh, compare_hits, compare_mesh, rays_around};
 use cyltrace::embree::DeviceOptions;
 use cyltrace::scene::{Scene, load};
-use cyltrace::solid::tessellation::{Fit, Mesh, deviation, prism};
+use cyltrace::solid::tessellation::{Fit, Mesh, deviation_of, mesh_of};
 use cyltrace::tracer::{Options, Tracer};
 use glam::DVec3;
 
@@ -23,12 +23,14 @@ fn tracer(scene: &Arc<Scene>) -> Tracer {
     Tracer::new(scene.clone(), &Options::default()).expect("a tracer")
 }
 
-/// The meshes of the scene's cylinders, and their greatest deviation.
+/// The meshes of the scene's solids, and their greatest deviation.
 fn meshes(scene: &Scene, segments: u32, fit: Fit) -> (Vec<Mesh>, f64) {
-    let cylinders = scene.prototypes[0].cylinders.iter();
-    let cylinders: Vec<_> = cylinders.map(|record| record.cylinder()).collect();
-    let meshes = cylinders.iter().map(|one| prism(one, segments, fit));
-    let deviations = cylinders.iter().map(|one| deviation(one, segments, fit));
+    let solids: Vec<_> = scene.prototypes[0]
+        .singles()
+        .map(|(_, solid)| solid)
+        .collect();
+    let meshes = solids.iter().map(|one| mesh_of(one, segments, fit));
+    let deviations = solids.iter().map(|one| deviation_of(one, segments, fit));
     (meshes.collect(), deviations.fold(0.0, f64::max))
 }
 

@@ -1,7 +1,7 @@
 //! A scene as one triangle mesh in a file.
 //!
-//! Every solid of the scene, with all its placements, becomes a prism in world
-//! space: `plan` counts them and derives how far the mesh may be from the true
+//! Every solid of the scene, with all its placements, becomes a mesh of its own in
+//! world space: `plan` counts them and derives how far the mesh may be from the true
 //! surface, `walk` visits them, `obj` and `ply` write them. Nothing but the
 //! solid at hand is in memory, so a mesh may be as large as a disk.
 
@@ -54,19 +54,19 @@ pub enum MeshFileError {
         /// The file as asked for.
         path: std::path::PathBuf,
     },
-    /// No such prisms.
+    /// No such meshes.
     #[error(
-        "{segments} segments: a prism has at least {LEAST_SEGMENTS} and at most {GREATEST_SEGMENTS}"
+        "{segments} segments: a mesh has at least {LEAST_SEGMENTS} and at most {GREATEST_SEGMENTS}"
     )]
     Segments {
         /// The number given.
         segments: u32,
     },
-    /// There are solids that are not written.
+    /// There are solids that have no mesh of their own.
     #[error(
-        "the scene holds {solids} solids that are no cylinders: only the meshes of cylinders are written"
+        "the scene holds {solids} solids composed by union, intersection or difference, of which no meshes are made: take them out of the scene, or state the solids that they are composed of by themselves"
     )]
-    OtherSolids {
+    ComposedSolids {
         /// How many, as they are stored.
         solids: u64,
     },

@@ -11,7 +11,7 @@ use std::io::Write;
 use super::walk::{Instance, instances};
 use super::{MeshFileError, Plan, Progress};
 use crate::scene::Scene;
-use crate::solid::tessellation::prism_triangles;
+use crate::solid::tessellation::triangles_of;
 
 /// Characters of the longest f64 in its shortest form: a sign, 17 digits, a
 /// point, and `e-308` or the zeros of `0.0000`.
@@ -34,12 +34,12 @@ pub(super) fn write(
     instances(scene, &mut |instance| {
         text.clear();
         push_group(&mut text, instance);
-        for record in &instance.prototype.cylinders {
-            let vertices = instance.vertices(&record, plan.segments(), plan.fit());
+        for (_, solid) in instance.prototype.singles() {
+            let vertices = instance.vertices(&solid, plan.segments(), plan.fit());
             for vertex in &vertices {
                 let _ = writeln!(text, "v {:?} {:?} {:?}", vertex.x, vertex.y, vertex.z);
             }
-            let triangles = prism_triangles(record.cylinder().caps(), plan.segments());
+            let triangles = triangles_of(&solid, plan.segments());
             for &triangle in &triangles {
                 let [a, b, c] = instance
                     .outward(triangle)

@@ -4,10 +4,10 @@
 //! not grow with what is placed. For the content of a prototype, in its own
 //! coordinates, let
 //!
-//! - D bound the distance between prisms and surfaces, each from the other:
-//!   [`deviation`], the sagitta or what reaches beyond;
+//! - D bound the distance between meshes and surfaces, each from the other:
+//!   [`deviation_of`], what falls short or reaches beyond;
 //! - E bound how far a vertex, as computed, is from the one that is meant:
-//!   [`corner_error`];
+//!   [`corner_error_of`];
 //! - P bound how far any vertex is from the origin.
 //!
 //! A placement `x -> L x + T` lengthens vectors by `s = |L|` at most, and
@@ -28,7 +28,7 @@ use super::{Format, MeshFileError, obj, ply};
 use crate::math::{ChildFromParent, PlacementErrors, UNIT_ROUNDOFF, power_of_two};
 use crate::scene::{Placement, Prototype, PrototypeIndex, Scene};
 use crate::solid::tessellation::{
-    Fit, GREATEST_SEGMENTS, LEAST_SEGMENTS, corner_error, deviation, inner_factor, prism_size,
+    Fit, GREATEST_SEGMENTS, LEAST_SEGMENTS, corner_error_of, deviation_of, mesh_size_of, reach_of,
 };
 
 /// Digits of the greatest placement number, and the `/` before it.
@@ -58,20 +58,23 @@ struct Whole {
 }
 
 impl Plan {
-    /// Counts what the prisms of a scene come to.
+    /// Counts what the meshes of a scene come to.
     ///
     /// # Errors
-    /// When there are no prisms with so many sides, or solids that are no cylinders.
+    /// When there are no meshes with so many sides, or solids that are composed of others.
     pub fn new(scene: &Scene, segments: u32, fit: Fit) -> Result<Self, MeshFileError> {
         if !(LEAST_SEGMENTS..=GREATEST_SEGMENTS).contains(&segments) {
             return Err(MeshFileError::Segments { segments });
         }
-        let solids = scene.census().other_solids_unique;
-        if solids > 0 {
-            return Err(MeshFileError::OtherSolids { solids });
-        }
         let mut wholes = vec![None; scene.prototypes.len()];
         let whole = whole(scene, PrototypeIndex::ROOT, segments, fit, &mut wholes);
+        let placed = scene.prototypes.iter().zip(&wholes);
+        let composed = placed.filter(|(_, whole)| whole.is_some());
+        let solids = composed.map(|(prototype, _)| prototype.solids.compositions.len() as u64);
+        let solids = solids.sum();
+        if solids > 0 {
+            return Err(MeshFileError::ComposedSolids { solids });
+        }
         Ok(Self {
             segments,
             fit,
@@ -79,13 +82,13 @@ impl Plan {
         })
     }
 
-    /// Sides of a prism.
+    /// Sides around an axis.
     #[must_use]
     pub fn segments(&self) -> u32 {
         self.segments
     }
 
-    /// On which side of the walls the prisms stay.
+    /// On which side of the surfaces the meshes stay.
     #[must_use]
     pub fn fit(&self) -> Fit {
         self.fit
@@ -118,7 +121,7 @@ impl Plan {
     }
 
     /// The part of [`Plan::deviation`] that is rounding: by so much an inscribed
-    /// prism may reach out of its solid, and a circumscribed one into it.
+    /// mesh may reach out of its solid, and a circumscribed one into it.
     #[must_use]
     pub fn rounding(&self) -> f64 {
         self.whole.rounding * (1.0 + power_of_two(-36))
@@ -196,22 +199,21 @@ fn whole(
 impl Whole {
     /// The solids of a prototype alone.
     fn of_solids(prototype: &Prototype, segments: u32, fit: Fit) -> Self {
-        let is_group = !prototype.cylinders.is_empty();
+        let is_group = !prototype.has_no_solids();
         let mut whole = Self {
             groups: u128::from(is_group),
             names: u128::from(is_group) * prototype.name.len() as u128,
             ..Self::default()
         };
-        for cylinder in prototype.cylinders.iter().map(|record| record.cylinder()) {
-            let (vertices, triangles) = prism_size(cylinder.caps(), segments);
-            let ends = cylinder.p0().length().max(cylinder.p1().length());
+        for (_, solid) in prototype.singles() {
+            let (vertices, triangles) = mesh_size_of(&solid, segments);
             whole.add(&Self {
                 solids: 1,
                 vertices: vertices.into(),
                 triangles: triangles.into(),
-                deviation: deviation(&cylinder, segments, fit),
-                rounding: corner_error(&cylinder, segments),
-                reach: ends + cylinder.radius() / inner_factor(segments),
+                deviation: deviation_of(&solid, segments, fit),
+                rounding: corner_error_of(&solid, segments),
+                reach: reach_of(&solid, segments),
                 ..Self::default()
             });
         }

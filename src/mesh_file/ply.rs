@@ -8,7 +8,7 @@ use std::io::Write;
 use super::walk::instances;
 use super::{MeshFileError, Plan, Progress};
 use crate::scene::Scene;
-use crate::solid::tessellation::{prism_size, prism_triangles};
+use crate::solid::tessellation::{mesh_size_of, triangles_of};
 
 /// Three f64.
 const VERTEX_BYTES: u128 = 24;
@@ -30,8 +30,8 @@ pub(super) fn write(
     writer.write_all(header(plan, name).as_bytes())?;
     let mut bytes = Vec::new();
     instances(scene, &mut |instance| {
-        for record in &instance.prototype.cylinders {
-            let vertices = instance.vertices(&record, plan.segments(), plan.fit());
+        for (_, solid) in instance.prototype.singles() {
+            let vertices = instance.vertices(&solid, plan.segments(), plan.fit());
             bytes.clear();
             for vertex in &vertices {
                 bytes.extend(vertex.to_array().into_iter().flat_map(f64::to_le_bytes));
@@ -43,9 +43,8 @@ pub(super) fn write(
     })?;
     let mut first = 0_u32;
     instances(scene, &mut |instance| {
-        for record in &instance.prototype.cylinders {
-            let caps = record.cylinder().caps();
-            let triangles = prism_triangles(caps, plan.segments());
+        for (_, solid) in instance.prototype.singles() {
+            let triangles = triangles_of(&solid, plan.segments());
             bytes.clear();
             for &triangle in &triangles {
                 let corners = instance.outward(triangle).map(|corner| first + corner);
@@ -54,7 +53,7 @@ pub(super) fn write(
             }
             writer.write_all(&bytes)?;
             // The greatest first is the number of all vertices, which fits.
-            first += prism_size(caps, plan.segments()).0 as u32;
+            first += mesh_size_of(&solid, plan.segments()).0 as u32;
             proceed(progress, triangles.len())?;
         }
         Ok(())

@@ -3,8 +3,9 @@
 use glam::{DAffine3, DVec3};
 
 use super::MeshFileError;
-use crate::scene::{CylinderRecord, Prototype, PrototypeIndex, Scene};
-use crate::solid::tessellation::{Fit, prism};
+use crate::scene::{Prototype, PrototypeIndex, Scene};
+use crate::solid::AnySolid;
+use crate::solid::tessellation::{Fit, mesh_of};
 
 /// A prototype with solids of its own, at one of the places that it has in the
 /// scene.
@@ -20,9 +21,9 @@ pub(super) struct Instance<'a> {
 }
 
 impl Instance<'_> {
-    /// The vertices of a solid's prism in the world.
-    pub fn vertices(&self, record: &CylinderRecord, segments: u32, fit: Fit) -> Vec<DVec3> {
-        let mut vertices = prism(&record.cylinder(), segments, fit).vertices;
+    /// The vertices of a solid's mesh in the world.
+    pub fn vertices(&self, solid: &AnySolid, segments: u32, fit: Fit) -> Vec<DVec3> {
+        let mut vertices = mesh_of(solid, segments, fit).vertices;
         for map in self.parent_from_child.iter().rev() {
             for vertex in &mut vertices {
                 *vertex = map.transform_point3(*vertex);
@@ -70,7 +71,7 @@ impl Way {
         action: &mut dyn FnMut(&Instance) -> Result<(), MeshFileError>,
     ) -> Result<(), MeshFileError> {
         let prototype = &scene.prototypes[index.0 as usize];
-        if !prototype.cylinders.is_empty() {
+        if !prototype.has_no_solids() {
             action(&Instance {
                 prototype,
                 path: &self.path,

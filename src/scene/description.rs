@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec3};
 
 use super::cylinder_list::{CylinderList, Records};
 use super::solid_lists::Solids;
-use crate::solid::{Caps, Cylinder, SolidKind};
+use crate::solid::{AnySolid, Caps, Cylinder, SolidKind};
 
 /// A whole scene. What it holds has been checked when it was loaded.
 #[derive(Clone, Debug)]
@@ -78,6 +78,30 @@ pub struct Prototype {
 }
 
 impl Prototype {
+    /// Whether it holds no solids itself.
+    #[must_use]
+    pub fn has_no_solids(&self) -> bool {
+        self.cylinders.is_empty() && self.solids.is_empty()
+    }
+
+    /// Its solids that are not composed of others, each with its number: the cylinders,
+    /// then the other kinds, one after another.
+    pub fn singles(&self) -> impl Iterator<Item = (u32, AnySolid)> {
+        let cylinders = self.cylinders.iter();
+        cylinders
+            .map(|record| (record.primitive(), record.cylinder().into()))
+            .chain(self.solids.singles())
+    }
+
+    /// The one of those with a number; `None` also of a solid composed of others.
+    #[must_use]
+    pub fn single(&self, primitive: u32) -> Option<AnySolid> {
+        match self.cylinders.position(primitive) {
+            Some(position) => Some(self.cylinders.get(position).cylinder().into()),
+            None => self.solids.single(primitive),
+        }
+    }
+
     /// The number of the solid at a position in the list of its kind.
     ///
     /// # Panics

@@ -2,7 +2,7 @@
 
 use super::description::MaterialIndex;
 use crate::math::Bounds;
-use crate::solid::{Composition, Cone, ConvexSolid, Cuboid, Disk, RoundedCone, Sphere};
+use crate::solid::{AnySolid, Composition, Cone, ConvexSolid, Cuboid, Disk, RoundedCone, Sphere};
 
 /// The solids of a prototype that are no cylinders, each list in the order of
 /// the primitive numbers.
@@ -104,6 +104,38 @@ impl Solids {
             + size_of_val(self.disks.as_slice())
             + size_of_val(self.compositions.as_slice())
             + parts
+    }
+
+    /// Those that are not composed of others, kind by kind, each with its number.
+    pub fn singles(&self) -> impl Iterator<Item = (u32, AnySolid)> {
+        fn all<S: ConvexSolid + Into<AnySolid>>(
+            list: &[SolidRecord<S>],
+        ) -> impl Iterator<Item = (u32, AnySolid)> {
+            list.iter()
+                .map(|record| (record.primitive, record.solid.into()))
+        }
+        all(&self.spheres)
+            .chain(all(&self.cuboids))
+            .chain(all(&self.cones))
+            .chain(all(&self.rounded_cones))
+            .chain(all(&self.disks))
+    }
+
+    /// The one of those with a number.
+    #[must_use]
+    pub fn single(&self, primitive: u32) -> Option<AnySolid> {
+        fn of<S: ConvexSolid + Into<AnySolid>>(
+            list: &[SolidRecord<S>],
+            primitive: u32,
+        ) -> Option<AnySolid> {
+            let position = list.binary_search_by_key(&primitive, |record| record.primitive);
+            position.ok().map(|position| list[position].solid.into())
+        }
+        of(&self.spheres, primitive)
+            .or_else(|| of(&self.cuboids, primitive))
+            .or_else(|| of(&self.cones, primitive))
+            .or_else(|| of(&self.rounded_cones, primitive))
+            .or_else(|| of(&self.disks, primitive))
     }
 
     /// A box around all of them.

@@ -97,7 +97,7 @@ fn between_seams(heights: &Heights, root: Root, t: f64) -> Option<ChordEnd> {
 
 impl RoundedCone {
     /// The cone that touches both balls; `None` if one holds the other.
-    pub(super) fn taper(&self) -> Option<Taper> {
+    pub(in crate::solid) fn taper(&self) -> Option<Taper> {
         let taper = Taper {
             a: self.p1 - self.p0,
             radius0: self.radius0,

@@ -1,61 +1,64 @@
 //! Triangle meshes of solids, with a proven deviation.
 //!
-//! The corners of the *inscribed* prism with N sides lie on the rims. Between
-//! two of them a side is nearer to the axis, by at most the sagitta
-//! `radius (1 - cos(π/N))`, in the middle. So every point of the prism is
-//! within that of the cylinder's surface, and the cylinder of radius
-//! `radius cos(π/N)` about the same axis is inside the prism.
+//! All solids but the cuboid are turned about an axis: the mesh of one is that of its
+//! *profile*, a polyline of heights along the axis and distances from it, turned with N
+//! sides (`profile`). `profiles` has the polylines of the kinds. Two steps, so two
+//! deviations, which add up:
 //!
-//! The sides of the *circumscribed* prism touch the wall along their middles,
-//! so its corners are at `radius / cos(π/N)`: beyond the rims by
-//! `radius (1/cos(π/N) - 1)`, and nothing of it is farther out. With both discs
-//! the inscribed prism is in the solid, and the solid in the circumscribed one,
-//! but for roundings.
+//! 1. **The polyline.** The *inscribed* one has its corners on the meridian of the
+//!    solid; the segments of the *circumscribed* one touch it from without. Walls and
+//!    discs are straight, and theirs is exact. On an arc of radius r with steps of δ
+//!    the corners of the inscribed one are at r, and its chords within
+//!    `r (1 - cos(δ/2))` of the arc; the corners of the circumscribed one are at
+//!    `r / cos(δ/2)`, `r (1/cos(δ/2) - 1)` beyond it.
+//! 2. **The turn.** Where the polyline is ρ from the axis, the inscribed mesh has its
+//!    corners at ρ. Between two of them it is nearer to the axis, by at most the
+//!    sagitta `ρ (1 - cos(π/N))`, in the middle. The circumscribed one has its corners
+//!    at `ρ / cos(π/N)`, farther by `ρ (1/cos(π/N) - 1)`, and its sides touch the
+//!    turned polyline along their middles.
 //!
-//! **Roundings** (u = 2^-53; R is the radius of the corners). A corner is
-//! `p + (e cos φ + f sin φ) R`:
+//! A side between two corners of the polyline is a trapezoid, hence flat. The plane of
+//! a circumscribed one holds a segment that touches the meridian and is square to
+//! the meridian's plane: it touches the solid, which is convex, so that the mesh
+//! holds the solid. The inscribed one is the hull of points of the solid, and in it.
+//! Both but for roundings, and but for discs that are not there.
 //!
-//! - `φ = 2π k / N` has three roundings, together `19 u` of an angle, and turns
-//!   the corner by that;
-//! - the axis is off by `5 u` (difference, length, quotient); `e`, a difference
-//!   no shorter than √(2/3), is off by `14 u` from a unit vector across the
-//!   true axis, and `f = axis × e` by `22 u`;
-//! - sine and cosine are off by 2 u, their products and sum by 3 u: `10 u` for
-//!   the two terms together, with the product by R;
-//! - R itself is within `6 u`: π/N, the cosine (relative, as π/N <= π/3) and the
-//!   quotient; and the sum with p rounds by `u (|p| + R)`, a middle of a disc
-//!   is exact.
-//!
-//! Together [`corner_error`] `= u (72 R + |p|)`; a triangle of moved corners
-//! is nowhere farther from where it was than its corners are. Rounding the
-//! corners to f32 moves them by at most √3/2 ulp of their largest coordinate
-//! more.
+//! For convex bodies, one of which holds the other, how far a point of the outer can
+//! be from the inner is how far any point of either surface can be from the other
+//! surface; without its discs, a wall and its mesh are that far apart at each height.
+//! So [`deviation_of`], the sum of both steps, is by how much a mesh may be off the
+//! surface and the surface off the mesh. A triangle of corners that are moved by
+//! roundings is nowhere farther from where it was than they are: [`corner_error_of`]
+//! bounds that. Rounding the corners to f32 moves them by at most √3/2 ulp of their
+//! largest coordinate more.
 
-mod flat;
-mod round;
+mod cuboid;
+mod prism;
+mod profile;
+mod profiles;
+#[cfg(test)]
+pub(crate) mod tests;
 
-pub use flat::{cuboid_corner_error, cuboid_mesh, disk_corner_error, disk_deviation, disk_polygon};
-pub use round::{sphere_corner_error, sphere_deviation, sphere_inner_factor, sphere_mesh};
+pub use prism::{inscribed_prism, prism_size, sagitta};
 
 use glam::DVec3;
 
-use super::surface::angle_frame;
-use super::{Caps, Cylinder};
-use crate::math::UNIT_ROUNDOFF;
+use super::{AnySolid, Cuboid};
+use profile::Profile;
 
-/// Fewest sides of a prism.
+/// Fewest sides of a prism, and of any mesh that is turned about an axis.
 pub const LEAST_SEGMENTS: u32 = 3;
 
 /// Most sides of a prism: its sagitta is 3e-7 radii, a few f32 ulps, and its
 /// triangles take some 400 kB.
 pub const GREATEST_SEGMENTS: u32 = 4096;
 
-/// On which side of the wall a prism stays.
+/// On which side of the surface a mesh stays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Fit {
-    /// Its corners are on the rims, its sides within the wall.
+    /// Its corners are on the surface, the rest within the solid.
     Inscribed,
-    /// Its sides touch the wall from without.
+    /// Its sides touch the surface from without.
     Circumscribed,
 }
 
@@ -93,212 +96,123 @@ impl Mesh {
     }
 }
 
-/// By how much the inscribed prism may fall short of the cylinder's wall.
-#[must_use]
-pub fn sagitta(cylinder: &Cylinder, segments: u32) -> f64 {
-    cylinder.radius() * (1.0 - inner_factor(segments))
-}
-
-/// By how much the circumscribed prism may reach beyond the cylinder's wall.
-#[must_use]
-pub fn excess(cylinder: &Cylinder, segments: u32) -> f64 {
-    cylinder.radius() * (1.0 / inner_factor(segments) - 1.0)
-}
-
-/// `cos(π/N)`: the radius of the cylinder inside the prism, in radii.
+/// `cos(π/N)`: the radius of the circle that the sides of a regular polygon touch, in
+/// radii of the one that its corners are on.
 #[must_use]
 pub fn inner_factor(segments: u32) -> f64 {
     libm::cos(std::f64::consts::PI / f64::from(segments))
 }
 
-/// By how much a prism may be off the cylinder's surface: [`sagitta`] or
-/// [`excess`]. Neither is off by more than 4 u of the radius itself, which
-/// [`corner_error`] has room for.
-#[must_use]
-pub fn deviation(cylinder: &Cylinder, segments: u32, fit: Fit) -> f64 {
-    match fit {
-        Fit::Inscribed => sagitta(cylinder, segments),
-        Fit::Circumscribed => excess(cylinder, segments),
-    }
+/// What a mesh is made from.
+enum Outline {
+    Turned(Profile),
+    Cuboid(Cuboid),
 }
 
-/// By how much a corner of a prism, as computed, may be off the corner that is
-/// meant.
-#[must_use]
-pub fn corner_error(cylinder: &Cylinder, segments: u32) -> f64 {
-    let farthest = cylinder.p0().length().max(cylinder.p1().length());
-    let corner_radius = cylinder.radius() / inner_factor(segments);
-    UNIT_ROUNDOFF * (80.0 * corner_radius + 2.0 * farthest)
-}
-
-/// The prism with `segments` sides whose corners lie on the rims. It has the
-/// discs that the cylinder has.
-///
 /// # Panics
 /// When there are fewer than 3 segments.
-#[must_use]
-pub fn inscribed_prism(cylinder: &Cylinder, segments: u32) -> Mesh {
-    prism(cylinder, segments, Fit::Inscribed)
-}
-
-/// The prism with `segments` sides that touch the wall from without. It has
-/// the discs that the cylinder has, as polygons around them.
-///
-/// # Panics
-/// When there are fewer than 3 segments.
-#[must_use]
-pub fn circumscribed_prism(cylinder: &Cylinder, segments: u32) -> Mesh {
-    prism(cylinder, segments, Fit::Circumscribed)
-}
-
-/// The inscribed or the circumscribed prism. The corners of both are at the
-/// same angles, so that they have the same triangles.
-///
-/// # Panics
-/// When there are fewer than 3 segments.
-#[must_use]
-pub fn prism(cylinder: &Cylinder, segments: u32, fit: Fit) -> Mesh {
+fn outline(solid: &AnySolid, segments: u32, fit: Fit) -> Outline {
     assert!(
         segments >= LEAST_SEGMENTS,
-        "a prism has at least {LEAST_SEGMENTS} sides, not {segments}"
+        "a mesh has at least {LEAST_SEGMENTS} sides, not {segments}"
     );
-    let corner_radius = match fit {
-        Fit::Inscribed => cylinder.radius(),
-        Fit::Circumscribed => cylinder.radius() / inner_factor(segments),
-    };
-    let (p0, p1) = (cylinder.p0(), cylinder.p1());
-    let (reference, across) = angle_frame((p1 - p0).normalize());
-    let mut mesh = Mesh::default();
-    for corner in 0..segments {
-        let angle = std::f64::consts::TAU * f64::from(corner) / f64::from(segments);
-        let (sin, cos) = libm::sincos(angle);
-        let radial = (reference * cos + across * sin) * corner_radius;
-        mesh.vertices.extend([p0 + radial, p1 + radial]);
-    }
-    for (middle, is_there) in [(p0, cylinder.caps().at_p0()), (p1, cylinder.caps().at_p1())] {
-        mesh.vertices.extend(is_there.then_some(middle));
-    }
-    mesh.triangles = prism_triangles(cylinder.caps(), segments);
-    mesh
+    Outline::Turned(match solid {
+        AnySolid::Cylinder(cylinder) => profiles::of_cylinder(cylinder),
+        AnySolid::Cone(cone) => profiles::of_cone(cone),
+        AnySolid::RoundedCone(cone) => profiles::of_rounded_cone(cone, segments, fit),
+        AnySolid::Sphere(sphere) => {
+            profiles::of_ball(sphere.centre(), sphere.radius(), segments, fit)
+        }
+        AnySolid::Disk(disk) => profiles::of_disk(disk),
+        AnySolid::Cuboid(cuboid) => return Outline::Cuboid(*cuboid),
+    })
 }
 
-/// The triangles of [`prism`]: they depend on the discs alone.
+/// The mesh of a solid with `segments` sides around its axis, in the solid's own
+/// space. It is closed where the solid is, and has the discs that the solid has; a disk
+/// is a polygon seen counter-clockwise from where the normal points. Balls and
+/// rounded ends have as many steps along the meridian as keep them no longer than those
+/// around. A cuboid is itself, whatever the number of segments and the fit.
+///
+/// The two fits have the same triangles of corners at the same angles.
+///
+/// # Panics
+/// When there are fewer than 3 segments.
 #[must_use]
-pub fn prism_triangles(caps: Caps, segments: u32) -> Vec<[u32; 3]> {
-    let sides = (0..segments).map(|corner| (2 * corner, 2 * ((corner + 1) % segments)));
-    let mut triangles: Vec<_> = sides
-        .clone()
-        .flat_map(|(here, next)| [[here, next, next + 1], [here, next + 1, here + 1]])
-        .collect();
-    let mut centre = 2 * segments;
-    if caps.at_p0() {
-        triangles.extend(sides.clone().map(|(here, next)| [centre, next, here]));
-        centre += 1;
+pub fn mesh_of(solid: &AnySolid, segments: u32, fit: Fit) -> Mesh {
+    match outline(solid, segments, fit) {
+        Outline::Turned(profile) => Mesh {
+            vertices: profile.vertices(segments, fit),
+            triangles: profile.triangles(segments),
+        },
+        Outline::Cuboid(cuboid) => Mesh {
+            vertices: cuboid::vertices(&cuboid),
+            triangles: cuboid::triangles(),
+        },
     }
-    if caps.at_p1() {
-        triangles.extend(sides.map(|(here, next)| [centre, here + 1, next + 1]));
-    }
-    triangles
 }
 
-/// How many vertices and triangles [`prism`] has.
+/// The triangles of [`mesh_of`] alone, which both fits have in common.
+///
+/// # Panics
+/// When there are fewer than 3 segments.
 #[must_use]
-pub fn prism_size(caps: Caps, segments: u32) -> (u64, u64) {
-    let discs = u64::from(caps.at_p0()) + u64::from(caps.at_p1());
-    let segments = u64::from(segments);
-    (2 * segments + discs, (2 + discs) * segments)
+pub fn triangles_of(solid: &AnySolid, segments: u32) -> Vec<[u32; 3]> {
+    match outline(solid, segments, Fit::Inscribed) {
+        Outline::Turned(profile) => profile.triangles(segments),
+        Outline::Cuboid(_) => cuboid::triangles(),
+    }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// By the divergence theorem, about a point of the solid.
-    fn volume(mesh: &Mesh, about: DVec3) -> f64 {
-        let six_times: f64 = mesh
-            .triangles
-            .iter()
-            .map(|corners| {
-                let [a, b, c] = corners.map(|i| mesh.vertices[i as usize] - about);
-                a.dot(b.cross(c))
-            })
-            .sum();
-        six_times / 6.0
+/// How many vertices and triangles [`mesh_of`] has.
+///
+/// # Panics
+/// When there are fewer than 3 segments.
+#[must_use]
+pub fn mesh_size_of(solid: &AnySolid, segments: u32) -> (u64, u64) {
+    match outline(solid, segments, Fit::Inscribed) {
+        Outline::Turned(profile) => profile.size(segments),
+        Outline::Cuboid(_) => (8, 12),
     }
+}
 
-    #[test]
-    fn prisms_are_closed_face_outward_and_enclose_the_volume() {
-        let ends = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.0, 4.0, 3.5));
-        let cylinder = Cylinder::new(ends.0, ends.1, 0.7, Caps::Both).unwrap();
-        let exact = std::f64::consts::PI * 0.49 * (ends.1 - ends.0).length();
-        for segments in [3, 4, 7, 200] {
-            let inner = inscribed_prism(&cylinder, segments);
-            let outer = circumscribed_prism(&cylinder, segments);
-            assert_eq!(inner.triangles, outer.triangles);
-            let counts = (inner.vertices.len() as u64, inner.triangles.len() as u64);
-            assert_eq!(counts, prism_size(Caps::Both, segments));
-            // Of closed triangle meshes, edges are 3/2 of the triangles.
-            let (corners, triangles) = (inner.vertices.len(), inner.triangles.len());
-            assert_eq!(corners + triangles - 3 * triangles / 2, 2);
-            let (inner, outer) = (volume(&inner, ends.0), volume(&outer, ends.0));
-            // The areas of regular polygons in and around the unit circle, over π.
-            let n = f64::from(segments);
-            let angle = std::f64::consts::PI / n;
-            let sine = libm::sin(angle) * libm::cos(angle);
-            let expected = [sine, libm::tan(angle)].map(|s| s * n / std::f64::consts::PI * exact);
-            for (seen, expected) in [inner, outer].into_iter().zip(expected) {
-                assert!((seen / expected - 1.0).abs() < 1e-13, "{seen} {expected}");
-            }
-            assert!(inner < exact && exact < outer, "{segments}");
-        }
+/// By how much a mesh with the corners that are meant may be off the surface, and
+/// the surface off the mesh, in the solid's units: see the head of this file. 0 for a
+/// cuboid. It is off by no more than 8 u of the solid's radius itself (u = 2^-53),
+/// which [`corner_error_of`] has room for.
+///
+/// # Panics
+/// When there are fewer than 3 segments.
+#[must_use]
+pub fn deviation_of(solid: &AnySolid, segments: u32, fit: Fit) -> f64 {
+    match outline(solid, segments, fit) {
+        Outline::Turned(profile) => profile.deviation(segments, fit),
+        Outline::Cuboid(_) => 0.0,
     }
+}
 
-    /// Corners against the definition of the solid, in f64 about an end that is
-    /// near, so that the check's own roundings are a few u of the radius.
-    #[test]
-    fn corners_keep_their_distance_from_the_axis() {
-        let mut random = crate::math::Random::new(3, 0);
-        for case in 0..2_000 {
-            let p0 = random.direction() * random.log_uniform(1e-3, 1e3);
-            let length = random.log_uniform(1e-3, 1e3);
-            let p1 = p0 + random.direction() * length;
-            let radius = random.log_uniform(1e-3, 1e3);
-            let cylinder = Cylinder::new(p0, p1, radius, Caps::Both).unwrap();
-            let axis = (p1 - p0).normalize();
-            let segments = 3 + random.below(60) as u32;
-            for fit in [Fit::Inscribed, Fit::Circumscribed] {
-                let beyond = match fit {
-                    Fit::Inscribed => 0.0,
-                    Fit::Circumscribed => excess(&cylinder, segments),
-                };
-                let corners = &prism(&cylinder, segments, fit).vertices;
-                let most = 2.0 * corner_error(&cylinder, segments);
-                for (number, corner) in corners[..2 * segments as usize].iter().enumerate() {
-                    let from = *corner - if number % 2 == 0 { p0 } else { p1 };
-                    let along = from.dot(axis);
-                    let across = (from - axis * along).length() - radius - beyond;
-                    assert!(along.abs() <= most, "case {case}: {along:e} {most:e}");
-                    assert!(across.abs() <= most, "case {case}: {across:e} {most:e}");
-                }
-            }
-        }
+/// By how much roundings may move a corner of a mesh of either fit, in the solid's
+/// units: some 100 u of its size and 4 u of how far it is from the origin, u = 2^-53.
+///
+/// # Panics
+/// When there are fewer than 3 segments.
+#[must_use]
+pub fn corner_error_of(solid: &AnySolid, segments: u32) -> f64 {
+    match outline(solid, segments, Fit::Circumscribed) {
+        Outline::Turned(profile) => profile.corner_error(segments),
+        Outline::Cuboid(cuboid) => cuboid::corner_error(&cuboid),
     }
+}
 
-    #[test]
-    fn walls_stay_within_the_sagitta() {
-        let cylinder = Cylinder::new(DVec3::ZERO, DVec3::Z, 2.0, Caps::None).unwrap();
-        for segments in [3, 4, 17, 256] {
-            let mesh = inscribed_prism(&cylinder, segments);
-            let counts = (mesh.vertices.len() as u64, mesh.triangles.len() as u64);
-            assert_eq!(counts, prism_size(Caps::None, segments));
-            for corners in &mesh.triangles {
-                let [a, b, c] = corners.map(|i| mesh.vertices[i as usize].with_z(0.0));
-                for middle in [(a + b) / 2.0, (b + c) / 2.0, (a + c) / 2.0] {
-                    let short = 2.0 - middle.length();
-                    let most = sagitta(&cylinder, segments) + 1e-15;
-                    assert!((-1e-15..=most).contains(&short), "{segments}: {short}");
-                }
-            }
-        }
+/// At least how far any corner of a mesh of either fit is from the origin, but for
+/// roundings.
+///
+/// # Panics
+/// When there are fewer than 3 segments.
+#[must_use]
+pub fn reach_of(solid: &AnySolid, segments: u32) -> f64 {
+    match outline(solid, segments, Fit::Circumscribed) {
+        Outline::Turned(profile) => profile.reach(segments),
+        Outline::Cuboid(cuboid) => cuboid.centre().length() + cuboid.half_widths().length(),
     }
 }

@@ -1,0 +1,188 @@
+//! The profiles of the kinds of solids: see the head of this folder.
+//!
+//! **Straight ones.** Cylinder, cone and disk: the ends are as stated, exact. A radius
+//! of zero is a pole, the apex.
+//!
+//! **An arc** of radius r about c goes from a pole, where it is square to the axis,
+//! through an angle θ. With steps of δ its corners are at δ, 2δ, ... from the pole: on
+//! the arc, or at `r / cos(δ/2)`, where they and the pole are the corners of a polyline
+//! that touches the arc at δ/2, 3δ/2, .... A ball is one with `θ = π` from pole to
+//! pole, of 2 m + 1 such steps; both its halves are arcs of m rings, and the step
+//! between them goes through the equator: `δ = π / (2 m + 1)`.
+//!
+//! **A rounded cone** has an arc of each ball, up to the circle in which the wall
+//! touches it, at the angle θ with `cos θ = ±Δ / |a|`, `sin θ = √β / |a|` (Δ the
+//! difference of the radii, `β = |a|² - Δ²`). Of m rings, the last of the inscribed
+//! one is that circle, `δ = θ / m`. The circumscribed one touches the arc there for
+//! the last time, half a step beyond its last ring, `δ = θ / (m + 1/2)`: then the last
+//! corners of both arcs are on the line of the wall, and the segment between them
+//! touches both balls. A radius of zero is a pole on that line. Where one ball holds the
+//! other, it is that ball.
+//!
+//! m is the least number with `θ / m <= 2π/N`, so that δ <= 2π/3.
+//!
+//! **Roundings** (u = 2^-53; ρ = r / cos(δ/2), R the greatest of them). θ as computed is
+//! what is meant. A corner at k δ is off by 2 u of at most π; `ρ` by 4 u, as
+//! `δ/2 tan(δ/2) < 2`; sine, cosine and the products by 4 u; the axis by 6 u; and the
+//! sum with c rounds by `u (|c| + ρ)`: together `u (22 ρ + |c|)`. θ itself is off by
+//!
+//! - ten u, of the arctangent and its arguments, as the axis as rounded is;
+//! - what rounding `a` leaves in β: at most `√u`, or 2 √u where β is below `u |a|²`
+//!   (`rounded_cone/surface.rs`).
+//!
+//! By an angle ε off, an inscribed polyline still has its corners on the arcs, and
+//! falls short of the wall by `r (1 - cos ε) <= 4 u r` more. The directions in which a
+//! circumscribed one should touch both balls then tell them apart, by
+//! `|a·n + Δ| <= 14 u |a|`: ten of the angle, the others of `a`, Δ and terms of second
+//! order. By that one of the arcs' last corners is below the line of the wall, whose
+//! direction turns by that over its length, at least `r tan(δ/2)`, which
+//! moves the points where it touches the balls, `r sin(δ/2)` from its corners, by no
+//! more. Together `u (26 R + |c| + 14 |a|)`; 32, 2 and 16 are counted.
+
+use glam::DVec3;
+
+use super::Fit;
+use super::profile::{Profile, Ring};
+use crate::math::{UNIT_ROUNDOFF, unit};
+use crate::solid::{Cone, Cylinder, Disk, RoundedCone};
+
+/// The wall of a cylinder with its discs.
+pub(super) fn of_cylinder(cylinder: &Cylinder) -> Profile {
+    let (radius, caps) = (cylinder.radius(), cylinder.caps());
+    of_cone(&Cone::from_valid(
+        cylinder.p0(),
+        cylinder.p1(),
+        radius,
+        radius,
+        caps,
+    ))
+}
+
+/// The wall of a cone with its discs or its apex.
+pub(super) fn of_cone(cone: &Cone) -> Profile {
+    let ends = [(cone.p0(), cone.radius0()), (cone.p1(), cone.radius1())];
+    let rings = ends.iter().filter(|(_, radius)| *radius > 0.0);
+    let pole = |end: usize, has_disc: bool| {
+        let (point, radius) = ends[end];
+        (has_disc || radius == 0.0).then_some(point)
+    };
+    Profile {
+        axis: (cone.p1() - cone.p0()).normalize(),
+        rings: rings
+            .map(|&(centre, radius)| Ring { centre, radius })
+            .collect(),
+        start: pole(0, cone.caps().at_p0()),
+        end: pole(1, cone.caps().at_p1()),
+        deviation: 0.0,
+        error: 0.0,
+    }
+}
+
+/// A disk, whose rim is the beginning and whose middle is the end.
+pub(super) fn of_disk(disk: &Disk) -> Profile {
+    let (centre, radius) = (disk.centre(), disk.radius());
+    Profile {
+        axis: disk.normal().normalize(),
+        rings: vec![Ring { centre, radius }],
+        start: None,
+        end: Some(centre),
+        deviation: 0.0,
+        error: 0.0,
+    }
+}
+
+/// A ball, whose axis is along z.
+pub(super) fn of_ball(centre: DVec3, radius: f64, segments: u32, fit: Fit) -> Profile {
+    let half = |towards: DVec3| {
+        let rings = rings_of(std::f64::consts::FRAC_PI_2, segments);
+        let step = std::f64::consts::FRAC_PI_2 / (f64::from(rings) + 0.5);
+        Arc::new(centre, radius, towards, (rings, step), fit)
+    };
+    of_arcs(DVec3::Z, [half(DVec3::NEG_Z), half(DVec3::Z)], 0.0)
+}
+
+/// Both balls of a rounded cone and the wall between them.
+pub(super) fn of_rounded_cone(cone: &RoundedCone, segments: u32, fit: Fit) -> Profile {
+    let ends = [(cone.p0(), cone.radius0()), (cone.p1(), cone.radius1())];
+    let wall = cone.taper().and_then(|taper| Some((taper, unit(taper.a)?)));
+    let Some((taper, axis)) = wall else {
+        let greater = usize::from(cone.radius1() > cone.radius0());
+        let (centre, radius) = ends[greater];
+        return of_ball(centre, radius, segments, fit);
+    };
+    let delta = cone.radius1() - cone.radius0();
+    let arc = |(centre, radius): (DVec3, f64), towards: DVec3, delta: f64| {
+        let angle = libm::atan2(taper.beta().sqrt(), delta);
+        let rings = rings_of(angle, segments);
+        let step = match fit {
+            Fit::Inscribed => angle / f64::from(rings),
+            Fit::Circumscribed => angle / (f64::from(rings) + 0.5),
+        };
+        Arc::new(centre, radius, towards, (rings, step), fit)
+    };
+    let arcs = [arc(ends[0], -axis, delta), arc(ends[1], axis, -delta)];
+    of_arcs(axis, arcs, 16.0 * UNIT_ROUNDOFF * taper.a.length())
+}
+
+/// How many rings an arc has.
+fn rings_of(angle: f64, segments: u32) -> u32 {
+    let steps = angle * f64::from(segments) / std::f64::consts::TAU;
+    (steps.ceil() as u32).max(1)
+}
+
+/// The polyline of an arc, from its pole on.
+struct Arc {
+    pole: DVec3,
+    rings: Vec<Ring>,
+    deviation: f64,
+    error: f64,
+}
+
+impl Arc {
+    /// So many rings, a step from one to the next.
+    fn new(
+        centre: DVec3,
+        radius: f64,
+        towards: DVec3,
+        (rings, step): (u32, f64),
+        fit: Fit,
+    ) -> Self {
+        let factor = libm::cos(0.5 * step);
+        let (corner_radius, deviation) = match fit {
+            Fit::Inscribed => (radius, radius * (1.0 - factor)),
+            Fit::Circumscribed => (radius / factor, radius * (1.0 / factor - 1.0)),
+        };
+        let ring = |number: u32| {
+            let (sin, cos) = libm::sincos(step * f64::from(number));
+            Ring {
+                centre: centre + towards * (corner_radius * cos),
+                radius: corner_radius * sin,
+            }
+        };
+        // An arc without a radius is a point.
+        let rings = if radius > 0.0 { rings } else { 0 };
+        Self {
+            pole: centre + towards * corner_radius,
+            rings: (1..=rings).map(ring).collect(),
+            deviation,
+            error: UNIT_ROUNDOFF * (32.0 * corner_radius + 2.0 * centre.length()),
+        }
+    }
+}
+
+/// The polyline of two arcs from the pole of the first to that of the second. By as
+/// much as `of_wall` roundings move the wall.
+fn of_arcs(axis: DVec3, [first, second]: [Arc; 2], of_wall: f64) -> Profile {
+    Profile {
+        axis,
+        rings: first
+            .rings
+            .into_iter()
+            .chain(second.rings.into_iter().rev())
+            .collect(),
+        start: Some(first.pole),
+        end: Some(second.pole),
+        deviation: first.deviation.max(second.deviation),
+        error: first.error.max(second.error) + of_wall,
+    }
+}
