@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::cylinder_list::Records;
 use super::description::{Placement, PrototypeIndex, Scene};
 use super::solid_lists::{Listed, SolidRecord};
+use crate::solid::Composition;
 
 /// What a prototype holds, counted.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,17 +32,34 @@ pub struct Contents {
 pub struct OtherSolids {
     /// How many.
     pub count: u64,
-    /// The bytes of their records.
+    /// The bytes of their records, with what compositions are made of.
     pub bytes: u64,
 }
 
 impl OtherSolids {
     /// These and `count` of one kind more.
-    pub(super) fn and<S: Listed>(self, count: usize) -> Self {
-        let bytes = (count * size_of::<SolidRecord<S>>()) as u64;
+    pub(super) fn and<S: Listed>(self, count: u64) -> Self {
+        let bytes = count.saturating_mul(size_of::<SolidRecord<S>>() as u64);
         Self {
-            count: self.count.saturating_add(count as u64),
+            count: self.count.saturating_add(count),
             bytes: self.bytes.saturating_add(bytes),
+        }
+    }
+
+    /// These, with so many operands that compositions among them are made of.
+    pub(super) fn with_operands(self, operands: u64) -> Self {
+        let bytes = operands.saturating_mul(size_of::<Composition>() as u64);
+        Self {
+            bytes: self.bytes.saturating_add(bytes),
+            ..self
+        }
+    }
+
+    /// These and others.
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self {
+            count: self.count.saturating_add(other.count),
+            bytes: self.bytes.saturating_add(other.bytes),
         }
     }
 }

@@ -5,13 +5,16 @@ use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 
+use super::beam_lattice::counted;
 use super::contents::{Contents, OtherSolids, mark_used};
 use super::description::{PrototypeIndex, Scene};
 use super::document::{Body, Document};
 use super::error::SceneError;
 use super::lines::lines;
 use super::load::{lower, records};
+use super::set_operations::operand_count;
 use super::source::Source;
+use super::swc::{Joints, joints};
 use super::values::Keys;
 use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
 
@@ -61,32 +64,21 @@ impl SceneFile {
     }
 
     /// At least what the prototypes will hold, in their order: tables are
-    /// counted by their lines, and what cannot be read holds nothing. No
-    /// record is made, so that a scene which is too large can be refused.
+    /// counted by their lines, lattices by their beams, and what cannot be read holds
+    /// nothing. No record is made, so that a scene which is too large can be refused.
     #[must_use]
     pub fn contents(&self) -> Vec<Contents> {
         let records = records(&self.source, self.document.records.as_ref()).unwrap_or_default();
-        let rows = |file: &Spanned<String>| {
-            let lines = lines(&self.source.resolve(file.get_ref()));
-            // The first line is the header, or a comment.
-            lines.map_or(0, |lines| lines.saturating_sub(1))
-        };
         let index: HashMap<&str, PrototypeIndex> = (0..)
             .zip(self.document.bodies())
             .map(|(number, body)| (body.name, PrototypeIndex(number)))
             .collect();
         let of = |name: &Spanned<String>| index.get(name.get_ref().as_str()).copied();
         let count = |body: Body| {
-            let tables = body.cylinder_table.iter().map(|Keys(keys)| &keys.file);
-            let neurons = body.swc.iter().map(|Keys(keys)| &keys.file);
-            let cylinders = body.cylinder.len() as u64;
-            let cylinders = tables
-                .chain(neurons)
-                .fold(cylinders, |sum, file| sum.saturating_add(rows(file)));
             let single = body.instance.iter();
             let single = single.map(|Keys(keys)| (of(&keys.of), 1));
             let tables = body.instance_table.iter();
-            let tables = tables.map(|Keys(keys)| (of(&keys.of), rows(&keys.file)));
+            let tables = tables.map(|Keys(keys)| (of(&keys.of), self.rows(&keys.file)));
             let mut placed: Vec<_> = single.chain(tables).collect();
             // Where loading refuses to count on, it makes nothing.
             let mut total: u64 = placed.iter().map(|(_, count)| count).sum();
@@ -100,19 +92,57 @@ impl SceneFile {
             let placed = placed
                 .into_iter()
                 .filter_map(|(of, count)| Some((of?, count)));
-            let compositions = body.union.len() + body.intersection.len() + body.difference.len();
-            let others = OtherSolids::default()
-                .and::<Sphere>(body.sphere.len())
-                .and::<Cuboid>(body.cuboid.len())
-                .and::<Cone>(body.cone.len())
-                .and::<RoundedCone>(body.rounded_cone.len())
-                .and::<Disk>(body.disk.len())
-                .and::<Composition>(compositions);
+            let (cylinders, others) = self.solids(&body);
             Contents::new(body.name, cylinders, records, others, placed)
         };
         let mut contents: Vec<_> = self.document.bodies().map(count).collect();
         mark_used(&mut contents);
         contents
+    }
+
+    /// The rows of a table; none of what cannot be read.
+    fn rows(&self, file: &Spanned<String>) -> u64 {
+        let lines = lines(&self.source.resolve(file.get_ref()));
+        // The first line is the header, or a comment, or a sample without a parent.
+        lines.map_or(0, |lines| lines.saturating_sub(1))
+    }
+
+    /// How many cylinders and other solids a prototype holds itself.
+    fn solids(&self, body: &Body) -> (u64, OtherSolids) {
+        let mut cylinders = body.cylinder.len() as u64;
+        let mut others = OtherSolids::default()
+            .and::<Sphere>(body.sphere.len() as u64)
+            .and::<Cuboid>(body.cuboid.len() as u64)
+            .and::<Cone>(body.cone.len() as u64)
+            .and::<RoundedCone>(body.rounded_cone.len() as u64)
+            .and::<Disk>(body.disk.len() as u64);
+        for Keys(keys) in body.cylinder_table {
+            cylinders = cylinders.saturating_add(self.rows(&keys.file));
+        }
+        for Keys(keys) in body.swc {
+            let rows = self.rows(&keys.file);
+            match joints(&self.source, keys) {
+                Ok(Joints::Steps) => cylinders = cylinders.saturating_add(rows),
+                Ok(Joints::Flat) => others = others.and::<Cone>(rows),
+                Ok(Joints::Round) => others = others.and::<RoundedCone>(rows),
+                // Loading makes nothing of it.
+                Err(_) => {}
+            }
+        }
+        for Keys(keys) in body.beam_lattice {
+            if let Ok(lattice) = counted(&self.source, &keys.file) {
+                cylinders = cylinders.saturating_add(lattice.0);
+                others = others.plus(lattice.1);
+            }
+        }
+        for Keys(keys) in [body.union, body.intersection, body.difference]
+            .into_iter()
+            .flatten()
+        {
+            let operands = operand_count(keys);
+            others = others.and::<Composition>(1).with_operands(operands);
+        }
+        (cylinders, others)
     }
 
     /// Reads the files that the scene names, and checks everything.

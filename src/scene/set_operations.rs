@@ -26,7 +26,9 @@ impl Operation {
     pub fn of(self, source: &Source, keys: &CompositionKeys) -> Result<Composition, SceneError> {
         let operands = keys.of.get_ref().iter();
         let operands = operands.map(|keys| operand(source, keys));
-        let operands = operands.collect::<Result<Vec<_>, _>>()?;
+        let mut operands = operands.collect::<Result<Vec<_>, _>>()?;
+        // They stay as long as the scene does.
+        operands.shrink_to_fit();
         if operands.is_empty() {
             return Err(source.error_with_help(
                 keys.of.span(),
@@ -46,6 +48,17 @@ impl Operation {
             .map_or(DVec3::ZERO, AnySolid::centre);
         Motion::new(source, &keys.pose(), keys.of.span())?.of_composition(unmoved, centre)
     }
+}
+
+/// How many operands a set operation has, with those of the operations in it.
+pub(super) fn operand_count(keys: &CompositionKeys) -> u64 {
+    let of_operand = |operand: &OperandKeys| -> u64 {
+        let nested = [&operand.union, &operand.intersection, &operand.difference];
+        let nested = nested.into_iter().flatten();
+        1 + nested.map(|Keys(keys)| operand_count(keys)).sum::<u64>()
+    };
+    let operands = keys.of.get_ref().iter().map(Spanned::get_ref);
+    operands.map(|Keys(keys)| of_operand(keys)).sum()
 }
 
 /// An operand, which is a solid or another set operation.

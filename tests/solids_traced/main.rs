@@ -5,6 +5,7 @@
 mod support;
 
 mod contains;
+mod nested;
 mod parity;
 mod placed;
 

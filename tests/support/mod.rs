@@ -192,22 +192,26 @@ impl Nested {
     }
 }
 
+/// A scale from 1e-4 to 1e4, every other time a different one for each axis, any
+/// rotations and a translation of so many times the scale.
+pub fn random_placement(random: &mut Random, translation: f64) -> DAffine3 {
+    let scale = random.log_uniform(1e-4, 1e4);
+    let stretch = match random.below(2) {
+        0 => DVec3::ONE,
+        _ => DVec3::new(1.0, random.uniform(0.2, 1.0), random.uniform(1.0, 5.0)),
+    };
+    let matrix =
+        random_rotation(random) * DMat3::from_diagonal(stretch * scale) * random_rotation(random);
+    let offset = random.direction() * (scale * translation);
+    DAffine3::from_mat3_translation(matrix, offset)
+}
+
 /// Three levels of placements with translations up to 1e7 extents and scales
 /// from 1e-4 to 1e4, some of them different for each axis.
 pub fn nested_placements(seed: u64) -> Vec<Nested> {
     let mut random = Random::new(seed, 2);
-    let mut place = |of: u32, translation: f64| {
-        let scale = random.log_uniform(1e-4, 1e4);
-        let stretch = match random.below(2) {
-            0 => DVec3::ONE,
-            _ => DVec3::new(1.0, random.uniform(0.2, 1.0), random.uniform(1.0, 5.0)),
-        };
-        let matrix = random_rotation(&mut random)
-            * DMat3::from_diagonal(stretch * scale)
-            * random_rotation(&mut random);
-        let offset = random.direction() * (scale * translation);
-        placed(of, DAffine3::from_mat3_translation(matrix, offset))
-    };
+    let mut place =
+        |of: u32, translation: f64| placed(of, random_placement(&mut random, translation));
     let leaf = Prototype {
         cylinders: cylinders_in_a_box(seed, 100).into(),
         ..Default::default()

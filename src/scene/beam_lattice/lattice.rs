@@ -37,6 +37,31 @@ pub(super) struct Beam {
     pub is_short: bool,
 }
 
+/// What is added at an end of a beam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum End {
+    /// Nothing.
+    Flat,
+    /// The ball of the end's radius.
+    Ball,
+    /// The half of it that is beyond the end.
+    Half,
+}
+
+impl Beam {
+    /// What is added at end 0 or 1, for these radii and this length. Half a ball is the
+    /// whole one where its other half is inside the beam.
+    pub fn end(&self, end: usize, radii: [f64; 2], length: f64) -> End {
+        let fits = radii[end] <= radii[1 - end] && length >= radii[end];
+        match self.caps[end] {
+            Cap::Butt => End::Flat,
+            _ if radii[end] == 0.0 => End::Flat,
+            Cap::Hemisphere if !fits => End::Half,
+            Cap::Sphere | Cap::Hemisphere => End::Ball,
+        }
+    }
+}
+
 /// A lattice, in the file's own coordinates and lengths.
 pub(super) struct Lattice {
     pub vertices: Vec<DVec3>,

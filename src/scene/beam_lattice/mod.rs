@@ -1,6 +1,6 @@
 //! Beam lattices in 3MF: `package` finds the model in the archive, `model` the
 //! objects that it builds, `lattice` the beams and balls of one, `element` reads
-//! XML. Here they become solids.
+//! XML, `counted` says how many solids there will be. Here they become solids.
 //!
 //! **What a beam is.** The specification (3MF Beam Lattice Extension, 2.1.1) makes it
 //! a frustum, united at either end with what the end's cap is: nothing for `butt`, the
@@ -18,6 +18,7 @@
 //! the end and is wider and higher than the half; unless the ball at the vertex holds
 //! it anyway.
 
+mod counted;
 mod element;
 mod lattice;
 mod model;
@@ -28,8 +29,9 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use toml::Spanned;
 
+pub(super) use self::counted::counted;
 use self::element::{Element, Similarity};
-use self::lattice::{Beam, Cap, Lattice};
+use self::lattice::{Beam, End, Lattice};
 use self::model::Model;
 pub(super) use self::model::UNITS;
 use super::description::MaterialIndex;
@@ -138,12 +140,10 @@ impl Lowering<'_, '_> {
                     outward: ends[end] - ends[1 - end],
                     radius: radii[end],
                 };
-                let fits = radii[end] <= radii[1 - end] && half.outward.length() >= radii[end];
-                match beam.caps[end] {
-                    Cap::Butt => {}
-                    _ if half.radius == 0.0 => {}
-                    Cap::Hemisphere if !fits => halves.push(half),
-                    Cap::Sphere | Cap::Hemisphere => {
+                match beam.end(end, radii, half.outward.length()) {
+                    End::Flat => {}
+                    End::Half => halves.push(half),
+                    End::Ball => {
                         let radius = balls.entry(half.vertex).or_insert(half.radius);
                         *radius = radius.max(half.radius);
                     }
