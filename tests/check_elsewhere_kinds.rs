@@ -157,20 +157,26 @@ fn wrong_hits_of_composed_solids_are_told_and_right_ones_agree() {
     judge_hits(scene_of_composed(), "composed");
 }
 
-/// The hit on the farther wall of a bore is behind a wall that is there, and that on the
-/// wall of the drill before the block is on nothing.
+/// On the wall of the drill, out of the block, there is nothing; but near it something
+/// may be, as far as is known.
 #[test]
 fn hits_on_what_is_taken_away_are_never_said_to_agree() {
     let tracer = tracer(scene_of_composed());
-    // Along the bore's middle, and across the drill where it is out of the block.
-    let ray = Ray::new(DVec3::new(-5.0, 0.0, 1.5), DVec3::X);
-    let told = |t: Option<f64>| {
-        compare_hits(&tracer, &[ray], &[t], F32_TOLERANCE, 3, &go_on).expect("an end")
+    let told = |ray: Ray, t: f64| {
+        let told = [Some(t)];
+        compare_hits(&tracer, &[ray], &told, F32_TOLERANCE, 3, &go_on).expect("an end")
     };
-    let on_drill = told(Some(4.5));
-    assert_eq!((on_drill.disagreements, on_drill.silhouette), (0, 1));
-    assert_eq!(told(Some(4.4)).disagreements, 1);
-    assert_eq!(tracer.closest(&ray).map(|hit| hit.t), None);
+    // Past the block, and through the drill above it to its top.
+    let past = Ray::new(DVec3::new(-5.0, 0.0, 1.5), DVec3::X);
+    assert!(tracer.closest(&past).is_none());
+    let above = Ray::new(DVec3::new(-5.0, 0.0, 2.5), DVec3::new(5.65, 0.0, -1.7));
+    let t = tracer.closest(&above).expect("the top").t;
+    assert!((t - 1.0).abs() < 1e-12, "{t}");
+    for (ray, at_drill, before) in [(past, 4.5, 4.4), (above, 4.5 / 5.65, 0.7)] {
+        let found = told(ray, at_drill);
+        assert_eq!((found.disagreements, found.silhouette), (0, 1));
+        assert_eq!(told(ray, before).disagreements, 1);
+    }
 }
 
 /// The meshes of all single solids of a scene, and by how much they may be off.

@@ -16,13 +16,16 @@ use glam::{DAffine3, DMat3, DVec3};
 use support::random_rotation;
 use support::solids::{crowd, prototype_of};
 
+/// How much the placed solids of a scene are stretched at most.
+const STRETCH: f64 = 3.0;
+
 /// A crowd, and another one placed twice: stretched unevenly, the second mirrored.
 fn scene(seed: u64) -> Scene {
     let mut random = Random::new(seed, 1);
     let mut root = prototype_of(&crowd(seed, 24));
     root.placements = [1.0, -1.0]
         .map(|mirror| {
-            let scale = DVec3::new(mirror * 0.5, 1.0, 3.0);
+            let scale = DVec3::new(mirror * 0.5, 1.0, STRETCH);
             let turned = random_rotation(&mut random);
             let matrix = turned * DMat3::from_diagonal(scale) * random_rotation(&mut random);
             Placement {
@@ -95,12 +98,8 @@ fn distance(solid: &AnySolid, map: &DAffine3, point: DVec3) -> f64 {
 
 /// Holds the mesh of one solid against it.
 fn judge((solid, map): &(AnySolid, DAffine3), mesh: &Mesh, plan: &Plan, what: &str) {
-    let stretch = DMat3::from_diagonal(DVec3::new(0.5, 1.0, 3.0));
-    let stretch = if *map == DAffine3::IDENTITY {
-        1.0
-    } else {
-        stretch.z_axis.z
-    };
+    let is_placed = *map != DAffine3::IDENTITY;
+    let stretch = if is_placed { STRETCH } else { 1.0 };
     let deviation = stretch * deviation_of(solid, plan.segments(), plan.fit());
     // The way there and back here has some 20 roundings of numbers up to 30.
     let most = deviation * (1.0 + 1e-12) + plan.rounding() + 640.0 * UNIT_ROUNDOFF * 30.0;

@@ -239,3 +239,33 @@ fn is_disk_crossed(disk: &Disk, start: DVec3, end: DVec3, deep: f64) -> bool {
         && is_within(deep)
         && is_within(-deep)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn disk_is_crossed_from_side_to_side_and_away_from_its_rim() {
+        let disk = Disk::new(DVec3::ZERO, DVec3::Z * 2.0, 1.0).unwrap();
+        let disk = PlacedSolid {
+            solid: disk.into(),
+            frame: &Frame::new(&DAffine3::IDENTITY),
+        };
+        let is_crossed = |x: f64, direction: DVec3, range: (f64, f64)| {
+            let ray = Ray::new(DVec3::new(x, 0.0, -5.0), direction);
+            disk.is_crossed(&ray, range, 0.1)
+        };
+        assert!(is_crossed(0.0, DVec3::Z, (0.0, 10.0)));
+        assert!(is_crossed(0.85, DVec3::Z, (4.8, 5.2)));
+        // Not to the other side, or not farther than 0.1 from it.
+        for range in [(0.0, 4.0), (0.0, 5.05), (4.95, 10.0), (6.0, 10.0)] {
+            assert!(!is_crossed(0.0, DVec3::Z, range), "{range:?}");
+        }
+        // Too near the rim, or past it; within 0.1 of the plane only.
+        assert!(!is_crossed(0.95, DVec3::Z, (0.0, 10.0)));
+        assert!(!is_crossed(1.5, DVec3::Z, (0.0, 10.0)));
+        let slanted = DVec3::new(3.0, 0.0, 1.0);
+        assert!(is_crossed(-15.0, slanted, (0.0, 10.0)));
+        assert!(!is_crossed(-15.7, slanted, (0.0, 10.0)));
+    }
+}
