@@ -147,7 +147,7 @@ pub struct InfoArguments {
     pub common: Common,
 }
 
-/// Write a scene as a mesh of prisms, with the proven deviation
+/// Write a scene as a mesh of triangles, with the proven deviation
 #[derive(Args, Debug)]
 pub struct TessellateArguments {
     /// The scene file
@@ -157,7 +157,7 @@ pub struct TessellateArguments {
     /// prototype) or .ply (binary, f64)
     #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
-    /// Sides of a prism
+    /// Sides of a prism, and of what else is turned about an axis
     #[arg(
         long,
         value_name = "N",
@@ -166,10 +166,10 @@ pub struct TessellateArguments {
         allow_negative_numbers = true
     )]
     pub segments: u32,
-    /// Prisms with their corners on the rims [default]
+    /// Meshes with their corners on the surface, within the solids [default]
     #[arg(long, conflicts_with = "circumscribed")]
     pub inscribed: bool,
-    /// Prisms whose sides touch the walls from without
+    /// Meshes whose sides touch the surface from without
     #[arg(long)]
     pub circumscribed: bool,
     /// Refuse to write more than SIZE bytes, such as 500MB or 4GiB

@@ -121,10 +121,15 @@ fn stated(arguments: &TessellateArguments, plan: &Plan, format: Format, bytes: u
         Format::Ply => "",
     };
     let mut text = format!(
-        "{}: {} {} prisms of {} sides, {} vertices, {} triangles, {most}{}\n",
+        "{}: {} {} {} of {} sides, {} vertices, {} triangles, {most}{}\n",
         arguments.output.display(),
         plan.solids(),
         plan.fit().name(),
+        if plan.are_prisms() {
+            "prisms"
+        } else {
+            "meshes"
+        },
         plan.segments(),
         plan.vertices(),
         plan.triangles(),

@@ -3,7 +3,7 @@
 //! Every solid of the scene, with all its placements, becomes a mesh of its own in
 //! world space: `plan` counts them and derives how far the mesh may be from the true
 //! surface, `walk` visits them, `obj` and `ply` write them. Nothing but the
-//! solid at hand is in memory, so a mesh may be as large as a disk.
+//! mesh of the solid at hand is in memory, so a file may be as large as a disk.
 
 mod obj;
 mod plan;
@@ -64,7 +64,7 @@ pub enum MeshFileError {
     },
     /// There are solids that have no mesh of their own.
     #[error(
-        "the scene holds {solids} solids composed by union, intersection or difference, of which no meshes are made: take them out of the scene, or state the solids that they are composed of by themselves"
+        "solids composed by union, intersection or difference have no mesh of their own, and the scene holds {solids}: leave them out, or state the solids that they are composed of by themselves"
     )]
     ComposedSolids {
         /// How many, as they are stored.
@@ -98,6 +98,17 @@ pub enum MeshFileError {
 /// Called with the number of vertices and triangles that were written since;
 /// says whether to go on.
 pub type Progress<'a> = dyn FnMut(u64) -> ControlFlow<()> + 'a;
+
+/// So many vertices or triangles are written at once: some 100 kB of a large mesh,
+/// which is millions of them for a ball of 4096 sides.
+const AT_ONCE: usize = 4096;
+
+fn proceed(progress: &mut Progress, items: usize) -> Result<(), MeshFileError> {
+    match progress(items as u64).is_break() {
+        true => Err(MeshFileError::Cancelled),
+        false => Ok(()),
+    }
+}
 
 /// Writes the mesh of a plan. `name` is what the file calls the scene.
 ///

@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use std::io::Write;
 
 use super::walk::{Instance, instances};
-use super::{MeshFileError, Plan, Progress};
+use super::{AT_ONCE, MeshFileError, Plan, Progress, proceed};
 use crate::scene::Scene;
 use crate::solid::tessellation::triangles_of;
 
@@ -36,22 +36,27 @@ pub(super) fn write(
         push_group(&mut text, instance);
         for (_, solid) in instance.prototype.singles() {
             let vertices = instance.vertices(&solid, plan.segments(), plan.fit());
-            for vertex in &vertices {
-                let _ = writeln!(text, "v {:?} {:?} {:?}", vertex.x, vertex.y, vertex.z);
+            for vertices in vertices.chunks(AT_ONCE) {
+                for vertex in vertices {
+                    let _ = writeln!(text, "v {:?} {:?} {:?}", vertex.x, vertex.y, vertex.z);
+                }
+                writer.write_all(text.as_bytes())?;
+                text.clear();
+                proceed(progress, vertices.len())?;
             }
             let triangles = triangles_of(&solid, plan.segments());
-            for &triangle in &triangles {
-                let [a, b, c] = instance
-                    .outward(triangle)
-                    .map(|corner| first + u64::from(corner));
-                let _ = writeln!(text, "f {a} {b} {c}");
+            for triangles in triangles.chunks(AT_ONCE) {
+                for &triangle in triangles {
+                    let [a, b, c] = instance
+                        .outward(triangle)
+                        .map(|corner| first + u64::from(corner));
+                    let _ = writeln!(text, "f {a} {b} {c}");
+                }
+                writer.write_all(text.as_bytes())?;
+                text.clear();
+                proceed(progress, triangles.len())?;
             }
-            writer.write_all(text.as_bytes())?;
-            text.clear();
             first += vertices.len() as u64;
-            if progress((vertices.len() + triangles.len()) as u64).is_break() {
-                return Err(MeshFileError::Cancelled);
-            }
         }
         Ok(())
     })

@@ -27,6 +27,7 @@
 use super::{Format, MeshFileError, obj, ply};
 use crate::math::{ChildFromParent, PlacementErrors, UNIT_ROUNDOFF, power_of_two};
 use crate::scene::{Placement, Prototype, PrototypeIndex, Scene};
+use crate::solid::SolidKind;
 use crate::solid::tessellation::{
     Fit, GREATEST_SEGMENTS, LEAST_SEGMENTS, corner_error_of, deviation_of, mesh_size_of, reach_of,
 };
@@ -46,6 +47,8 @@ pub struct Plan {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Whole {
     solids: u128,
+    /// Those of them whose meshes are prisms.
+    cylinders: u128,
     vertices: u128,
     triangles: u128,
     /// Prototypes with solids of their own, each time they are placed.
@@ -98,6 +101,12 @@ impl Plan {
     #[must_use]
     pub fn solids(&self) -> u128 {
         self.whole.solids
+    }
+
+    /// Whether all solids are cylinders, so that their meshes are prisms.
+    #[must_use]
+    pub fn are_prisms(&self) -> bool {
+        self.whole.cylinders == self.whole.solids
     }
 
     /// Vertices of the mesh.
@@ -209,6 +218,7 @@ impl Whole {
             let (vertices, triangles) = mesh_size_of(&solid, segments);
             whole.add(&Self {
                 solids: 1,
+                cylinders: u128::from(solid.kind() == SolidKind::Cylinder),
                 vertices: vertices.into(),
                 triangles: triangles.into(),
                 deviation: deviation_of(&solid, segments, fit),
@@ -240,6 +250,7 @@ impl Whole {
     fn add(&mut self, other: &Self) {
         for (count, more) in [
             (&mut self.solids, other.solids),
+            (&mut self.cylinders, other.cylinders),
             (&mut self.vertices, other.vertices),
             (&mut self.triangles, other.triangles),
             (&mut self.groups, other.groups),

@@ -6,7 +6,7 @@
 use std::io::Write;
 
 use super::walk::instances;
-use super::{MeshFileError, Plan, Progress};
+use super::{AT_ONCE, MeshFileError, Plan, Progress, proceed};
 use crate::scene::Scene;
 use crate::solid::tessellation::{mesh_size_of, triangles_of};
 
@@ -32,12 +32,14 @@ pub(super) fn write(
     instances(scene, &mut |instance| {
         for (_, solid) in instance.prototype.singles() {
             let vertices = instance.vertices(&solid, plan.segments(), plan.fit());
-            bytes.clear();
-            for vertex in &vertices {
-                bytes.extend(vertex.to_array().into_iter().flat_map(f64::to_le_bytes));
+            for vertices in vertices.chunks(AT_ONCE) {
+                bytes.clear();
+                for vertex in vertices {
+                    bytes.extend(vertex.to_array().into_iter().flat_map(f64::to_le_bytes));
+                }
+                writer.write_all(&bytes)?;
+                proceed(progress, vertices.len())?;
             }
-            writer.write_all(&bytes)?;
-            proceed(progress, vertices.len())?;
         }
         Ok(())
     })?;
@@ -45,16 +47,18 @@ pub(super) fn write(
     instances(scene, &mut |instance| {
         for (_, solid) in instance.prototype.singles() {
             let triangles = triangles_of(&solid, plan.segments());
-            bytes.clear();
-            for &triangle in &triangles {
-                let corners = instance.outward(triangle).map(|corner| first + corner);
-                bytes.push(3);
-                bytes.extend(corners.into_iter().flat_map(u32::to_le_bytes));
+            for triangles in triangles.chunks(AT_ONCE) {
+                bytes.clear();
+                for &triangle in triangles {
+                    let corners = instance.outward(triangle).map(|corner| first + corner);
+                    bytes.push(3);
+                    bytes.extend(corners.into_iter().flat_map(u32::to_le_bytes));
+                }
+                writer.write_all(&bytes)?;
+                proceed(progress, triangles.len())?;
             }
-            writer.write_all(&bytes)?;
             // The greatest first is the number of all vertices, which fits.
             first += mesh_size_of(&solid, plan.segments()).0 as u32;
-            proceed(progress, triangles.len())?;
         }
         Ok(())
     })
@@ -67,13 +71,6 @@ pub(super) fn bytes(plan: &Plan, name: &str) -> u128 {
     vertices
         .saturating_add(triangles)
         .saturating_add(header(plan, name).len() as u128)
-}
-
-fn proceed(progress: &mut Progress, items: usize) -> Result<(), MeshFileError> {
-    match progress(items as u64).is_break() {
-        true => Err(MeshFileError::Cancelled),
-        false => Ok(()),
-    }
 }
 
 fn header(plan: &Plan, name: &str) -> String {

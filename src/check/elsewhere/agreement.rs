@@ -16,11 +16,16 @@
 //!   farther than `δ` from the plane of that end: no end of the way comes to lie on
 //!   the surface, and the way meets no rim, while the surface is moved to its
 //!   displaced place along straight lines; so whether the number of crossings is
-//!   odd does not change, and it was one.
+//!   odd does not change, and it was one. It is the same with a disk, as long as the
+//!   ray, within `δ` of its plane, stays farther than `δ` from the rim.
 //!
 //! The told `t` itself is given `δ/|d|` on the way through. `nearness` bounds
 //! depths and distances in placed solids. A solid thinner than `δ` is never passed
 //! through, so the allowance is to be below the radius of what the scene holds.
+//!
+//! A solid that is composed of others is passed through alike, by a lower bound of the
+//! depth; what is farther than `δ` from all of their surfaces is as far from its own. That
+//! a point is near its surface is not proven: then the answer is in the band below.
 //!
 //! # What agrees
 //!
@@ -30,13 +35,15 @@
 //! or another solid and neither proven right nor wrong: it is counted, as the
 //! *silhouette band*.
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
-use super::nearness::{Frame, PlacedCylinder, Surfaces};
+use super::nearness::{Frame, PlacedComposition, PlacedSolid};
+use super::surfaces::Surfaces;
 use crate::check::Witness;
 use crate::math::Ray;
-use crate::oracle::{ExactAffine, placed_first_hit};
-use crate::scene::{CylinderRecord, PrototypeIndex, Scene};
+use crate::oracle::{ExactAffine, first_hit_of_any, placed_first_hit};
+use crate::scene::{PrototypeIndex, Scene};
+use crate::solid::{AnySolid, Composition};
 use crate::tracer::{DEFAULT_BATCH, Hit, Tracer};
 
 /// The unit roundoff of f32.
@@ -88,7 +95,8 @@ pub struct Disagreement {
     pub told: Option<f64>,
     /// The exact `t`; `None` for a miss.
     pub exact: Option<f64>,
-    /// What the oracle says of the solid that is hit, as a check of `exact`.
+    /// What the oracle says of the solid that is hit, as a check of `exact`. It knows
+    /// placed cylinders, and other solids where they are not placed.
     pub oracle: Option<f64>,
     /// The length within which the answers should have agreed.
     pub allowance: f64,
@@ -119,7 +127,7 @@ impl Agreement {
     }
 
     /// Compares the answer for one more ray.
-    pub(in crate::check) fn add(
+    pub(super) fn add(
         &mut self,
         (tracer, surfaces): (&Tracer, &Surfaces),
         index: u64,
@@ -205,31 +213,18 @@ fn judge(
     if offset <= along {
         return Verdict::Agrees(offset / along);
     }
-    let mut met: Vec<(Vec<u32>, u32)> = Vec::new();
+    let mut met: Vec<Met> = Vec::new();
     for hit in tracer.all_hits(ray, DEFAULT_BATCH).take(MOST_HITS) {
         let solid = (hit.instance, hit.primitive);
-        if !met.contains(&solid) {
-            met.push(solid);
+        match met.iter_mut().find(|met| met.solid == solid) {
+            Some(known) => known.at.push(hit.t),
+            None => met.push(Met::new(tracer.scene(), solid, hit.t)),
         }
     }
-    let frames: Vec<(Frame, CylinderRecord)> = met
-        .iter()
-        .filter_map(|(instance, primitive)| find(tracer.scene(), instance, *primitive))
-        .map(|(placements, record)| {
-            let whole = placements
-                .iter()
-                .fold(DAffine3::IDENTITY, |whole, &one| whole * *one);
-            (Frame::new(&whole), record)
-        })
-        .collect();
-    let mut solids = frames.iter().map(|(frame, record)| PlacedCylinder {
-        cylinder: record.cylinder(),
-        frame,
-    });
     let (start, end) = (ray.t_min + along, told.unwrap_or(ray.t_max) - along);
-    if solids
-        .clone()
-        .any(|solid| solid.is_crossed(ray, start, end, allowance))
+    if met
+        .iter()
+        .any(|met| met.is_crossed(ray, (start, end), allowance))
     {
         return Verdict::Disagrees;
     }
@@ -241,10 +236,7 @@ fn judge(
         return Verdict::Disagrees;
     }
     // The first that is met is the solid of the exact hit.
-    if solids
-        .next()
-        .is_some_and(|own| own.is_near(point, allowance))
-    {
+    if met.first().is_some_and(|own| own.is_near(point, allowance)) {
         return Verdict::Agrees(offset / along);
     }
     if surfaces.may_be_near(point, allowance) {
@@ -254,12 +246,63 @@ fn judge(
     }
 }
 
-/// The placements of a solid, outermost first, and its record.
-fn find<'a>(
-    scene: &'a Scene,
-    instance: &[u32],
-    primitive: u32,
-) -> Option<(Vec<&'a DAffine3>, CylinderRecord)> {
+/// A solid that a ray meets.
+struct Met<'a> {
+    /// The placements from the root to it, and its number.
+    solid: (Vec<u32>, u32),
+    frame: Frame,
+    found: Found<'a>,
+    /// Where the ray meets it, rising.
+    at: Vec<f64>,
+}
+
+impl<'a> Met<'a> {
+    fn new(scene: &'a Scene, solid: (Vec<u32>, u32), t: f64) -> Self {
+        let (placements, found) = find(scene, &solid.0, solid.1);
+        let whole = placements
+            .iter()
+            .fold(DAffine3::IDENTITY, |whole, &one| whole * *one);
+        Self {
+            solid,
+            frame: Frame::new(&whole),
+            found,
+            at: vec![t],
+        }
+    }
+
+    /// Whether the ray is proven to pass through its surface between two `t`.
+    fn is_crossed(&self, ray: &Ray, (start, end): (f64, f64), distance: f64) -> bool {
+        let frame = &self.frame;
+        match self.found {
+            Found::Single(solid) => {
+                PlacedSolid { solid, frame }.is_crossed(ray, (start, end), distance)
+            }
+            Found::Composed(solid) => {
+                let placed = PlacedComposition { solid, frame };
+                placed.is_crossed(ray, (start, end), distance, &self.at)
+            }
+        }
+    }
+
+    /// Whether a point is proven to be near its surface.
+    fn is_near(&self, point: DVec3, distance: f64) -> bool {
+        let frame = &self.frame;
+        match self.found {
+            Found::Single(solid) => PlacedSolid { solid, frame }.is_near(point, distance),
+            // Near one of the surfaces that it is made of, there may be nothing of it.
+            Found::Composed(_) => false,
+        }
+    }
+}
+
+/// A solid of a scene.
+enum Found<'a> {
+    Single(AnySolid),
+    Composed(&'a Composition),
+}
+
+/// The placements of a solid, outermost first, and itself.
+fn find<'a>(scene: &'a Scene, instance: &[u32], primitive: u32) -> (Vec<&'a DAffine3>, Found<'a>) {
     let mut prototype = &scene.prototypes[PrototypeIndex::ROOT.0 as usize];
     let mut placements = Vec::new();
     for &number in instance {
@@ -267,19 +310,31 @@ fn find<'a>(
         placements.push(&placement.parent_from_child);
         prototype = &scene.prototypes[placement.of.0 as usize];
     }
-    let records = &prototype.cylinders;
-    Some((placements, records.get(records.position(primitive)?)))
+    let composed = || {
+        let composed = &prototype.solids.compositions;
+        let position = composed.binary_search_by_key(&primitive, |record| record.primitive);
+        let position = position.expect("the hit's solid is in the scene");
+        Found::Composed(&composed[position].solid)
+    };
+    let found = prototype.single(primitive).map(Found::Single);
+    (placements, found.unwrap_or_else(composed))
 }
 
-/// The exact `t` of the first hit with the solid of a hit, by the oracle;
-/// `None` when it misses.
+/// The exact `t` of the first hit with the solid of a hit, by the oracle; `None` when
+/// it misses, and when it does not know the solid where it is placed.
 fn oracle_t(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<f64> {
-    let (placements, record) = find(scene, &hit.instance, hit.primitive)?;
+    let (placements, found) = find(scene, &hit.instance, hit.primitive);
     let world_from_object = placements
         .iter()
         .fold(ExactAffine::identity(), |whole, one| {
             whole.after(&ExactAffine::new(one))
         });
-    let truth = placed_first_hit(&record.cylinder(), &world_from_object, ray);
-    truth.hit.map(|hit| hit.t_f64())
+    let truth = match found {
+        Found::Single(AnySolid::Cylinder(cylinder)) => {
+            placed_first_hit(&cylinder, &world_from_object, ray).hit
+        }
+        Found::Single(other) if placements.is_empty() => first_hit_of_any(&other, ray),
+        _ => None,
+    };
+    truth.map(|hit| hit.t_f64())
 }

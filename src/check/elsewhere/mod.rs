@@ -2,7 +2,9 @@
 //! against the exact ones within a stated distance.
 
 pub(in crate::check) mod agreement;
+mod depth;
 pub(in crate::check) mod mesh_file;
-pub(in crate::check) mod nearness;
+mod nearness;
+mod surfaces;
 pub(in crate::check) mod user_hits;
 pub(in crate::check) mod user_mesh;

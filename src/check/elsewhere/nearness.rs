@@ -1,32 +1,33 @@
 //! How near points and rays come to the surface of placed solids, with bounds.
 //!
-//! A solid's surface is taken in its own space. With `M` the linear part of
+//! A solid's surface is taken in its own space (`depth`). With `M` the linear part of
 //! `world_from_object`, a length `δ` in the world is at most `|M⁻¹| δ` there, and a
 //! length there at most `|M|` times as much in the world. The spectral norms are
 //! bounded from above by `|A|² ≤ max row sum of |AᵀA|`, which is equality for a
 //! uniformly scaled rotation, and at most √3 too much otherwise.
 //!
-//! The *depth* of a point in the capped solid is its distance from the surface,
-//! negative outside. As the solid is convex, the depth is concave along a ray: its
-//! greatest value in a range is found by sections, its least one is at an end.
+//! The depth in the closed solid is concave along a ray: its greatest value in a range
+//! is found by sections, its least one is at an end. A disk has no inside: a ray passes
+//! through it that goes from one side of the slab of half thickness `δ` about its plane
+//! to the other, and is nearer to the axis than the rim by `δ` all the way in between.
 //!
 //! What f64 rounds on the way there is below `64 ε |M| |M⁻¹|` of the lengths that
 //! are added; it is added to `δ`.
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::math::{Bounds, Ray};
-use crate::scene::{PrototypeIndex, Scene};
-use crate::solid::{Caps, Cylinder};
+use super::depth::{beside_disk, depth, depth_in_composed, open_ends, surface_distance};
+use crate::math::Ray;
+use crate::solid::{AnySolid, Composition, Disk};
 
 /// Sections of a range, each to 2/3 of it.
 const SECTIONS: u32 = 64;
 
 /// See the head of this file.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// A solid's own space.
-pub(in crate::check) struct Frame {
+pub(super) struct Frame {
     object_from_world: DAffine3,
     /// The bound of `|M|`.
     stretch: f64,
@@ -35,9 +36,9 @@ pub(in crate::check) struct Frame {
     translation: f64,
 }
 
-/// A cylinder there.
-pub(in crate::check) struct PlacedCylinder<'a> {
-    pub cylinder: Cylinder,
+/// A solid there.
+pub(super) struct PlacedSolid<'a> {
+    pub solid: AnySolid,
     pub frame: &'a Frame,
 }
 
@@ -54,13 +55,55 @@ impl Frame {
 
     /// At least the length there of `length` around a point of the world, with what is
     /// rounded there.
-    fn local_length(&self, length: f64, point: DVec3, cylinder: &Cylinder) -> f64 {
-        let size = self.squeeze * (point.length() + self.translation)
-            + cylinder.p0().length()
-            + cylinder.p1().length()
-            + cylinder.radius();
+    /// The solid's own numbers are at most of the size of `extent`.
+    fn local_length(&self, length: f64, point: DVec3, extent: f64) -> f64 {
+        let size = self.squeeze * (point.length() + self.translation) + extent;
         self.squeeze * length + ROUNDING * self.squeeze * self.stretch * size
     }
+
+    /// The ray there, where it is between `start` and `end` and not farther from the
+    /// middle of a solid than twice its `reach` about that: it is outside beyond.
+    fn way(&self, ray: &Ray, (start, end): (f64, f64), (middle, reach): (DVec3, f64)) -> Way {
+        let origin = self.local(ray.origin);
+        let direction = self.object_from_world.transform_vector3(ray.direction);
+        let speed = direction.length();
+        let nearest = (middle - origin).dot(direction) / (speed * speed);
+        Way {
+            origin,
+            direction,
+            low: start.max(nearest - 2.0 * reach / speed),
+            high: end.min(nearest + 2.0 * reach / speed),
+        }
+    }
+
+    fn local(&self, point: DVec3) -> DVec3 {
+        self.object_from_world.transform_point3(point)
+    }
+}
+
+/// A part of a ray in a solid's own space.
+struct Way {
+    origin: DVec3,
+    direction: DVec3,
+    low: f64,
+    high: f64,
+}
+
+impl Way {
+    fn at(&self, t: f64) -> DVec3 {
+        self.origin + self.direction * t
+    }
+
+    /// Whether there is nothing of it; also if an end is no number.
+    fn is_empty(&self) -> bool {
+        let is_ordered = self.low < self.high;
+        !is_ordered
+    }
+}
+
+/// Bounds the size of a solid's own numbers.
+fn extent(solid: &AnySolid) -> f64 {
+    2.0 * solid.anchor().length() + solid.size()
 }
 
 fn norm_bound(matrix: &DMat3) -> f64 {
@@ -69,63 +112,59 @@ fn norm_bound(matrix: &DMat3) -> f64 {
     libm::sqrt(sums.max_element())
 }
 
-impl PlacedCylinder<'_> {
+impl PlacedSolid<'_> {
     /// Whether a point of the world is proven to be farther than `distance` from
     /// the surface.
     pub fn is_far(&self, point: DVec3, distance: f64) -> bool {
-        let local = self.frame.object_from_world.transform_point3(point);
-        surface_distance(&self.cylinder, local)
-            > self.frame.local_length(distance, point, &self.cylinder)
+        surface_distance(&self.solid, self.frame.local(point))
+            > self
+                .frame
+                .local_length(distance, point, extent(&self.solid))
+    }
+
+    /// As [`PlacedSolid::is_far`], with discs at open ends.
+    pub fn is_far_from_closed(&self, point: DVec3, distance: f64) -> bool {
+        depth(&self.solid, self.frame.local(point)).abs()
+            > self
+                .frame
+                .local_length(distance, point, extent(&self.solid))
     }
 
     /// Whether a point of the world is proven to be within `distance` of the
     /// surface.
     pub fn is_near(&self, point: DVec3, distance: f64) -> bool {
-        let local = self.frame.object_from_world.transform_point3(point);
-        surface_distance(&self.cylinder, local) * self.frame.stretch <= distance
+        surface_distance(&self.solid, self.frame.local(point)) * self.frame.stretch <= distance
     }
 
     /// Whether a ray is proven to pass, between `start` and `end`, from more than
     /// `distance` on one side of the surface to more than that on its other side, all
     /// the way more than that from an open end.
-    pub fn is_crossed(&self, ray: &Ray, start: f64, end: f64, distance: f64) -> bool {
-        let cylinder = &self.cylinder;
-        let deep = self.frame.local_length(distance, ray.origin, cylinder);
-        let origin = self.frame.object_from_world.transform_point3(ray.origin);
-        let direction = self
-            .frame
-            .object_from_world
-            .transform_vector3(ray.direction);
-        let (p0, axis) = (cylinder.p0(), cylinder.p1() - cylinder.p0());
-        let length = axis.length();
-        // Twice as far from the middle as the solid reaches, a ray is outside.
-        let reach = 0.5 * length + cylinder.radius() + 4.0 * deep;
-        let speed = direction.length();
-        let middle = (p0 + 0.5 * axis - origin).dot(direction) / (speed * speed);
-        let mut low = start.max(middle - 2.0 * reach / speed);
-        let mut high = end.min(middle + 2.0 * reach / speed);
-        let (z, dz) = (
-            (origin - p0).dot(axis) / length,
-            direction.dot(axis) / length,
-        );
-        let caps = cylinder.caps();
-        for (is_open, room, slope) in [
-            (!caps.at_p0(), z - deep, dz),
-            (!caps.at_p1(), length - deep - z, -dz),
-        ] {
+    pub fn is_crossed(&self, ray: &Ray, (start, end): (f64, f64), distance: f64) -> bool {
+        let solid = &self.solid;
+        let deep = self.frame.local_length(distance, ray.origin, extent(solid));
+        let reach = solid.size() + 4.0 * deep;
+        let mut way = self.frame.way(ray, (start, end), (solid.centre(), reach));
+        for (end, inward) in open_ends(solid) {
             // Where room + slope t > 0 the end is far enough.
+            let room = (way.origin - end).dot(inward) - deep;
+            let slope = way.direction.dot(inward);
             let border = -room / slope;
             match () {
-                () if !is_open => {}
-                () if slope > 0.0 => low = low.max(border),
-                () if slope < 0.0 => high = high.min(border),
+                () if slope > 0.0 => way.low = way.low.max(border),
+                () if slope < 0.0 => way.high = way.high.min(border),
                 () if room <= 0.0 => return false,
                 () => {}
             }
         }
-        let depth = |t: f64| depth(cylinder, origin + direction * t);
-        let is_ordered = low < high;
-        if !is_ordered || !(depth(low).min(depth(high)) < -deep) {
+        if way.is_empty() {
+            return false;
+        }
+        if let AnySolid::Disk(disk) = solid {
+            return is_disk_crossed(disk, way.at(way.low), way.at(way.high), deep);
+        }
+        let depth = |t: f64| depth(solid, way.at(t));
+        let (mut low, mut high) = (way.low, way.high);
+        if !(depth(low).min(depth(high)) < -deep) {
             return false;
         }
         for _ in 0..SECTIONS {
@@ -145,119 +184,88 @@ impl PlacedCylinder<'_> {
     }
 }
 
-/// The coordinates along the axis and away from it, and the length.
-fn coordinates(cylinder: &Cylinder, point: DVec3) -> (f64, f64, f64) {
-    let axis = cylinder.p1() - cylinder.p0();
-    let length = axis.length();
-    let axis = axis / length;
-    let from_foot = point - cylinder.p0();
-    let z = from_foot.dot(axis);
-    (z, (from_foot - axis * z).length(), length)
+/// A solid composed of others in its own space.
+pub(super) struct PlacedComposition<'a> {
+    pub solid: &'a Composition,
+    pub frame: &'a Frame,
 }
 
-/// The depth of a point in the capped solid; negative outside.
-fn depth(cylinder: &Cylinder, point: DVec3) -> f64 {
-    let (z, away, length) = coordinates(cylinder, point);
-    let (beyond_wall, beyond_ends) = (away - cylinder.radius(), (-z).max(z - length));
-    if beyond_wall <= 0.0 && beyond_ends <= 0.0 {
-        return (-beyond_wall).min(-beyond_ends);
-    }
-    -libm::hypot(beyond_wall.max(0.0), beyond_ends.max(0.0))
-}
-
-/// The distance of a point from the wall and the caps that there are.
-fn surface_distance(cylinder: &Cylinder, point: DVec3) -> f64 {
-    let (z, away, length) = coordinates(cylinder, point);
-    let beyond_wall = away - cylinder.radius();
-    let wall = libm::hypot(beyond_wall, (-z).max(z - length).max(0.0));
-    let cap = |height: f64| libm::hypot(beyond_wall.max(0.0), height);
-    let caps: Caps = cylinder.caps();
-    let foot = if caps.at_p0() { cap(z) } else { f64::INFINITY };
-    let head = if caps.at_p1() {
-        cap(z - length)
-    } else {
-        f64::INFINITY
-    };
-    wall.min(foot).min(head)
-}
-
-/// All surfaces of a scene.
-pub(in crate::check) struct Surfaces<'a> {
-    scene: &'a Scene,
-    /// The box of each prototype, as far as the root holds it.
-    boxes: Vec<Option<Bounds>>,
-}
-
-impl<'a> Surfaces<'a> {
-    pub fn new(scene: &'a Scene) -> Self {
-        let mut surfaces = Self {
-            scene,
-            boxes: vec![None; scene.prototypes.len()],
-        };
-        surfaces.find_box(PrototypeIndex::ROOT);
-        surfaces
-    }
-
-    fn find_box(&mut self, index: PrototypeIndex) -> Bounds {
-        let number = index.0 as usize;
-        if let Some(known) = self.boxes[number] {
-            return known;
-        }
-        let scene = self.scene;
-        let prototype = &scene.prototypes[number];
-        let own = prototype.cylinders.iter().fold(Bounds::EMPTY, |all, one| {
-            all.union(&one.cylinder().bounds())
-        });
-        let whole = prototype.placements.iter().fold(own, |all, placement| {
-            let child = self.find_box(placement.of);
-            if child.is_empty() {
-                return all;
-            }
-            all.union(&child.transformed(&placement.parent_from_child))
-        });
-        self.boxes[number] = Some(whole);
-        whole
-    }
-
-    /// Whether some surface may be within `distance` of a point.
-    pub fn may_be_near(&self, point: DVec3, distance: f64) -> bool {
-        self.may_be_near_in(
-            PrototypeIndex::ROOT,
-            &DAffine3::IDENTITY,
-            point,
-            1.001 * distance,
-        )
-    }
-
-    fn may_be_near_in(
+impl PlacedComposition<'_> {
+    /// As [`PlacedSolid::is_crossed`]. Where the ray is deepest is not known: it is
+    /// looked at in the middle between the places `met`, rising, where it meets the
+    /// solid. Whatever they are, what is found there is a proof.
+    pub fn is_crossed(
         &self,
-        index: PrototypeIndex,
-        world_from_here: &DAffine3,
-        point: DVec3,
+        ray: &Ray,
+        (start, end): (f64, f64),
         distance: f64,
+        met: &[f64],
     ) -> bool {
-        let prototype = &self.scene.prototypes[index.0 as usize];
-        let frame = Frame::new(world_from_here);
-        let is_near = prototype.cylinders.iter().any(|record| {
-            let placed = PlacedCylinder {
-                cylinder: record.cylinder(),
-                frame: &frame,
-            };
-            !placed.is_far(point, distance)
-        });
-        is_near
-            || prototype.placements.iter().any(|placement| {
-                let world_from_child = *world_from_here * placement.parent_from_child;
-                let Some(bounds) = self.boxes[placement.of.0 as usize] else {
-                    return false;
-                };
-                let reach = distance + ROUNDING * point.length();
-                !bounds.is_empty()
-                    && bounds
-                        .transformed(&world_from_child)
-                        .grown(reach)
-                        .meets(&Bounds::at(point))
-                    && self.may_be_near_in(placement.of, &world_from_child, point, distance)
-            })
+        let bounds = self.solid.bounds();
+        if bounds.is_empty() {
+            return false;
+        }
+        let extents = self.solid.solids().iter().map(extent).fold(0.0, f64::max);
+        let deep = self.frame.local_length(distance, ray.origin, extents);
+        let reach = 0.5 * bounds.extent().length() + 4.0 * deep;
+        let way = self.frame.way(ray, (start, end), (bounds.centre(), reach));
+        if way.is_empty() {
+            return false;
+        }
+        let middles = met.windows(2).map(|ends| 0.5 * (ends[0] + ends[1]));
+        let middles = middles.filter(|t| (way.low..way.high).contains(t));
+        let depths: Vec<f64> = middles
+            .chain([way.low, way.high])
+            .map(|t| depth_in_composed(self.solid, way.at(t)))
+            .collect();
+        depths.iter().any(|depth| *depth > deep) && depths.iter().any(|depth| *depth < -deep)
+    }
+}
+
+/// Whether the way from `start` to `end` passes a disk, farther than `deep` from
+/// its rim: see the head of this file.
+fn is_disk_crossed(disk: &Disk, start: DVec3, end: DVec3, deep: f64) -> bool {
+    let height = |point: DVec3| beside_disk(disk, point).0;
+    let (from, to) = (height(start), height(end));
+    // Where the way is at a height, between those of its ends.
+    let is_within = |at: f64| {
+        let point = start + (end - start) * ((at - from) / (to - from));
+        beside_disk(disk, point).1 < -deep
+    };
+    // The distance from the axis is convex along the way.
+    from.abs() > deep
+        && to.abs() > deep
+        && (from < 0.0) != (to < 0.0)
+        && is_within(deep)
+        && is_within(-deep)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn disk_is_crossed_from_side_to_side_and_away_from_its_rim() {
+        let disk = Disk::new(DVec3::ZERO, DVec3::Z * 2.0, 1.0).unwrap();
+        let disk = PlacedSolid {
+            solid: disk.into(),
+            frame: &Frame::new(&DAffine3::IDENTITY),
+        };
+        let is_crossed = |x: f64, direction: DVec3, range: (f64, f64)| {
+            let ray = Ray::new(DVec3::new(x, 0.0, -5.0), direction);
+            disk.is_crossed(&ray, range, 0.1)
+        };
+        assert!(is_crossed(0.0, DVec3::Z, (0.0, 10.0)));
+        assert!(is_crossed(0.85, DVec3::Z, (4.8, 5.2)));
+        // Not to the other side, or not farther than 0.1 from it.
+        for range in [(0.0, 4.0), (0.0, 5.05), (4.95, 10.0), (6.0, 10.0)] {
+            assert!(!is_crossed(0.0, DVec3::Z, range), "{range:?}");
+        }
+        // Too near the rim, or past it; within 0.1 of the plane only.
+        assert!(!is_crossed(0.95, DVec3::Z, (0.0, 10.0)));
+        assert!(!is_crossed(1.5, DVec3::Z, (0.0, 10.0)));
+        let slanted = DVec3::new(3.0, 0.0, 1.0);
+        assert!(is_crossed(-15.0, slanted, (0.0, 10.0)));
+        assert!(!is_crossed(-15.7, slanted, (0.0, 10.0)));
     }
 }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use rayon::prelude::*;
 
 use super::agreement::{Agreement, allowance, greatest_coordinate};
-use super::nearness::Surfaces;
+use super::surfaces::Surfaces;
 use crate::check::{Progress, Witness};
 use crate::math::Ray;
 use crate::tracer::Tracer;

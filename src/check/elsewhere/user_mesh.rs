@@ -12,7 +12,7 @@
 use glam::DVec3;
 
 use super::agreement::{Agreement, F32_TOLERANCE};
-use super::nearness::Surfaces;
+use super::surfaces::Surfaces;
 use super::user_hits::in_blocks;
 use crate::check::{Progress, Witness};
 use crate::embree::{self, Device, DeviceOptions, Ray32, SceneBuilder};
