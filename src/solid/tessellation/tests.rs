@@ -171,6 +171,7 @@ fn meshes_hold_or_are_held_within_their_deviation() {
 /// The volume of the solid of a kind that has a formula.
 fn exact_volume(solid: &AnySolid) -> Option<f64> {
     let frustum = |length: f64, r0: f64, r1: f64| PI * length * (r0 * r0 + r0 * r1 + r1 * r1) / 3.0;
+    let ball = |radius: f64| 4.0 / 3.0 * PI * radius * radius * radius;
     match solid {
         AnySolid::Cylinder(c) => Some(frustum((c.p1() - c.p0()).length(), c.radius(), c.radius())),
         AnySolid::Cone(c) => Some(frustum(
@@ -178,10 +179,10 @@ fn exact_volume(solid: &AnySolid) -> Option<f64> {
             c.radius0(),
             c.radius1(),
         )),
-        AnySolid::Sphere(s) => Some(4.0 / 3.0 * PI * s.radius().powi(3)),
+        AnySolid::Sphere(s) => Some(ball(s.radius())),
         AnySolid::RoundedCone(c) if c.radius0() == c.radius1() => {
             let (length, radius) = ((c.p1() - c.p0()).length(), c.radius0());
-            Some(frustum(length, radius, radius) + 4.0 / 3.0 * PI * radius.powi(3))
+            Some(frustum(length, radius, radius) + ball(radius))
         }
         _ => None,
     }
