@@ -18,15 +18,16 @@ use crate::scene::Scene;
 use super::curves::ConeCurves;
 use super::curves::blocks::curve_block;
 use super::finding::{Finding, Intersector};
+use super::hulls::hull_list::{bytes_needed, triangles_within};
+use super::hulls::mesh_frame::MeshFrame;
+use super::hulls::meshes::{Meshes, Scratch, Seen};
+use super::hulls::placed::{Budget, windows};
+use super::hulls::window::Window;
 use super::judging::judge::solid_of;
 use super::judging::surface::LocalRay;
 use super::judging::truth;
 use super::judging::verdict::{Subject, Verdict, verdict};
 use super::outcome::{Outcome, Violation, Witness};
-use super::prisms::mesh_frame::MeshFrame;
-use super::prisms::meshes::{Meshes, Scratch, Seen};
-use super::prisms::placed::{Window, windows};
-use super::prisms::prism::bytes_needed;
 use super::rays::RaySource;
 use super::settings::{CheckError, Class, Settings};
 use super::tally::Tally;
@@ -110,41 +111,22 @@ pub(super) fn chosen_windows(
         }
     }
     let census = scene.census();
-    if census.other_solids_unique > 0 {
-        let solids = census.other_solids_unique;
-        return Err(CheckError::OtherSolids { solids });
-    }
-    if census.cylinders_instanced == 0 {
+    if census.cylinders_instanced == 0 && census.other_solids_unique == 0 {
         return Err(CheckError::Empty);
     }
     let segments = settings.segments.iter().copied().max().unwrap_or(3);
-    let windows = windows(
-        scene,
-        most_solids(segments, settings.max_memory),
-        settings.seed,
-    );
+    let budget = Budget {
+        triangles: triangles_within(settings.max_memory),
+        segments,
+    };
+    let windows = windows(scene, budget, settings.seed);
     if windows.is_empty() {
         return Err(CheckError::Memory {
-            needed: bytes_needed(8, segments),
+            needed: bytes_needed(8 * 4 * u64::from(segments)),
             allowed: settings.max_memory,
         });
     }
     Ok(windows)
-}
-
-/// How many solids' meshes fit into memory, by bisection. Vertices and triangles
-/// are counted with 32 bits: a prism has less than 8 of either a side.
-fn most_solids(segments: u32, max_memory: u64) -> usize {
-    let (mut fits, mut too_many) = (0, u64::from(u32::MAX / (8 * segments)) + 1);
-    while too_many - fits > 1 {
-        let middle = fits.midpoint(too_many);
-        if bytes_needed(middle, segments) <= max_memory {
-            fits = middle;
-        } else {
-            too_many = middle;
-        }
-    }
-    fits as usize
 }
 
 /// What stays the same from window to window.
@@ -347,7 +329,8 @@ fn measure(
         tally.dt_radii.push(local.radii(dt));
     }
     let part = finding.place.as_ref().map(|place| place.part);
-    if let Some(sagittas) = local.sagittas(finding.t, dt, part, meshes.segments) {
+    let sagittas = part.and_then(|part| local.sagittas(finding.t, dt, part, meshes.segments));
+    if let Some(sagittas) = sagittas {
         tally.max_dt_over_chord = tally.max_dt_over_chord.max(sagittas);
     }
 }

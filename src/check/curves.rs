@@ -7,7 +7,7 @@
 //! that share no code agree.
 //!
 //! # Which solids
-//! Those that are circular cylinders in the mesh, too. With `G = MᵀM` of the
+//! Cylinders that are circular in the mesh, too. With `G = MᵀM` of the
 //! map's matrix M and e the unit axis, the image is one if and only if
 //! `G = α eeᵀ + β (I - eeᵀ)`; so placements may stretch along the axis and
 //! mirror. The defect, the Frobenius norm of what is left of G, is allowed up to
@@ -46,12 +46,12 @@ use rayon::prelude::*;
 
 use crate::embree::{Device, Error, GREATEST_COORDINATE, NativeHit, Ray32, Scene, SceneBuilder};
 use crate::math::{frobenius_norm, power_of_two};
-use crate::solid::{Caps, Cylinder};
+use crate::solid::{AnySolid, Caps, Cylinder};
 
-use super::prisms::mesh_frame::MeshFrame;
-use super::prisms::mesh_solid::{MeshMap, MeshSolid};
-use super::prisms::meshes::point;
-use super::prisms::placed::{PlacedSolid, Window};
+use super::hulls::mesh_frame::MeshFrame;
+use super::hulls::mesh_map::{MeshAnchor, MeshMap};
+use super::hulls::meshes::point;
+use super::hulls::window::{PlacedSolid, Window};
 
 /// Half an ulp of 1 in f32.
 const U: f64 = power_of_two(-24);
@@ -95,10 +95,13 @@ impl Segment {
         })
     }
 
-    fn of_placed(solid: &PlacedSolid, frame: &MeshFrame) -> Option<Self> {
-        let map = MeshMap::new(frame, &solid.frame);
-        let base = MeshSolid::new(frame, &map, solid).base;
-        Self::new(&solid.cylinder, &map.matrix, base)
+    fn of_placed(placed: &PlacedSolid, frame: &MeshFrame) -> Option<Self> {
+        let AnySolid::Cylinder(cylinder) = &placed.solid else {
+            return None;
+        };
+        let map = MeshMap::new(frame, &placed.frame);
+        let base = MeshAnchor::new(frame, &map, placed, cylinder.p0()).base;
+        Self::new(cylinder, &map.matrix, base)
     }
 
     /// `ε` for a ray from `origin` with a hit after `way`.
@@ -150,9 +153,16 @@ impl ConeCurves {
     /// # Errors
     /// When Embree refuses.
     pub fn of_window(device: &Device, window: &Window, frame: &MeshFrame) -> Result<Self, Error> {
-        let solids = window.solids.par_iter();
+        // A leaf of a composition is no solid by itself.
+        let solids = window
+            .solids
+            .par_iter()
+            .zip(0_u32..window.solids.len() as u32);
         let segments: Vec<Option<Segment>> = solids
-            .map(|solid| Segment::of_placed(solid, frame))
+            .map(|(solid, leaf)| match window.composition_of(leaf) {
+                None => Segment::of_placed(solid, frame),
+                Some(_) => None,
+            })
             .collect();
         Self::new(device, &segments)
     }

@@ -25,13 +25,14 @@ mod compare;
 mod curves;
 mod elsewhere;
 mod finding;
+mod hulls;
 mod judging;
 mod outcome;
-mod prisms;
 mod rays;
 mod replay;
 mod settings;
 mod tally;
+mod target;
 mod telling;
 
 pub use compare::{Progress, compare, compare_with};

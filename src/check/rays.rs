@@ -14,8 +14,9 @@ use crate::math::{Bounds, Random, Ray};
 use crate::scene::{AimedCamera, Scene};
 
 use super::Class;
-use super::prisms::mesh_frame::MeshFrame;
-use super::prisms::placed::{PlacedSolid, Window};
+use super::hulls::mesh_frame::MeshFrame;
+use super::hulls::window::Window;
+use super::target::Target;
 
 /// Draws of a ray before the window's box is aimed at itself.
 const MOST_DRAWS: u32 = 32;
@@ -35,15 +36,6 @@ pub(crate) struct RaySource<'a> {
     centre: DVec3,
     /// Half the diagonal of the extent.
     reach: f64,
-}
-
-/// A solid in the world, as rays are aimed at it.
-struct Target<'a> {
-    solid: &'a PlacedSolid,
-    axis: DVec3,
-    across: [DVec3; 2],
-    length: f64,
-    radius: f64,
 }
 
 impl<'a> RaySource<'a> {
@@ -183,140 +175,6 @@ impl<'a> RaySource<'a> {
         };
         (point - unit * distance, unit)
     }
-}
-
-impl<'a> Target<'a> {
-    fn new(solid: &'a PlacedSolid) -> Self {
-        let along = solid.cylinder.p1() - solid.cylinder.p0();
-        let length = along.length();
-        let axis = along / length;
-        let (one, other) = axis.any_orthonormal_pair();
-        Self {
-            solid,
-            axis,
-            across: [one, other],
-            length,
-            radius: solid.cylinder.radius(),
-        }
-    }
-
-    /// The point of the solid's space at a height and a vector from the axis.
-    fn object_point(&self, height: f64, off: DVec3) -> DVec3 {
-        self.solid.cylinder.p0() + self.axis * height + off
-    }
-
-    fn world_point(&self, object: DVec3) -> DVec3 {
-        self.solid.frame.world_from_object.transform_point3(object)
-    }
-
-    fn world_vector(&self, object: DVec3) -> DVec3 {
-        self.solid.frame.world_from_object.transform_vector3(object)
-    }
-
-    /// A unit vector across the axis, in the solid's space.
-    fn outward(&self, random: &mut Random) -> DVec3 {
-        let (sin, cos) = libm::sincos(random.unit() * std::f64::consts::TAU);
-        self.across[0] * cos + self.across[1] * sin
-    }
-
-    /// About the size in the world.
-    fn size(&self) -> f64 {
-        self.world_vector(self.axis * self.length).length()
-            + self.world_vector(self.across[0] * self.radius).length()
-    }
-
-    /// A random point of the solid, in the world.
-    fn any_point(&self, random: &mut Random) -> DVec3 {
-        let off = self.outward(random) * (self.radius * random.unit().sqrt());
-        self.world_point(self.object_point(self.length * random.unit(), off))
-    }
-
-    /// A random point of a cylinder a quarter thicker and longer, in the world.
-    /// What is aimed at points of the solid itself hardly ever passes just
-    /// beside it, so silhouettes would get too few rays.
-    fn point_around(&self, random: &mut Random) -> DVec3 {
-        let off = self.outward(random) * (1.25 * self.radius * random.unit().sqrt());
-        let height = self.length * random.uniform(-0.125, 1.125);
-        self.world_point(self.object_point(height, off))
-    }
-
-    /// From a point inside, a third of the time from next to the wall or a
-    /// disc, in any direction, along the wall now and then.
-    fn inside_ray(&self, random: &mut Random) -> (DVec3, DVec3) {
-        let outward = self.outward(random);
-        let mut share = random.unit().sqrt();
-        let mut height = self.length * random.unit();
-        if random.below(3) == 0 {
-            // From deep within the chord error of any prism to about that of 8 sides.
-            let gap = sign(random) * random.log_uniform(1e-6, 0.1);
-            if random.below(2) == 0 {
-                share = 1.0 - gap;
-            } else {
-                height = gap * self.radius.min(self.length);
-                if random.below(2) == 0 {
-                    height = self.length - height;
-                }
-            }
-        }
-        let origin = self.object_point(height, outward * (self.radius * share));
-        let heading = if random.below(4) == 0 {
-            let along = outward.cross(self.axis) * sign(random);
-            along + self.axis * random.uniform(-2.0, 2.0)
-        } else {
-            random.direction()
-        };
-        (self.world_point(origin), self.world_vector(heading))
-    }
-
-    /// A point beside the wall, and a heading that is tangential there.
-    fn at_silhouette(&self, random: &mut Random) -> (DVec3, DVec3) {
-        let outward = self.outward(random);
-        let off = 1.0 + sign(random) * random.log_uniform(1e-6, 0.1);
-        let tangent = outward.cross(self.axis) * sign(random);
-        let heading = tangent + self.axis * random.uniform(-2.0, 2.0);
-        let point = self.object_point(
-            self.length * random.uniform(-0.02, 1.02),
-            outward * (self.radius * off),
-        );
-        (self.world_point(point), self.world_vector(heading))
-    }
-
-    /// A point next to a rim, and any heading.
-    fn at_rim(&self, random: &mut Random) -> (DVec3, DVec3) {
-        let end = if random.below(2) == 0 {
-            0.0
-        } else {
-            self.length
-        };
-        let rim = self.object_point(end, self.outward(random) * self.radius);
-        let near = random.direction() * (self.radius * random.log_uniform(1e-6, 0.1));
-        (
-            self.world_point(rim + near),
-            self.world_vector(random.direction()),
-        )
-    }
-
-    /// Parallel to the axis, or nearly, through or past the discs.
-    fn along_axis(&self, random: &mut Random) -> (DVec3, DVec3) {
-        let off = self.outward(random) * (1.2 * self.radius * random.unit().sqrt());
-        let direction = self.axis * sign(random);
-        let away = (self.length + self.radius) * random.uniform(0.6, 2.0);
-        let middle = self.object_point(0.5 * self.length, off);
-        let tilt = if random.below(2) == 0 {
-            DVec3::ZERO
-        } else {
-            self.outward(random) * random.log_uniform(1e-9, 1e-2)
-        };
-        (
-            self.world_point(middle - direction * away),
-            self.world_vector(direction + tilt),
-        )
-    }
-}
-
-/// 1 or -1.
-fn sign(random: &mut Random) -> f64 {
-    if random.below(2) == 0 { 1.0 } else { -1.0 }
 }
 
 /// The part of a ray within a box, smaller by what rounds; `None` where little

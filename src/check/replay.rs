@@ -11,12 +11,12 @@ use crate::scene::Scene;
 
 use super::compare::chosen_windows;
 use super::finding::{Finding, Intersector};
+use super::hulls::mesh_frame::MeshFrame;
+use super::hulls::meshes::{Meshes, Scratch};
 use super::judging::judge::first;
 use super::judging::truth;
 use super::judging::verdict::{Subject, Verdict, verdict};
 use super::outcome::{Violation, Witness};
-use super::prisms::mesh_frame::MeshFrame;
-use super::prisms::meshes::{Meshes, Scratch};
 use super::rays::RaySource;
 use super::settings::{CheckError, Class, Settings};
 use super::telling::words::{answer_text, instance_text, interval_text, ray_text};
@@ -243,7 +243,8 @@ impl Replayed {
             let solid = &about.window.solids[seen.solid as usize];
             let interval = seen.bounds.interval;
             self.lines.push(format!(
-                "    cylinder {} of {}: {}",
+                "    {} {} of {}: {}",
+                about.window.kind(seen.solid).name(),
                 solid.primitive,
                 instance_text(&solid.frame.instance),
                 interval_text(interval.low, interval.high)

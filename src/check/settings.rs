@@ -107,10 +107,10 @@ pub enum CheckError {
     /// Not even one prism fits.
     #[error(
         "the meshes of the smallest part of the scene that was tried take more than the {allowed} \
-         bytes allowed; even eight solids take {needed}"
+         bytes allowed; even eight cylinders take {needed}"
     )]
     Memory {
-        /// What eight solids take.
+        /// What eight cylinders take.
         needed: u64,
         /// [`Settings::max_memory`].
         allowed: u64,
@@ -124,14 +124,6 @@ pub enum CheckError {
     /// Nothing to check.
     #[error("the scene holds no solid")]
     Empty,
-    /// There are solids of which there are no prisms.
-    #[error(
-        "the scene holds {solids} solids that are no cylinders: the prisms of check are those of cylinders"
-    )]
-    OtherSolids {
-        /// How many, as they are stored.
-        solids: u64,
-    },
     /// Embree refused.
     #[error(transparent)]
     Embree(#[from] crate::embree::Error),

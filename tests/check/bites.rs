@@ -13,7 +13,7 @@ use super::scenes::{prototype, random_cylinder, random_scene};
 use super::{checked, tracer};
 
 /// An answer that is tampered with.
-struct Tampered<F>(F);
+pub struct Tampered<F>(pub F);
 
 impl<F: Fn(&Ray) -> Option<Finding> + Sync> Intersector for Tampered<F> {
     fn closest(&self, ray: &Ray) -> Option<Finding> {

@@ -3,6 +3,9 @@
 
 mod bites;
 mod scenes;
+mod solids;
+#[path = "../support/mod.rs"]
+mod support;
 
 use std::path::Path;
 use std::sync::Arc;

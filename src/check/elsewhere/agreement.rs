@@ -41,7 +41,7 @@ use super::nearness::{Frame, PlacedComposition, PlacedSolid};
 use super::surfaces::Surfaces;
 use crate::check::Witness;
 use crate::math::Ray;
-use crate::oracle::{ExactAffine, first_hit_of_any, placed_first_hit};
+use crate::oracle::{ExactAffine, placed_hits_of_any};
 use crate::scene::{PrototypeIndex, Scene};
 use crate::solid::{AnySolid, Composition};
 use crate::tracer::{DEFAULT_BATCH, Hit, Tracer};
@@ -321,7 +321,7 @@ fn find<'a>(scene: &'a Scene, instance: &[u32], primitive: u32) -> (Vec<&'a DAff
 }
 
 /// The exact `t` of the first hit with the solid of a hit, by the oracle; `None` when
-/// it misses, and when it does not know the solid where it is placed.
+/// it misses, and for a composition.
 fn oracle_t(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<f64> {
     let (placements, found) = find(scene, &hit.instance, hit.primitive);
     let world_from_object = placements
@@ -329,12 +329,9 @@ fn oracle_t(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<f64> {
         .fold(ExactAffine::identity(), |whole, one| {
             whole.after(&ExactAffine::new(one))
         });
-    let truth = match found {
-        Found::Single(AnySolid::Cylinder(cylinder)) => {
-            placed_first_hit(&cylinder, &world_from_object, ray).hit
-        }
-        Found::Single(other) if placements.is_empty() => first_hit_of_any(&other, ray),
-        _ => None,
+    let Found::Single(solid) = found else {
+        return None;
     };
-    truth.map(|hit| hit.t_f64())
+    let hits = placed_hits_of_any(&solid, &world_from_object, ray);
+    hits.first().map(|hit| hit.t_f64())
 }

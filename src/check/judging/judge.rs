@@ -6,10 +6,10 @@ use std::fmt;
 use crate::math::Ray;
 
 use super::sandwich::Interval;
-use super::surface::{LocalRay, WrongSurface};
+use super::surface::{WrongSurface, wrong_surface};
 use crate::check::finding::{Finding, Place};
-use crate::check::prisms::meshes::Seen;
-use crate::check::prisms::placed::Window;
+use crate::check::hulls::meshes::Seen;
+use crate::check::hulls::window::Window;
 
 /// The solids of a window by their places in the scene.
 pub(crate) struct Directory<'a> {
@@ -29,7 +29,9 @@ impl<'a> Directory<'a> {
             let next = frames.len() as u32;
             let path = solid.frame.instance.as_slice();
             let frame = *frames.entry(path).or_insert(next);
-            solids.insert((frame, solid.primitive), number as u32);
+            // The leaves of a composition have its number; the first stands for it.
+            let leaf = number as u32;
+            solids.entry((frame, solid.primitive)).or_insert(leaf);
         }
         Self {
             window,
@@ -163,8 +165,8 @@ pub(crate) fn judge(
     let surface = |one: &Seen| {
         let interval = one.bounds.interval;
         let last = interval.high.min(one.bounds.last).max(interval.low);
-        let local = LocalRay::new(&directory.window.solids[one.solid as usize], ray);
-        let wrong = local.wrong_surface(interval.low, last, part, finding.normal)?;
+        let (window, range) = (directory.window, (interval.low, last));
+        let wrong = wrong_surface(window, one.solid, ray, range, part, finding.normal)?;
         Some(Wrong::Surface(wrong, interval))
     };
     if finding.place.is_some() {

@@ -1,8 +1,10 @@
 //! An answer held against what a ray meets of the prisms, or against exact
-//! cylinders.
+//! solids.
 
+pub(in crate::check) mod composed;
 pub(in crate::check) mod judge;
 pub(in crate::check) mod open_ends;
+pub(in crate::check) mod parts;
 pub(in crate::check) mod retrial;
 pub(in crate::check) mod sandwich;
 pub(in crate::check) mod surface;

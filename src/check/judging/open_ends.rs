@@ -23,8 +23,9 @@ use glam::DVec3;
 use crate::math::{UNIT_ROUNDOFF, power_of_two};
 use crate::oracle::{Exact, ExactVector, exact, to_f64};
 
-use crate::check::prisms::mesh_frame::MeshFrame;
-use crate::check::prisms::placed::PlacedSolid;
+use crate::check::hulls::mesh_frame::MeshFrame;
+use crate::check::hulls::window::PlacedSolid;
+use crate::solid::{AnySolid, Caps};
 
 /// The planes of the discs that a tube does not have, in the mesh's space.
 #[derive(Clone, Debug, Default)]
@@ -37,17 +38,19 @@ struct Plane {
 }
 
 impl OpenEnds {
-    /// The planes for one solid; none if it has both discs.
-    pub fn new(solid: &PlacedSolid, frame: &MeshFrame) -> Self {
-        let cylinder = &solid.cylinder;
+    /// The planes for one solid; none if it is closed.
+    pub fn new(placed: &PlacedSolid, frame: &MeshFrame) -> Self {
+        let Some((ends, caps)) = ends_of(&placed.solid) else {
+            return Self::default();
+        };
         let missing = [
-            (!cylinder.caps().at_p0(), cylinder.p0(), 1.0),
-            (!cylinder.caps().at_p1(), cylinder.p1(), -1.0),
+            (!caps.at_p0(), ends[0], 1.0),
+            (!caps.at_p1(), ends[1], -1.0),
         ];
         let planes = missing.into_iter().filter(|&(is_missing, ..)| is_missing);
         Self(
             planes
-                .map(|(_, end, side)| plane(solid, frame, end, side))
+                .map(|(_, end, side)| plane((ends, placed), frame, end, side))
                 .collect(),
         )
     }
@@ -65,10 +68,23 @@ impl OpenEnds {
     }
 }
 
-fn plane(solid: &PlacedSolid, frame: &MeshFrame, end: DVec3, side: f64) -> Plane {
-    let p0 = ExactVector::new(solid.cylinder.p0());
-    let axis = &ExactVector::new(solid.cylinder.p1()) - &p0;
-    let placement = &solid.frame.exact;
+/// The ends of a solid that may be open, and which are not.
+pub(super) fn ends_of(solid: &AnySolid) -> Option<([DVec3; 2], Caps)> {
+    match solid {
+        AnySolid::Cylinder(one) => Some(([one.p0(), one.p1()], one.caps())),
+        AnySolid::Cone(one) => Some(([one.p0(), one.p1()], one.caps())),
+        _ => None,
+    }
+}
+
+fn plane(
+    ([p0, p1], placed): ([DVec3; 2], &PlacedSolid),
+    frame: &MeshFrame,
+    end: DVec3,
+    side: f64,
+) -> Plane {
+    let axis = &ExactVector::new(p1) - &ExactVector::new(p0);
+    let placement = &placed.frame.exact;
     let (adjugate, determinant) = placement.adjugate();
     let normal = adjugate.times_from_left(&axis);
     let from_translation = &ExactVector::new(frame.centre()) - placement.translation();

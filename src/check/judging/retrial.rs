@@ -32,7 +32,7 @@ use crate::math::{Ray, UNIT_ROUNDOFF};
 use crate::oracle::{Exact, ExactVector, exact, to_f64};
 
 use super::sandwich::Crossings;
-use crate::check::prisms::meshes::{Meshes, Seen, may_meet, point};
+use crate::check::hulls::meshes::{LeafCrossings, Meshes, Seen, may_meet, point};
 
 /// Bits of the quotient from which a parameter is rounded.
 const QUOTIENT_BITS: usize = 256;
@@ -140,16 +140,25 @@ impl ExactCrossings {
 pub(crate) fn retry(meshes: &Meshes, ray32: &Ray32, ray: &Ray) -> Vec<Seen> {
     let line = Line::new(ray32);
     let mut seen = Vec::new();
-    for (solid, bounds) in meshes.boxes.iter().enumerate() {
-        if !may_meet(bounds, ray) {
+    for leaves in meshes.leaves() {
+        let mut boxes = meshes.boxes[leaves.start as usize..leaves.end as usize].iter();
+        if !boxes.any(|bounds| may_meet(bounds, ray)) {
             continue;
         }
-        let solid = solid as u32;
-        let [outer, inner] = meshes.triangles(solid);
-        let outer = line.crossings(outer).rounded(true);
-        let inner = line.crossings(inner).rounded(false);
-        if outer != Crossings::NONE || inner != Crossings::NONE {
-            let bounds = meshes.bounds(solid, ray32, &outer, &inner);
+        let crossings: Vec<LeafCrossings> = leaves
+            .clone()
+            .map(|leaf| {
+                let [outer, inner] = meshes.triangles(leaf);
+                LeafCrossings {
+                    outer: line.crossings(outer).rounded(true),
+                    inner: line.crossings(inner).rounded(false),
+                }
+            })
+            .collect();
+        let is_met = |leaf: &LeafCrossings| [leaf.outer, leaf.inner] != [Crossings::NONE; 2];
+        if crossings.iter().any(is_met) {
+            let solid = leaves.start;
+            let bounds = meshes.bounds(solid, ray32, &crossings);
             seen.push(Seen { solid, bounds });
         }
     }

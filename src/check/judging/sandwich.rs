@@ -25,7 +25,7 @@
 //! *Faces.* A side of a prism of f32 vertices is two triangles that are not
 //! quite in one plane, so a line may cross the surface more than twice. What is
 //! used stays true: an outer prism is the surface of a star-shaped body that
-//! holds the solid (`containment`), so `a`, its first entry, is not behind the
+//! holds the solid (`hulls::hull::proof`), so `a`, its first entry, is not behind the
 //! solid, nor its last exit `b` before the solid's end; each point of the inner
 //! prism's triangles is between its vertices and hence in the solid, so any
 //! entry is at or after `e`, any exit at or before `l`. A ray starts inside a
@@ -43,6 +43,12 @@
 //! the planes of all missing discs, and, by the same argument backwards, the
 //! exit between `d` and `b` if the point at `b` is. Where the entry isn't
 //! certain, a certain exit still is a hit: the upper bound is `b`.
+//!
+//! *Disks* have no inside; in place of an inner prism they have two sheets (`hull`). A
+//! ray that comes in through one from `t_min` on and goes out through the other meets
+//! the disk between the two, and anything else of the sheets tells nothing. The mesh
+//! around a disk is as any: the disk is not met before it is entered, nor after it
+//! is left.
 //!
 //! *Many solids.* The first hit of all is between the least lower and the least
 //! upper bound.
@@ -97,11 +103,11 @@ impl Crossings {
         }
     }
 
-    fn is_none(&self) -> bool {
+    pub fn is_none(&self) -> bool {
         self.enter == f64::INFINITY && self.leave == f64::INFINITY
     }
 
-    fn starts_inside(&self) -> bool {
+    pub fn starts_inside(&self) -> bool {
         self.leave < self.enter
     }
 }
@@ -207,6 +213,31 @@ pub(crate) fn solid_bounds(
         bounds(t_min, exit(), None, is_odd)
     } else {
         bounds(t_min, f64::INFINITY, None, is_odd)
+    }
+}
+
+/// The bounds for a disk, `inner` being its sheets.
+pub(crate) fn sheet_bounds(outer: &Crossings, inner: &Crossings, t_min: f64) -> SolidBounds {
+    let is_through = inner.enter <= inner.last_leave && inner.last_leave < LATER;
+    let low = if outer.is_none() {
+        f64::INFINITY
+    } else if outer.starts_inside() {
+        t_min
+    } else {
+        outer.enter
+    };
+    SolidBounds {
+        interval: Interval {
+            low,
+            high: if is_through {
+                inner.last_leave
+            } else {
+                f64::INFINITY
+            },
+        },
+        inner: None,
+        last: outer.last_leave,
+        is_odd: is_through && (outer.is_none() || inner.last_leave > outer.last_leave),
     }
 }
 

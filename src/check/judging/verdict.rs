@@ -11,9 +11,9 @@ use super::retrial::retry;
 use super::sandwich::LATER;
 use super::surface::LocalRay;
 use crate::check::finding::Finding;
-use crate::check::prisms::mesh_frame::MeshFrame;
-use crate::check::prisms::meshes::{Meshes, Scratch, Seen, may_meet};
-use crate::check::prisms::placed::Window;
+use crate::check::hulls::mesh_frame::MeshFrame;
+use crate::check::hulls::meshes::{Meshes, Scratch, Seen, may_meet};
+use crate::check::hulls::window::Window;
 use crate::check::rays::RaySource;
 use crate::check::tally::Tally;
 
@@ -150,6 +150,9 @@ fn is_settled(
     let Some(solid) = place.and_then(|place| about.directory.find(place)) else {
         return false;
     };
+    if meshes.is_composed(solid) {
+        return false;
+    }
     let local = LocalRay::new(&about.window.solids[solid as usize], ray);
     let sagitta = 1.0 - libm::cos(PI / f64::from(meshes.segments));
     let beyond = SAGITTAS_BEYOND * sagitta / local.radii(1.0);
@@ -158,8 +161,11 @@ fn is_settled(
         return false;
     }
     meshes.look(ray32, up_to, scratch);
-    let is_odd = scratch.seen.iter().any(|seen| seen.bounds.is_odd);
+    let mut seen = scratch.seen.iter();
+    if seen.any(|seen| seen.bounds.is_odd || meshes.is_composed(seen.solid)) {
+        return false;
+    }
     let has_high = solid_of(&about.directory, finding, &scratch.seen)
         .is_some_and(|seen| seen.bounds.interval.high < LATER);
-    has_high && !is_odd && judge(&about.directory, ray, Some(finding), &scratch.seen).is_none()
+    has_high && judge(&about.directory, ray, Some(finding), &scratch.seen).is_none()
 }

@@ -4,11 +4,14 @@
 //! meet. An inscribed prism is inside its solid, so that a ray can meet the
 //! prisms of no others, and the picture is that of the whole scene's mesh
 //! (beyond the first [`DEPTHS`] solids on a ray nothing is looked for).
+//! Compositions have no mesh of their own: where one is met first, all pictures are
+//! empty.
 //!
 //! A difference in `t` is shown in units of the chord error. In the solid's own
 //! space, a wall met with the unit normal `n` by a direction `d` that is
 //! displaced by the sagitta `s` shifts the hit by `s/|n·d|`; `t` means the same
-//! there as in the world, so the unit is `s/|n·d|` whatever the placement.
+//! there as in the world, so the unit is `s/|n·d|` whatever the placement. A cuboid is
+//! its own mesh, without any.
 
 use std::collections::HashMap;
 
@@ -20,8 +23,8 @@ use crate::embree::{self, DeviceOptions};
 use crate::math::Ray;
 use crate::render::{png_bytes, srgb_encode};
 use crate::scene::{AimedCamera, Film, Placement, PrototypeIndex, Scene};
-use crate::solid::Cylinder;
-use crate::solid::tessellation::{Mesh, inscribed_prism, sagitta};
+use crate::solid::tessellation::{Fit, Mesh, deviation_of, mesh_of, mesh_size_of};
+use crate::solid::{AnySolid, SolidKind};
 use crate::tracer::{DEFAULT_BATCH, Hit, Tracer};
 
 /// Solids along a ray that the mesh may hold: as many of these as the memory
@@ -72,7 +75,7 @@ type Key = (Vec<u32>, u32);
 
 /// A solid where it is placed.
 struct Placed {
-    cylinder: Cylinder,
+    solid: AnySolid,
     object_from_world: DAffine3,
     world_from_object: DAffine3,
     color: DVec3,
@@ -110,7 +113,7 @@ pub fn pictures(
     let mut ordered: Vec<(&Key, &Placed)> = solids.iter().collect();
     ordered.sort_by_key(|(key, _)| *key);
     for (_, solid) in &ordered {
-        let mut prism = inscribed_prism(&solid.cylinder, segments);
+        let mut prism = mesh_of(&solid.solid, segments, Fit::Inscribed);
         for vertex in &mut prism.vertices {
             *vertex = solid.world_from_object.transform_point3(*vertex);
         }
@@ -121,6 +124,9 @@ pub fn pictures(
     let shown: Vec<Shown> = pixels
         .par_iter()
         .map(|(ray, hits)| {
+            if hits.first().is_some_and(is_composed) {
+                return Shown::NOTHING;
+            }
             let exact = hits.first().and_then(|hit| {
                 let solid = solids.get(&key(hit))?;
                 Some((hit, solid))
@@ -178,29 +184,36 @@ fn chosen(
     segments: u32,
     max_memory: u64,
 ) -> Option<HashMap<Key, Placed>> {
-    // Two triangles a side and one of each disc.
-    let most = max_memory / (4 * u64::from(segments) * TRIANGLE_BYTES);
+    let most = max_memory / TRIANGLE_BYTES;
     DEPTHS.into_iter().find_map(|depth| {
         let mut solids = HashMap::new();
         for (_, hits) in pixels {
-            for hit in hits.iter().take(depth) {
+            for hit in hits.iter().take(depth).filter(|hit| !is_composed(hit)) {
                 solids.entry(key(hit)).or_insert_with(|| placed(scene, hit));
             }
         }
-        (!solids.is_empty() && solids.len() as u64 <= most).then_some(solids)
+        let sizes = solids
+            .values()
+            .map(|placed| mesh_size_of(&placed.solid, segments).1);
+        let triangles: u64 = sizes.sum();
+        (!solids.is_empty() && triangles <= most).then_some(solids)
     })
+}
+
+fn is_composed(hit: &Hit) -> bool {
+    use SolidKind::{Difference, Intersection, Union};
+    matches!(hit.solid, Union | Intersection | Difference)
 }
 
 /// The solid of a hit.
 fn placed(scene: &Scene, hit: &Hit) -> Placed {
     let (world_from_object, prototype) = place(scene, &hit.instance);
-    let records = &scene.prototypes[prototype.0 as usize].cylinders;
-    let record = records
-        .iter()
-        .find(|record| record.primitive() == hit.primitive)
+    let (_, solid) = scene.prototypes[prototype.0 as usize]
+        .singles()
+        .find(|(primitive, _)| *primitive == hit.primitive)
         .expect("a hit names a solid of its prototype");
     Placed {
-        cylinder: record.cylinder(),
+        solid,
         object_from_world: world_from_object.inverse(),
         world_from_object,
         color: scene.materials[usize::from(hit.material.0)].color,
@@ -237,6 +250,14 @@ struct Shown {
 }
 
 impl Shown {
+    const NOTHING: Self = Self {
+        analytic: NOTHING,
+        mesh: NOTHING,
+        distance: NOTHING,
+        normal: NOTHING,
+        case: None,
+    };
+
     fn of(
         ray: &Ray,
         exact: Option<(&Hit, &Placed)>,
@@ -250,7 +271,12 @@ impl Shown {
             (Some(_), None) => (SOLID_ALONE, SOLID_ALONE, Some(1)),
             (None, Some(_)) => (MESH_ALONE, MESH_ALONE, Some(2)),
             (Some((hit, solid)), Some((triangle, _))) => {
-                let chords = (triangle.t - hit.t) / chord_error(ray, hit, solid, segments);
+                let chord = chord_error(ray, hit, solid, segments);
+                let chords = if chord > 0.0 {
+                    (triangle.t - hit.t) / chord
+                } else {
+                    0.0
+                };
                 let cos = hit.normal.dot(triangle.normal).abs().min(1.0);
                 let angles = libm::acos(cos) * f64::from(segments) / std::f64::consts::PI;
                 (
@@ -274,7 +300,7 @@ impl Shown {
 fn chord_error(ray: &Ray, hit: &Hit, solid: &Placed, segments: u32) -> f64 {
     let direction = solid.object_from_world.transform_vector3(ray.direction);
     let normal = solid.world_from_object.matrix3.transpose() * hit.normal;
-    sagitta(&solid.cylinder, segments) / normal.normalize().dot(direction).abs()
+    deviation_of(&solid.solid, segments, Fit::Inscribed) / normal.normalize().dot(direction).abs()
 }
 
 /// A colour under a lamp at the eye.

@@ -2,8 +2,9 @@
 //! scene held.
 
 use crate::check::compare::chosen_windows;
-use crate::check::prisms::placed::Window;
-use crate::check::prisms::prism::bytes_needed;
+use crate::check::hulls::hull::triangles_needed;
+use crate::check::hulls::hull_list::bytes_needed;
+use crate::check::hulls::window::Window;
 use crate::check::{CheckError, Settings};
 use crate::report::{figure, readable};
 use crate::scene::Scene;
@@ -26,17 +27,24 @@ pub struct Plan {
 /// part of it fits into [`Settings::max_memory`].
 pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, CheckError> {
     let windows = chosen_windows(scene, settings)?;
-    let solids = windows.iter().map(|window| window.solids.len()).max();
-    let solids = solids.unwrap_or(0);
     let segments = settings.segments.iter().copied().max().unwrap_or(3);
+    let largest = windows.iter().map(|window| bytes(window, segments)).max();
+    let solids = windows.iter().map(Window::count).max();
     Ok(Plan {
         windows: windows.len(),
-        solids,
-        bytes: bytes_needed(solids as u64, segments),
+        solids: solids.unwrap_or(0),
+        bytes: largest.unwrap_or(0),
     })
 }
 
-/// Solids of a window that have no prism of a number of sides.
+/// What the meshes of a window take.
+fn bytes(window: &Window, segments: u32) -> u64 {
+    let solids = window.solids.iter();
+    let triangles = solids.map(|placed| triangles_needed(&placed.solid, segments));
+    bytes_needed(triangles.sum())
+}
+
+/// Solids of a window, or leaves of its compositions, that have no prism of a number of sides.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::check) struct Missing {
     /// Sides.
@@ -64,9 +72,9 @@ pub(in crate::check) fn in_words(
             bounds.centre()
         ),
     };
-    let solids = window.solids.len();
+    let solids = window.count();
     let segments = missing.iter().map(|one| one.segments).max().unwrap_or(3);
-    let bytes = readable(bytes_needed(solids as u64, segments));
+    let bytes = readable(bytes(window, segments));
     let mut text = format!(
         "{place}: {solids} solids, about {bytes} with {segments} sides; {with_curves} of them as cone curves"
     );

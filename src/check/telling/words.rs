@@ -30,7 +30,7 @@ pub(in crate::check) fn answer_text(answer: Option<&Finding>) -> String {
     let mut text = format!("t {:?}", answer.t);
     if let Some(place) = &answer.place {
         text += &format!(
-            " on {} of cylinder {} of {}",
+            " on {} of solid {} of {}",
             place.part.name(),
             place.primitive,
             instance_text(&place.instance)

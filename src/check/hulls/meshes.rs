@@ -1,9 +1,11 @@
-//! The prisms of a window in Embree, and what a ray meets of them.
+//! The meshes of a window in Embree, and what a ray meets of them.
 //!
 //! Embree tells which triangles a ray meets; the parameters are computed anew
 //! from the planes of those triangles, in f64, so that the bounds are as tight
-//! as the prisms are. They carry no proof: an answer outside of them is a
+//! as the hulls are. They carry no proof: an answer outside of them is a
 //! suspect and is judged again by `retrial`.
+
+use std::ops::Range;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -11,21 +13,25 @@ use rayon::prelude::*;
 use crate::embree::{self, Device, GeometryId, MeshHit, Ray32, SceneBuilder};
 use crate::math::{Bounds, Ray};
 
+use super::hull_list::{HullList, hulls};
 use super::mesh_frame::MeshFrame;
-use super::placed::{PlacedSolid, Window};
-use super::prism::{Prisms, Side, prisms};
+use super::window::{PlacedSolid, Window};
+use crate::check::judging::composed::composed_bounds;
 use crate::check::judging::open_ends::OpenEnds;
-use crate::check::judging::sandwich::{Crossings, SolidBounds, solid_bounds};
+use crate::check::judging::sandwich::{Crossings, SolidBounds, sheet_bounds, solid_bounds};
+use crate::solid::AnySolid;
+use crate::solid::tessellation::Fit;
 
-/// No prism stands for a solid.
+/// No hull stands for a solid.
 const NONE: u32 = u32::MAX;
 
-/// Both prisms of every solid of a window.
-pub(crate) struct Meshes {
-    /// The sides of each prism.
+/// Both meshes of every solid of a window.
+pub(crate) struct Meshes<'a> {
+    /// The sides of each hull.
     pub segments: u32,
     /// A box around each solid, in the world.
     pub boxes: Vec<Bounds>,
+    window: &'a Window,
     inner: Mesh,
     outer: Mesh,
     open_ends: Vec<OpenEnds>,
@@ -33,22 +39,22 @@ pub(crate) struct Meshes {
 }
 
 struct Mesh {
-    prisms: Prisms,
-    /// The prism of each solid, or [`NONE`].
-    prism_of: Vec<u32>,
+    hulls: HullList,
+    /// The hull of each solid, or [`NONE`].
+    hull_of: Vec<u32>,
     geometry: GeometryId,
 }
 
-/// What a ray meets of one solid's prisms.
+/// What a ray meets of one solid's meshes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
-    /// The solid's position in the window.
+    /// The position in the window of the solid's only or first leaf.
     pub solid: u32,
     /// The bounds of its first hit.
     pub bounds: SolidBounds,
 }
 
-/// A crossing of one prism.
+/// A crossing of one hull.
 pub(crate) struct Crossing {
     solid: u32,
     is_outer: bool,
@@ -56,72 +62,92 @@ pub(crate) struct Crossing {
     t: f64,
 }
 
+/// What a ray meets of the meshes of a leaf.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LeafCrossings {
+    /// Of the mesh around it.
+    pub outer: Crossings,
+    /// Of the mesh within it.
+    pub inner: Crossings,
+}
+
+impl LeafCrossings {
+    /// Neither is met.
+    pub const NONE: Self = Self {
+        outer: Crossings::NONE,
+        inner: Crossings::NONE,
+    };
+}
+
 /// What one thread needs to look along rays.
 #[derive(Default)]
 pub(crate) struct Scratch {
     hits: Vec<MeshHit>,
     crossings: Vec<Crossing>,
+    leaves: Vec<LeafCrossings>,
     /// What the last ray met, by solid.
     pub seen: Vec<Seen>,
 }
 
-impl Meshes {
+impl<'a> Meshes<'a> {
     /// Builds the meshes and Embree's hierarchy over them.
     ///
     /// # Errors
     /// When Embree refuses.
     pub fn new(
         device: &Device,
-        window: &Window,
+        window: &'a Window,
         frame: &MeshFrame,
         segments: u32,
     ) -> Result<Self, embree::Error> {
         let solids = window.solids.len();
         let mut builder = SceneBuilder::new(device)?;
         let mut mesh = |side| {
-            let prisms = prisms(window, frame, segments, side);
+            let hulls = hulls(window, frame, segments, side);
             let geometry =
-                builder.attach_collecting_triangles(&prisms.vertices, &prisms.triangles)?;
-            let mut prism_of = vec![NONE; solids];
-            for (prism, &solid) in prisms.solid_of.iter().enumerate() {
-                prism_of[solid as usize] = prism as u32;
+                builder.attach_collecting_triangles(&hulls.hull.vertices, &hulls.hull.triangles)?;
+            let mut hull_of = vec![NONE; solids];
+            for (hull, &solid) in hulls.solid_of.iter().enumerate() {
+                hull_of[solid as usize] = hull as u32;
             }
             Ok::<Mesh, embree::Error>(Mesh {
-                prisms,
-                prism_of,
+                hulls,
+                hull_of,
                 geometry,
             })
         };
-        let (inner, outer) = (mesh(Side::Inscribed)?, mesh(Side::Circumscribed)?);
+        let (inner, outer) = (mesh(Fit::Inscribed)?, mesh(Fit::Circumscribed)?);
         let of_solids = window.solids.par_iter();
         Ok(Self {
             segments,
             boxes: of_solids.clone().map(PlacedSolid::bounds).collect(),
             open_ends: of_solids.map(|solid| OpenEnds::new(solid, frame)).collect(),
+            window,
             inner,
             outer,
             scene: builder.commit()?,
         })
     }
 
-    /// Whether a solid has an inner prism: without one, its hits have no upper
-    /// bound.
+    /// Whether all leaves of a solid have an inner mesh: without one, its hits have no
+    /// upper bound.
     pub fn has_inner(&self, solid: u32) -> bool {
-        self.inner.prism_of[solid as usize] != NONE
+        let mut leaves = self.window.leaves_with(solid);
+        leaves.all(|leaf| self.inner.hull_of[leaf as usize] != NONE)
     }
 
-    /// Solids without an outer prism: nothing bounds the hits of a ray that
+    /// Solids without an outer hull: nothing bounds the hits of a ray that
     /// may meet their boxes.
     pub fn unbounded(&self) -> &[u32] {
-        &self.outer.prisms.unbounded
+        &self.outer.hulls.unbounded
     }
 
-    /// How many solids have no inner prism.
+    /// How many solids have no inner hull.
     pub fn empty(&self) -> usize {
-        self.inner.prisms.empty.len()
+        self.inner.hulls.empty.len()
     }
 
-    /// The triangles of a solid's outer, then of its inner prism.
+    /// The triangles of a solid's outer, then of its inner hull.
     pub fn triangles(&self, solid: u32) -> [Option<impl Iterator<Item = [DVec3; 3]> + '_>; 2] {
         [&self.outer, &self.inner].map(|mesh| mesh.triangles_of(solid))
     }
@@ -155,59 +181,80 @@ impl Meshes {
         }
         crossings.sort_unstable_by_key(|crossing| crossing.solid);
         scratch.seen.clear();
-        for of_solid in crossings.chunk_by(|one, other| one.solid == other.solid) {
-            let (mut outer, mut inner) = (Crossings::NONE, Crossings::NONE);
+        let mut left = crossings.as_slice();
+        while let Some(first) = left.first() {
+            let leaves = self.window.leaves_with(first.solid);
+            let count = left.partition_point(|crossing| crossing.solid < leaves.end);
+            let (of_solid, others) = left.split_at(count);
+            left = others;
+            scratch.leaves.clear();
+            scratch.leaves.resize(leaves.len(), LeafCrossings::NONE);
             for crossing in of_solid {
-                let prism = if crossing.is_outer {
-                    &mut outer
+                let leaf = &mut scratch.leaves[(crossing.solid - leaves.start) as usize];
+                let hull = if crossing.is_outer {
+                    &mut leaf.outer
                 } else {
-                    &mut inner
+                    &mut leaf.inner
                 };
-                prism.add(crossing.t, crossing.enters);
+                hull.add(crossing.t, crossing.enters);
             }
             if up_to < f32::INFINITY {
-                outer.leave_later();
-                inner.leave_later();
+                for leaf in &mut scratch.leaves {
+                    leaf.outer.leave_later();
+                    leaf.inner.leave_later();
+                }
             }
-            let solid = of_solid[0].solid;
             scratch.seen.push(Seen {
-                solid,
-                bounds: self.bounds(solid, ray, &outer, &inner),
+                solid: leaves.start,
+                bounds: self.bounds(leaves.start, ray, &scratch.leaves),
             });
         }
     }
 
-    /// The bounds that crossings of a solid's prisms make.
-    pub fn bounds(
-        &self,
-        solid: u32,
-        ray: &Ray32,
-        outer: &Crossings,
-        inner: &Crossings,
-    ) -> SolidBounds {
+    /// The leaves of each solid, in order.
+    pub fn leaves(&self) -> impl Iterator<Item = Range<u32>> + '_ {
+        self.window.leaves()
+    }
+
+    /// The bounds that crossings of the meshes of a solid's leaves make.
+    pub fn bounds(&self, solid: u32, ray: &Ray32, leaves: &[LeafCrossings]) -> SolidBounds {
+        let t_min = f64::from(ray.t_near);
+        if let Some(found) = self.window.composition_of(solid) {
+            return composed_bounds(&found.composition, leaves, t_min);
+        }
+        let LeafCrossings { outer, inner } = &leaves[0];
+        if let AnySolid::Disk(_) = self.window.solids[solid as usize].solid {
+            return sheet_bounds(outer, inner, t_min);
+        }
         let ends = &self.open_ends[solid as usize];
         let (origin, direction) = (point(ray.origin), point(ray.direction));
-        solid_bounds(outer, inner, f64::from(ray.t_near), |t| {
+        solid_bounds(outer, inner, t_min, |t| {
             ends.are_passed(origin, direction, t)
         })
+    }
+
+    /// Whether a solid is a composition.
+    pub fn is_composed(&self, solid: u32) -> bool {
+        self.window.composition_of(solid).is_some()
     }
 }
 
 impl Mesh {
     fn solid_of(&self, triangle: u32) -> u32 {
-        self.prisms.solid_of[triangle as usize / self.prisms.triangles_per_prism]
+        self.hulls.solid_of[self.hulls.hull_of(triangle)]
     }
 
     fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        let corners = self.prisms.triangles[triangle];
-        corners.map(|vertex| point(self.prisms.vertices[vertex as usize]))
+        let corners = self.hulls.hull.triangles[triangle];
+        corners.map(|vertex| point(self.hulls.hull.vertices[vertex as usize]))
     }
 
     fn triangles_of(&self, solid: u32) -> Option<impl Iterator<Item = [DVec3; 3]> + '_> {
-        let prism = self.prism_of[solid as usize];
-        let count = self.prisms.triangles_per_prism;
-        let first = prism as usize * count;
-        (prism != NONE).then(|| (first..first + count).map(|triangle| self.corners(triangle)))
+        let hull = self.hull_of[solid as usize];
+        (hull != NONE).then(|| {
+            let triangles = self.hulls.triangles_of(hull as usize);
+            triangles.map(|triangle| self.corners(triangle))
+        })
     }
 }
 

@@ -24,7 +24,7 @@ use crate::embree::Ray32;
 use crate::math::{Ray, power_of_two, power_of_two_below};
 use crate::oracle::{ExactVector, exact};
 
-use super::placed::Window;
+use super::window::Window;
 
 /// Sizes of coordinates in the mesh to which origins are held: some 250 to 500
 /// diagonals of the window.
@@ -132,7 +132,7 @@ mod tests {
             let bounds = Bounds::at(away).grown(size).rounded_outward();
             let frame = MeshFrame::new(&Window {
                 bounds: Some(bounds),
-                solids: Vec::new(),
+                ..Window::default()
             });
             let wished = away + random.direction() * (size * random.log_uniform(1e-6, 6.0));
             let direction = random.direction() * random.log_uniform(1e-9, 1e9);

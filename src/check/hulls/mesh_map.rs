@@ -1,7 +1,7 @@
 //! A placed solid in the space of the meshes, in f64 with bounds of the errors.
 //!
-//! With `M = 2^k L` of the placement's matrix `L` and `b` the image of `p0`, the
-//! solid's point `p0 + x` is `b + M x` in the mesh. A [`MeshMap`] holds `M`,
+//! With `M = 2^k L` of the placement's matrix `L` and `b` the image of the solid's
+//! *anchor* `p` ([`AnySolid::anchor`](crate::solid::AnySolid::anchor)), the point `p + x` is `b + M x` in the mesh. A [`MeshMap`] holds `M`,
 //! which is rounded from the exact product of all placements, so off by at most
 //! `u |M|` (Frobenius norm, u = 2^-53), and a computed inverse `G`, whose defect
 //! `‖M G - I‖` is measured:
@@ -11,6 +11,15 @@
 //! ```
 //!
 //! `b` is the f64 vector nearest to the exact image.
+//!
+//! A vertex `v` of the mesh is seen from the anchor as `x` with `M x = v - b`. For `q =
+//! fl(v - b)`, off by `u |q| + u |b|`, and `y = fl(G q)`, whose product adds `3 u |G| |q|`:
+//!
+//! ```text
+//! |y - x| <= |G| (4 u |q| + u |b| + 2 defect (|q| + |b| u))       if defect <= 1/4
+//! ```
+//!
+//! since `x = G (I + E)⁻¹ q` with `|E| <= defect`.
 
 use glam::{DMat3, DVec3};
 
@@ -18,7 +27,7 @@ use crate::math::{UNIT_ROUNDOFF, frobenius_norm};
 use crate::oracle::{ExactVector, exact};
 
 use super::mesh_frame::MeshFrame;
-use super::placed::{PlacedFrame, PlacedSolid};
+use super::window::{PlacedFrame, PlacedSolid};
 
 /// From the space of a placed prototype to the meshes and back; vectors only.
 #[derive(Clone, Debug)]
@@ -57,36 +66,40 @@ impl MeshMap {
     }
 }
 
-/// A placed solid as the meshes have it.
+/// Where the anchor of a placed solid is in the meshes' space.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::check) struct MeshSolid<'a> {
-    /// The solid as it was stated.
-    pub placed: &'a PlacedSolid,
-    /// Where it stands.
+pub(in crate::check) struct MeshAnchor<'a> {
+    /// To the mesh and back.
     pub map: &'a MeshMap,
-    /// `b`: where `p0` is in the mesh.
+    /// `b`.
     pub base: DVec3,
-    /// `p1 - p0` in the solid's own space, rounded.
-    pub axis: DVec3,
-    /// Its length, rounded.
-    pub length: f64,
-    /// The radius in the solid's own space.
-    pub radius: f64,
 }
 
-impl<'a> MeshSolid<'a> {
-    pub fn new(frame: &MeshFrame, map: &'a MeshMap, placed: &'a PlacedSolid) -> Self {
-        let cylinder = &placed.cylinder;
-        let in_world = placed.frame.exact.point(&ExactVector::new(cylinder.p0()));
+/// u, doubled for the roundings of the bounds.
+const UNIT: f64 = 2.0 * UNIT_ROUNDOFF;
+
+impl<'a> MeshAnchor<'a> {
+    /// The place of `anchor`, a point of the solid's own space.
+    pub fn new(frame: &MeshFrame, map: &'a MeshMap, placed: &PlacedSolid, anchor: DVec3) -> Self {
+        let in_world = placed.frame.exact.point(&ExactVector::new(anchor));
         let from_centre = &in_world - &ExactVector::new(frame.centre());
-        let axis = cylinder.p1() - cylinder.p0();
         Self {
-            placed,
             map,
             base: from_centre.rounded() * frame.scale(),
-            axis,
-            length: axis.length(),
-            radius: cylinder.radius(),
         }
+    }
+
+    /// `y` for a point of the mesh and the bound of its error, unless the map is too
+    /// rough for it.
+    pub fn seen(&self, vertex: DVec3) -> Option<(DVec3, f64)> {
+        let map = self.map;
+        if !(map.defect <= 0.25) {
+            return None;
+        }
+        let q = vertex - self.base;
+        let y = map.inverse * q;
+        let (reach, base) = (q.length(), self.base.length());
+        let defect = 2.5 * map.defect * (reach + UNIT * base);
+        Some((y, map.squeeze * (4.0 * UNIT * reach + UNIT * base + defect)))
     }
 }
