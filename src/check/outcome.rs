@@ -85,7 +85,8 @@ pub struct Convergence {
     /// Share of the rays in the silhouette band.
     pub band_percent: f64,
     /// The 99th percentile of the difference in `t` to the inscribed prism, as
-    /// a length over the radius of what is hit.
+    /// a length over the radius of what is hit; 0 where no difference was taken, as of
+    /// compositions.
     pub p99_dt_r: f64,
 }
 

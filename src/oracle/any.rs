@@ -17,7 +17,7 @@ use super::{
     cone_gap, cone_hits, cuboid_chord, cuboid_gap, disk_chord, disk_gap, gap, rounded_cone_gap,
     rounded_cone_hits, sphere_chord, sphere_gap,
 };
-use crate::math::Ray;
+use crate::math::{Ray, power_of_two};
 use crate::solid::{AnySolid, Part};
 
 /// The first point of the surface in the ray's range.
@@ -86,34 +86,48 @@ pub fn gap_of_any(solid: &AnySolid, ray: &Ray) -> f64 {
 
 /// The unit vector out of the solid at a hit of `ray`; `None` at an apex without a
 /// disc. That of a disk is the one it is stated with.
+///
+/// A hit's `t` is rounded, far beyond f64: what is nearer to the apex than 2^-500 of the
+/// way there is at it.
 #[must_use]
 pub fn outward_normal_of_any(solid: &AnySolid, ray: &Ray, hit: &TrueHit) -> Option<DVec3> {
     let from = |point: DVec3| {
         let x = &ExactVector::new(ray.origin) - &ExactVector::new(point);
         &x + &ExactVector::new(ray.direction).times(&hit.t)
     };
+    let is_at_apex = |points: [DVec3; 2], radii: [f64; 2]| {
+        points.into_iter().zip(radii).any(|(point, radius)| {
+            let (off, way) = (from(point), ExactVector::new(ray.direction).times(&hit.t));
+            let near = exact(power_of_two(-500));
+            radius == 0.0 && off.dot(&off) <= way.dot(&way) * &near * &near
+        })
+    };
     let outward = match solid {
         AnySolid::Cylinder(cylinder) => return Some(outward_normal(cylinder, ray, hit)),
         AnySolid::Cone(cone) => {
             let ends = [cone.p0(), cone.p1()];
-            let numbers = numbers_of(ends, [cone.radius0(), cone.radius1()], &ExactRay::new(ray));
-            let taper = Taper::new(&numbers, false);
+            let radii = [cone.radius0(), cone.radius1()];
+            let taper = Taper::new(&numbers_of(ends, radii, &ExactRay::new(ray)), false);
             match hit.part {
+                Part::Side if is_at_apex(ends, radii) => return None,
                 Part::Cap0 => taper.a.times(&exact(-1.0)),
                 Part::Cap1 => taper.a,
                 _ => taper.gradient(&from(cone.p0())),
             }
         }
-        AnySolid::RoundedCone(cone) => match hit.part {
-            Part::Cap0 => from(cone.p0()),
-            Part::Cap1 => from(cone.p1()),
-            _ => {
-                let ends = [cone.p0(), cone.p1()];
-                let numbers =
-                    numbers_of(ends, [cone.radius0(), cone.radius1()], &ExactRay::new(ray));
-                Taper::new(&numbers, true).gradient(&from(cone.p0()))
+        AnySolid::RoundedCone(cone) => {
+            let ends = [cone.p0(), cone.p1()];
+            let radii = [cone.radius0(), cone.radius1()];
+            match hit.part {
+                _ if is_at_apex(ends, radii) => return None,
+                Part::Cap0 => from(cone.p0()),
+                Part::Cap1 => from(cone.p1()),
+                _ => {
+                    let numbers = numbers_of(ends, radii, &ExactRay::new(ray));
+                    Taper::new(&numbers, true).gradient(&from(cone.p0()))
+                }
             }
-        },
+        }
         AnySolid::Sphere(sphere) => from(sphere.centre()),
         AnySolid::Cuboid(cuboid) => {
             let axes = cuboid.orientation().world_from_object();
@@ -221,6 +235,21 @@ mod tests {
             assert!((hit.t_f64() - t).abs() < 1e-14, "{hit:?}");
             assert!((found - normal).length() < 3e-15, "{found} for {normal}");
             assert!(gap_of_any(&solid, &ray) >= 0.0);
+        }
+    }
+
+    /// Through the apex at `t = 26/3` and `t = 0`.
+    #[test]
+    fn apices_have_no_normal() {
+        let round = RoundedCone::new(DVec3::ZERO, DVec3::Z * 975.0, 0.0, 780.0).unwrap();
+        let cone = Cone::new(DVec3::ZERO, DVec3::Z * 975.0, 0.0, 780.0, Caps::None).unwrap();
+        let direction = DVec3::new(180.0, 432.0, 351.0);
+        for solid in [AnySolid::from(round), cone.into()] {
+            for origin in [DVec3::new(-1560.0, -3744.0, -3042.0), DVec3::ZERO] {
+                let ray = Ray::new(origin, direction);
+                let hit = first_hit_of_any(&solid, &ray).expect("a hit");
+                assert_eq!(outward_normal_of_any(&solid, &ray, &hit), None, "{ray:?}");
+            }
         }
     }
 }
