@@ -237,7 +237,8 @@ pub(crate) fn sheet_bounds(outer: &Crossings, inner: &Crossings, t_min: f64) -> 
         },
         inner: None,
         last: outer.last_leave,
-        is_odd: is_through && (outer.is_none() || inner.last_leave > outer.last_leave),
+        // Which of sheets and outer mesh is farther out does not matter.
+        is_odd: is_through && outer.is_none(),
     }
 }
 
@@ -282,6 +283,25 @@ mod tests {
         let bounds = solid_bounds(&outer, &inner, 0.0, |t| t > 2.5);
         assert_eq!(bounds.interval.high, 4.0);
         assert_eq!(bounds.interval.low, 1.0);
+    }
+
+    #[test]
+    fn sheets_tell_only_of_rays_through_both() {
+        let (enter, leave) = (true, false);
+        let sheets = |outer: &[(f64, bool)], inner: &[(f64, bool)]| {
+            let bounds = sheet_bounds(&crossings(outer), &crossings(inner), 0.5);
+            assert!(!bounds.is_odd, "{bounds:?}");
+            (bounds.interval.low, bounds.interval.high)
+        };
+        let outer = [(1.0, enter), (4.0, leave)];
+        // The sheets may be farther out than the mesh around the disk.
+        assert_eq!(sheets(&outer, &[(0.9, enter), (4.1, leave)]), (1.0, 4.1));
+        assert_eq!(sheets(&outer, &[(2.0, enter)]), (1.0, f64::INFINITY));
+        assert_eq!(sheets(&outer, &[(2.0, leave)]), (1.0, f64::INFINITY));
+        assert_eq!(sheets(&outer[1..], &[(2.0, leave)]), (0.5, f64::INFINITY));
+        assert_eq!(sheets(&[], &[]), (f64::INFINITY, f64::INFINITY));
+        let odd = crossings(&[(2.0, enter), (3.0, leave)]);
+        assert!(sheet_bounds(&Crossings::NONE, &odd, 0.5).is_odd);
     }
 
     #[test]
