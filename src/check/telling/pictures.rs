@@ -4,8 +4,8 @@
 //! meet. An inscribed prism is inside its solid, so that a ray can meet the
 //! prisms of no others, and the picture is that of the whole scene's mesh
 //! (beyond the first [`DEPTHS`] solids on a ray nothing is looked for).
-//! Compositions have no mesh of their own: where one is met first, all pictures are
-//! empty.
+//! Compositions have no mesh of their own: where one is met first, it is shown in its
+//! own picture alone.
 //!
 //! A difference in `t` is shown in units of the chord error. In the solid's own
 //! space, a wall met with the unit normal `n` by a direction `d` that is
@@ -57,6 +57,8 @@ pub struct Pictures {
     /// Pixels in which both are hit, in which the solids alone are, and the mesh
     /// alone.
     pub counts: [u64; 3],
+    /// Pixels in which a composition is hit first, which has no mesh.
+    pub composed: u64,
 }
 
 /// Why there are no pictures.
@@ -124,8 +126,9 @@ pub fn pictures(
     let shown: Vec<Shown> = pixels
         .par_iter()
         .map(|(ray, hits)| {
-            if hits.first().is_some_and(is_composed) {
-                return Shown::NOTHING;
+            if let Some(hit) = hits.first().filter(|hit| is_composed(hit)) {
+                let color = color_of(tracer.scene(), hit);
+                return Shown::composition(shade(color, hit.normal, ray));
             }
             let exact = hits.first().and_then(|hit| {
                 let solid = solids.get(&key(hit))?;
@@ -155,6 +158,7 @@ pub fn pictures(
         segments,
         prisms: ordered.len(),
         counts: [0, 1, 2].map(count),
+        composed: count(COMPOSED),
     }))
 }
 
@@ -216,8 +220,12 @@ fn placed(scene: &Scene, hit: &Hit) -> Placed {
         solid,
         object_from_world: world_from_object.inverse(),
         world_from_object,
-        color: scene.materials[usize::from(hit.material.0)].color,
+        color: color_of(scene, hit),
     }
+}
+
+fn color_of(scene: &Scene, hit: &Hit) -> DVec3 {
+    scene.materials[usize::from(hit.material.0)].color
 }
 
 /// The prototype at the end of a path and its placement in the world, rounded.
@@ -239,24 +247,30 @@ const SOLID_ALONE: [u8; 4] = [0xe6, 0x9f, 0x00, 0xff];
 /// The mesh is hit where nothing is.
 const MESH_ALONE: [u8; 4] = [0x9b, 0x30, 0xff, 0xff];
 
+/// A composition is hit first.
+const COMPOSED: usize = 3;
+
 /// A pixel of each picture.
 struct Shown {
     analytic: [u8; 4],
     mesh: [u8; 4],
     distance: [u8; 4],
     normal: [u8; 4],
-    /// 0: both hit; 1: the solid alone; 2: the mesh alone.
+    /// 0: both hit; 1: the solid alone; 2: the mesh alone; or [`COMPOSED`].
     case: Option<usize>,
 }
 
 impl Shown {
-    const NOTHING: Self = Self {
-        analytic: NOTHING,
-        mesh: NOTHING,
-        distance: NOTHING,
-        normal: NOTHING,
-        case: None,
-    };
+    /// Of a solid that has no mesh.
+    fn composition(analytic: [u8; 4]) -> Self {
+        Self {
+            analytic,
+            mesh: NOTHING,
+            distance: NOTHING,
+            normal: NOTHING,
+            case: Some(COMPOSED),
+        }
+    }
 
     fn of(
         ray: &Ray,

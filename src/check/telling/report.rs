@@ -253,6 +253,12 @@ fn show(page: &mut Page, pictures: &Pictures) {
         "{} prisms; both are met in {both} pixels, the solid alone in {solid}, the mesh alone in {mesh}. The mesh's vertices are rounded to f32.",
         pictures.prisms
     ));
+    if pictures.composed > 0 {
+        page.note(&format!(
+            "Unions, intersections and differences have no mesh of their own; they are met first in {} pixels.",
+            pictures.composed
+        ));
+    }
 }
 
 fn convergence_figure(outcome: &Outcome) -> String {
