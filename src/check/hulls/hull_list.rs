@@ -64,6 +64,13 @@ impl HullList {
         self.triangles_up_to.partition_point(|&end| end <= triangle)
     }
 
+    /// Whether a triangle is in the first half of those of its hull: of the sheets of a
+    /// disk, in the one over it.
+    pub fn is_in_first_half(&self, triangle: u32) -> bool {
+        let all = self.triangles_of(self.hull_of(triangle));
+        2 * (triangle as usize - all.start) < all.len()
+    }
+
     /// The triangles of a hull.
     pub fn triangles_of(&self, hull: usize) -> Range<usize> {
         let end = |hull: usize| self.triangles_up_to[hull] as usize;

@@ -58,6 +58,7 @@ pub(crate) struct Seen {
 pub(crate) struct Crossing {
     solid: u32,
     is_outer: bool,
+    /// Whether it is a way in; of the sheets of a disk, one through that over it.
     enters: bool,
     t: f64,
 }
@@ -67,7 +68,8 @@ pub(crate) struct Crossing {
 pub(crate) struct LeafCrossings {
     /// Of the mesh around it.
     pub outer: Crossings,
-    /// Of the mesh within it.
+    /// Of the mesh within it, or of the sheets of a disk: through that over it are the
+    /// ways in, through that under it the ways out.
     pub inner: Crossings,
 }
 
@@ -171,10 +173,16 @@ impl<'a> Meshes<'a> {
             let normal = (b - a).cross(c - a);
             let along = normal.dot(direction);
             if along != 0.0 {
+                let solid = mesh.solid_of(hit.primitive);
+                let enters = if !is_outer && self.is_disk(solid) {
+                    mesh.hulls.is_in_first_half(hit.primitive)
+                } else {
+                    along < 0.0
+                };
                 crossings.push(Crossing {
-                    solid: mesh.solid_of(hit.primitive),
+                    solid,
                     is_outer,
-                    enters: along < 0.0,
+                    enters,
                     t: normal.dot(a - origin) / along,
                 });
             }
@@ -223,7 +231,7 @@ impl<'a> Meshes<'a> {
             return composed_bounds(&found.composition, leaves, t_min);
         }
         let LeafCrossings { outer, inner } = &leaves[0];
-        if let AnySolid::Disk(_) = self.window.solids[solid as usize].solid {
+        if self.is_disk(solid) {
             return sheet_bounds(outer, inner, t_min);
         }
         let ends = &self.open_ends[solid as usize];
@@ -231,6 +239,11 @@ impl<'a> Meshes<'a> {
         solid_bounds(outer, inner, t_min, |t| {
             ends.are_passed(origin, direction, t)
         })
+    }
+
+    /// Whether a solid is a disk, with sheets in place of an inner mesh.
+    pub fn is_disk(&self, solid: u32) -> bool {
+        matches!(self.window.solids[solid as usize].solid, AnySolid::Disk(_))
     }
 
     /// Whether a solid is a composition.

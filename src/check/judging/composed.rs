@@ -24,8 +24,10 @@
 //! - *starting surely inside*, not before it is perhaps outside, nor after `o`;
 //! - else nothing but `t_min` is below it, and it is not after the later of `i` and `o`.
 //!
-//! A lower bound of these is a lower bound of a leaf's entry or exit, and an upper bound
-//! likewise, so that the way they were rounded is right here too.
+//! Exact crossings come rounded so that the sets of each leaf that are surely inside are
+//! smaller by less than an ulp at each end, and those that are perhaps inside greater
+//! (`retrial`). All three operations keep that order, so the bounds are right, if wider by
+//! as much.
 //!
 //! Of what is seen in part (`sandwich`) the sets are not known beyond, and leaves around
 //! the start of the ray are not seen, so answers about compositions are not settled by it.
@@ -57,13 +59,16 @@ impl Within {
             } else {
                 one.enter
             };
-            // A line that comes in and is not seen to leave is told by `is_odd`.
-            smallvec![(start, one.last_leave.max(start))]
+            smallvec![(start, one.last_leave)]
         };
-        Self {
-            surely: span(&crossings.inner),
-            perhaps: span(&crossings.outer),
-        }
+        let mut surely = span(&crossings.inner);
+        surely.retain(|span| span.0 <= span.1);
+        // A line that comes in and is not seen to leave is told by `is_odd`.
+        let mut perhaps = span(&crossings.outer);
+        perhaps
+            .iter_mut()
+            .for_each(|span| span.1 = span.1.max(span.0));
+        Self { surely, perhaps }
     }
 
     /// In a composition, whose leaves come in the order of their crossings.

@@ -26,7 +26,7 @@
 //! |k| c (1 / cos(φ/2) - 1)
 //! ```
 //!
-//! of the plane of those at the ends. From half a turn on nothing is said.
+//! of the plane of those at the ends. From `φ` of [`MOST_TURNED`] on nothing is said.
 
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -35,7 +35,7 @@ use super::surface::angle;
 use crate::math::UNIT_ROUNDOFF;
 use crate::solid::{AnySolid, Caps, Part};
 
-/// Half of a turn over which a cone's normal is bounded, in radians.
+/// The angle `φ` up to which a cone's normal is bounded, in radians.
 const MOST_TURNED: f64 = 1.5;
 
 /// Part of a ray in a solid's own space.

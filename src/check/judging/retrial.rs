@@ -23,7 +23,10 @@
 //!
 //! The bounds that come of it are rounded so that comparing them with an f64
 //! decides as the exact number would: a lower bound to the least f64 that is not
-//! below it, an upper one to the greatest that is not above.
+//! below it, an upper one to the greatest that is not above. Of a composition the
+//! parameters are ends of sets (`composed`), and whether two of these have a point in common
+//! must not come of rounding: where a line is surely inside is rounded inward, and where
+//! it perhaps is, outward.
 
 use glam::DVec3;
 
@@ -104,23 +107,18 @@ impl ExactCrossings {
         }
     }
 
-    /// As numbers: an outer prism's ways in are lower bounds and its ways out
-    /// upper ones; of an inner prism it is the other way round.
-    fn rounded(&self, is_outer: bool) -> Crossings {
-        let round = |t: &Fraction, is_lower: bool| {
-            if is_lower {
-                t.rounded_up()
-            } else {
-                t.rounded_down()
-            }
+    /// As numbers; whether ways in, and ways out, are rounded up.
+    fn rounded(&self, [is_in_up, is_out_up]: [bool; 2]) -> Crossings {
+        let round = |t: &Fraction, up: bool| {
+            if up { t.rounded_up() } else { t.rounded_down() }
         };
         let mut crossings = Crossings::NONE;
         if let Some(t) = &self.enter {
-            crossings.enter = round(t, is_outer);
+            crossings.enter = round(t, is_in_up);
         }
         if let (Some(leave), Some(last)) = (&self.leave, &self.last_leave) {
-            crossings.leave = round(leave, !is_outer);
-            crossings.last_leave = round(last, !is_outer);
+            crossings.leave = round(leave, is_out_up);
+            crossings.last_leave = round(last, is_out_up);
             // What is first stays first, also when both round to one number.
             let starts_inside = self
                 .enter
@@ -136,6 +134,14 @@ impl ExactCrossings {
     }
 }
 
+/// The crossings of a leaf of a composition.
+fn as_sets(outer: &ExactCrossings, inner: &ExactCrossings) -> LeafCrossings {
+    LeafCrossings {
+        outer: outer.rounded([false, true]),
+        inner: inner.rounded([true, false]),
+    }
+}
+
 /// The exact bounds of every solid that the ray may meet.
 pub(crate) fn retry(meshes: &Meshes, ray32: &Ray32, ray: &Ray) -> Vec<Seen> {
     let line = Line::new(ray32);
@@ -145,13 +151,24 @@ pub(crate) fn retry(meshes: &Meshes, ray32: &Ray32, ray: &Ray) -> Vec<Seen> {
         if !boxes.any(|bounds| may_meet(bounds, ray)) {
             continue;
         }
+        let is_composed = meshes.is_composed(leaves.start);
         let crossings: Vec<LeafCrossings> = leaves
             .clone()
             .map(|leaf| {
                 let [outer, inner] = meshes.triangles(leaf);
-                LeafCrossings {
-                    outer: line.crossings(outer).rounded(true),
-                    inner: line.crossings(inner).rounded(false),
+                let outer = line.crossings(outer);
+                if meshes.is_disk(leaf) {
+                    LeafCrossings {
+                        outer: outer.rounded([true, false]),
+                        inner: line.sheet_crossings(inner).rounded([false, false]),
+                    }
+                } else if is_composed {
+                    as_sets(&outer, &line.crossings(inner))
+                } else {
+                    LeafCrossings {
+                        outer: outer.rounded([true, false]),
+                        inner: line.crossings(inner).rounded([false, true]),
+                    }
                 }
             })
             .collect();
@@ -190,6 +207,23 @@ impl Line {
         for corners in triangles.into_iter().flatten() {
             if let Some((t, enters)) = self.crossing(corners) {
                 crossings.add(t, enters);
+            }
+        }
+        crossings
+    }
+
+    /// The crossings of the sheet over a disk, as ways in, and of that under it, as ways
+    /// out.
+    fn sheet_crossings(
+        &self,
+        triangles: Option<impl Iterator<Item = [DVec3; 3]>>,
+    ) -> ExactCrossings {
+        let triangles: Vec<_> = triangles.into_iter().flatten().collect();
+        let (over, under) = triangles.split_at(triangles.len() / 2);
+        let mut crossings = ExactCrossings::default();
+        for (sheet, is_over) in [(over, true), (under, false)] {
+            for (t, _) in sheet.iter().filter_map(|&corners| self.crossing(corners)) {
+                crossings.add(t, is_over);
             }
         }
         crossings
@@ -244,5 +278,55 @@ impl Line {
             is_right |= volume < -16.0 * UNIT_ROUNDOFF * size;
         }
         is_left && is_right
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::judging::composed::composed_bounds;
+    use crate::solid::{Composition, Sphere};
+
+    const ULP: f64 = f64::EPSILON;
+
+    /// `1 + tenths ulp / 10`.
+    fn beside_one(tenths: f64) -> Fraction {
+        Fraction {
+            numerator: exact(10.0) + exact(tenths * ULP),
+            denominator: exact(10.0),
+        }
+    }
+
+    fn from_to(enter: Fraction, leave: Fraction) -> ExactCrossings {
+        let mut crossings = ExactCrossings::default();
+        crossings.add(enter, true);
+        crossings.add(leave, false);
+        crossings
+    }
+
+    /// Two leaves, of which the line leaves one and enters the other between two
+    /// neighbours of f64: in common they have nothing or something, as the exact numbers do.
+    #[test]
+    fn rounding_makes_no_common_points_and_loses_none() {
+        let solid = || Composition::Solid(Sphere::new(DVec3::ZERO, 1.0).unwrap().into());
+        let common = Composition::Intersection(vec![solid(), solid()]);
+        let at = |t: f64| Fraction {
+            numerator: exact(t),
+            denominator: exact(1.0),
+        };
+        let bounds = |leave: f64, enter: f64| {
+            let first = [
+                from_to(at(0.25), beside_one(leave)),
+                from_to(at(0.5), beside_one(leave)),
+            ];
+            let second = [
+                from_to(beside_one(enter), at(3.0)),
+                from_to(beside_one(enter), at(2.0)),
+            ];
+            let leaves = [first, second].map(|[outer, inner]| as_sets(&outer, &inner));
+            composed_bounds(&common, &leaves, 0.0).interval
+        };
+        assert_eq!(bounds(3.0, 6.0).high, f64::INFINITY);
+        assert_eq!(bounds(6.0, 3.0).low, 1.0);
     }
 }

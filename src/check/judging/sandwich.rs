@@ -45,10 +45,10 @@
 //! certain, a certain exit still is a hit: the upper bound is `b`.
 //!
 //! *Disks* have no inside; in place of an inner prism they have two sheets (`hull`). A
-//! ray that comes in through one from `t_min` on and goes out through the other meets
-//! the disk between the two, and anything else of the sheets tells nothing. The mesh
-//! around a disk is as any: the disk is not met before it is entered, nor after it
-//! is left.
+//! ray that meets both from `t_min` on, whichever first, meets the disk between the two,
+//! and anything else of the sheets tells nothing. The mesh around a disk is as any: the
+//! disk is not met before it is entered, nor after it is left. The sheets may be within
+//! that mesh or beyond it.
 //!
 //! *Many solids.* The first hit of all is between the least lower and the least
 //! upper bound.
@@ -216,9 +216,11 @@ pub(crate) fn solid_bounds(
     }
 }
 
-/// The bounds for a disk, `inner` being its sheets.
-pub(crate) fn sheet_bounds(outer: &Crossings, inner: &Crossings, t_min: f64) -> SolidBounds {
-    let is_through = inner.enter <= inner.last_leave && inner.last_leave < LATER;
+/// The bounds for a disk. The ways in of `sheets` are those through the one over the disk,
+/// the ways out those through the one under it.
+pub(crate) fn sheet_bounds(outer: &Crossings, sheets: &Crossings, t_min: f64) -> SolidBounds {
+    let both = sheets.enter.max(sheets.leave);
+    let is_through = both < LATER;
     let low = if outer.is_none() {
         f64::INFINITY
     } else if outer.starts_inside() {
@@ -230,14 +232,13 @@ pub(crate) fn sheet_bounds(outer: &Crossings, inner: &Crossings, t_min: f64) -> 
         interval: Interval {
             low,
             high: if is_through {
-                inner.last_leave
+                both.min(outer.last_leave)
             } else {
                 f64::INFINITY
             },
         },
         inner: None,
         last: outer.last_leave,
-        // Which of sheets and outer mesh is farther out does not matter.
         is_odd: is_through && outer.is_none(),
     }
 }
@@ -286,22 +287,22 @@ mod tests {
     }
 
     #[test]
-    fn sheets_tell_only_of_rays_through_both() {
-        let (enter, leave) = (true, false);
-        let sheets = |outer: &[(f64, bool)], inner: &[(f64, bool)]| {
-            let bounds = sheet_bounds(&crossings(outer), &crossings(inner), 0.5);
-            assert!(!bounds.is_odd, "{bounds:?}");
-            (bounds.interval.low, bounds.interval.high)
+    fn disk_is_met_between_both_sheets() {
+        let (over, under) = (true, false);
+        let outer = [(1.0, true), (4.0, false)];
+        let high = |sheets: &[(f64, bool)]| {
+            let bounds = sheet_bounds(&crossings(&outer), &crossings(sheets), 0.5);
+            assert!(!bounds.is_odd, "{sheets:?}");
+            assert_eq!(bounds.interval.low, 1.0);
+            bounds.interval.high
         };
-        let outer = [(1.0, enter), (4.0, leave)];
-        // The sheets may be farther out than the mesh around the disk.
-        assert_eq!(sheets(&outer, &[(0.9, enter), (4.1, leave)]), (1.0, 4.1));
-        assert_eq!(sheets(&outer, &[(2.0, enter)]), (1.0, f64::INFINITY));
-        assert_eq!(sheets(&outer, &[(2.0, leave)]), (1.0, f64::INFINITY));
-        assert_eq!(sheets(&outer[1..], &[(2.0, leave)]), (0.5, f64::INFINITY));
-        assert_eq!(sheets(&[], &[]), (f64::INFINITY, f64::INFINITY));
-        let odd = crossings(&[(2.0, enter), (3.0, leave)]);
-        assert!(sheet_bounds(&Crossings::NONE, &odd, 0.5).is_odd);
+        assert_eq!(high(&[(2.0, over), (3.0, under)]), 3.0);
+        assert_eq!(high(&[(2.0, under), (3.0, over)]), 3.0);
+        // Sheets beyond the mesh around the disk.
+        assert_eq!(high(&[(0.9, over), (4.1, under)]), 4.0);
+        // Twice through a sheet that is bent.
+        assert_eq!(high(&[(2.0, under), (3.0, under)]), f64::INFINITY);
+        assert_eq!(high(&[(2.0, over), (3.0, over), (3.5, under)]), 3.5);
     }
 
     #[test]

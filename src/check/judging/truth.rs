@@ -196,23 +196,13 @@ fn displaced_disk(
         let sheet = Disk::new(up, own.normal(), own.radius() - leeway).ok()?;
         let hits = oracle::placed_hits_of_any(&sheet.into(), &placement, ray);
         if let Some(hit) = hits.first() {
-            let is_first = inner.is_none();
-            inner.add(hit.t_f64(), is_first);
+            inner.add(hit.t_f64(), side > 0.0);
         }
     }
     Some(LeafCrossings {
         outer: crossings(&displaced(&own.into(), leeway)?, &placement, ray),
-        inner: in_order(inner),
+        inner,
     })
-}
-
-/// The crossings of two sheets, whichever is met first.
-fn in_order(mut sheets: Crossings) -> Crossings {
-    if sheets.leave < sheets.enter {
-        (sheets.enter, sheets.leave, sheets.last_leave) =
-            (sheets.leave, sheets.enter, sheets.enter);
-    }
-    sheets
 }
 
 /// Where the ray enters a closed solid and where it leaves it.

@@ -12,7 +12,10 @@
 //! *Disks* have no inside. Around one is a flat cylinder. In place of a mesh within there
 //! are two polygons, or *sheets*, one over and one under the disk, with all corners in
 //! the infinite cylinder of the disk's radius: a line from one through the other meets the
-//! disk between them, since the cylinder is convex.
+//! disk between them, since the cylinder is convex. Rounding bends a sheet, so that a
+//! line may come in and go out again through the same one. So it is the sheet that
+//! counts, not the side of it that is met: the triangles of the one over the disk are the
+//! first half of all.
 
 mod displaced;
 mod filter;

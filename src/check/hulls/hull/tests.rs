@@ -174,6 +174,11 @@ fn disks_have_sheets_on_both_sides() {
             let (over, under) = sides.split_at(sides.len() / 2);
             assert!(over.iter().all(|side| *side == Some(1.0)), "case {case}");
             assert!(under.iter().all(|side| *side == Some(-1.0)), "case {case}");
+            // And so are the triangles.
+            let halves = sheets.triangles.split_at(sheets.triangles.len() / 2);
+            let is_over = |corner: &u32| (*corner as usize) < over.len();
+            assert!(halves.0.iter().flatten().all(is_over), "case {case}");
+            assert!(!halves.1.iter().flatten().any(is_over), "case {case}");
             assert!(volume(&outer) > 0.0);
         });
     }
