@@ -1,5 +1,5 @@
 //! `cyltrace trace --points`: tables of points in, tables of the solids that hold them
-//! out; and that commands which know cylinders only refuse other solids.
+//! out.
 
 use std::fs;
 use std::path::Path;
@@ -148,20 +148,4 @@ fn rays_and_points_and_all_do_not_go_together() {
     let (code, _, err) = cyltrace(directory.path(), &points[..4]);
     assert_eq!(code, 2);
     assert!(err.contains("--rays <FILE>|--points <FILE>"), "{err}");
-}
-
-#[test]
-fn commands_that_know_cylinders_only_refuse_other_solids() {
-    let directory = workplace(POINTS);
-    for arguments in [
-        &["check", "scene.toml", "--rays", "10"][..],
-        &["tessellate", "scene.toml", "-o", "scene.obj"],
-    ] {
-        let (code, _, err) = cyltrace(directory.path(), arguments);
-        assert_eq!(code, 2, "{err}");
-        assert!(
-            err.contains("the scene holds 3 solids that are no cylinders"),
-            "{err}"
-        );
-    }
 }
