@@ -1,10 +1,12 @@
 //! `cyltrace trace --points`: tables of points in, tables of the solids that hold them
 //! out.
 
-use std::fs;
-use std::path::Path;
+#[path = "support/program.rs"]
+mod program;
 
-use assert_cmd::Command;
+use std::fs;
+
+use program::{cyltrace, folder_of};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -54,22 +56,7 @@ point,inside,prototype,solid,primitive,instance
 ";
 
 fn workplace(points: &str) -> TempDir {
-    let directory = tempfile::tempdir().expect("directory");
-    fs::write(directory.path().join("scene.toml"), SCENE).expect("written");
-    fs::write(directory.path().join("points.csv"), points).expect("written");
-    directory
-}
-
-fn cyltrace(directory: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let output = Command::cargo_bin("cyltrace")
-        .expect("the program is built")
-        .current_dir(directory)
-        .args(arguments)
-        .output()
-        .expect("the program runs");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8 output");
-    let code = output.status.code().expect("no signal");
-    (code, text(output.stdout), text(output.stderr))
+    folder_of(&[("scene.toml", SCENE), ("points.csv", points)])
 }
 
 #[test]
