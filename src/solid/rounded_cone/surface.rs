@@ -47,8 +47,8 @@ const LONGER: f64 = power_of_two(600);
 /// ball is that touches the surface there, from `p0` to `p1`; `u` is a cylinder's. If
 /// the centres coincide, the axis is taken along z.
 pub(super) fn surface_point(solid: &RoundedCone, part: Part, from_p0: DVec3) -> SurfacePoint {
-    let (r0, r1) = (solid.radius0, solid.radius1);
-    let a = solid.p1 - solid.p0;
+    let (r0, r1) = (solid.ends.radius0, solid.ends.radius1);
+    let a = solid.ends.axis();
     let is_short = a.abs().max_element() < SHORT;
     let axis = if a == DVec3::ZERO {
         DVec3::Z
@@ -76,11 +76,11 @@ pub(super) fn surface_point(solid: &RoundedCone, part: Part, from_p0: DVec3) -> 
         }
     };
     match (part, solid.taper()) {
-        (Part::Cap0, _) => sphere(solid.p0, r0, from_p0, 0.0),
-        (Part::Cap1, _) => sphere(solid.p1, r1, from_p0 - a, 1.0),
+        (Part::Cap0, _) => sphere(solid.ends.p0, r0, from_p0, 0.0),
+        (Part::Cap1, _) => sphere(solid.ends.p1, r1, from_p0 - a, 1.0),
         (Part::Side, Some(_)) if is_short => {
             let v = (from_p0 * LONGER).dot(axis) / axis.length_squared();
-            sphere(solid.p0, r0, from_p0, v.clamp(0.0, 1.0))
+            sphere(solid.ends.p0, r0, from_p0, v.clamp(0.0, 1.0))
         }
         (Part::Side, Some(taper)) => {
             let (aa, delta) = (a.length_squared(), r1 - r0);
@@ -88,7 +88,7 @@ pub(super) fn surface_point(solid: &RoundedCone, part: Part, from_p0: DVec3) -> 
             let along = from_p0.dot(a) + around.distance * delta * length / root;
             let v = (along / aa).clamp(0.0, 1.0);
             let normal = (around.outward * root - around.axis * delta) / length;
-            let point = solid.p0 + (a * v + normal * (r0 + delta * v));
+            let point = solid.ends.p0 + (a * v + normal * (r0 + delta * v));
             SurfacePoint {
                 point,
                 error: UNIT_ROUNDOFF * (point.length() + 5.0 * length + 20.0 * r0.max(r1)),
