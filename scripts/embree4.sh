@@ -42,8 +42,8 @@ fetch_headers() {
         -o Acquire::Languages=none -o APT::Sandbox::User=$(id -un)"
     $apt update
     (cd "$1/apt" && $apt download "libembree-dev/$suite")
-    dpkg-deb -x "$1"/apt/libembree-dev_*.deb "$1/apt/root"
-    mv "$1/apt/root/usr/include" "$1/include"
+    dpkg-deb -x "$1"/apt/libembree-dev_*.deb "$1/apt/unpacked"
+    mv "$1/apt/unpacked/usr/include" "$1/include"
     rm -rf "$1/apt"
 }
 
@@ -51,8 +51,8 @@ fetch_headers() {
 fetch_library() {
     python3 -m pip --version >/dev/null 2>&1 || fail "python3 with pip is needed"
     python3 -m pip --quiet download --no-deps --only-binary :all: --dest "$1/wheel" "$wheel"
-    python3 -m zipfile -e "$1"/wheel/embreex-*.whl "$1/wheel/root"
-    mv "$1/wheel/root/embreex.libs" "$1/lib"
+    python3 -m zipfile -e "$1"/wheel/embreex-*.whl "$1/wheel/unpacked"
+    mv "$1/wheel/unpacked/embreex.libs" "$1/lib"
     (cd "$1/lib" && ln -s libembree4-*.so.4 libembree4.so)
     rm -rf "$1/wheel"
 }

@@ -1,16 +1,12 @@
 //! The command line's own surface: help texts, usage errors, exit codes.
 
-use assert_cmd::Command;
+#[path = "support/program.rs"]
+mod program;
+
+use std::path::Path;
 
 fn cyltrace(arguments: &[&str]) -> (i32, String, String) {
-    let output = Command::cargo_bin("cyltrace")
-        .expect("the program is built")
-        .args(arguments)
-        .output()
-        .expect("the program runs");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8 output");
-    let code = output.status.code().expect("no signal");
-    (code, text(output.stdout), text(output.stderr))
+    program::cyltrace(Path::new("."), arguments)
 }
 
 #[test]

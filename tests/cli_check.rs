@@ -1,14 +1,17 @@
 //! `cyltrace check`, as users run it.
 
+#[path = "support/program.rs"]
+mod program;
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
 use cyltrace::math::Random;
 use cyltrace::solid::tessellation::inscribed_prism;
 use cyltrace::solid::{Caps, Cylinder};
 use glam::DVec3;
+use program::{cyltrace, folder_of};
 use serde_json::Value;
 
 /// Two capped cylinders that do not touch.
@@ -26,22 +29,9 @@ fn cylinders() -> [Cylinder; 2] {
     ]
 }
 
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let output = Command::cargo_bin("cyltrace")
-        .expect("the program is built")
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .expect("the program runs");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8 output");
-    let code = output.status.code().expect("no signal");
-    (code, text(output.stdout), text(output.stderr))
-}
-
 /// A folder with the scene, `count` rays to points around it, and the hits of
 /// `cyltrace trace`.
 fn folder(count: u64) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().expect("a directory");
     let mut rays = String::from("ox,oy,oz,dx,dy,dz\n");
     for index in 0..count {
         let mut random = Random::new(3, index);
@@ -51,8 +41,7 @@ fn folder(count: u64) -> tempfile::TempDir {
         let cells = [o.x, o.y, o.z, d.x, d.y, d.z].map(|x| format!("{x:?}"));
         writeln!(rays, "{}", cells.join(",")).unwrap();
     }
-    fs::write(folder.path().join("rays.csv"), rays).unwrap();
-    fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
+    let folder = folder_of(&[("scene.toml", SCENE), ("rays.csv", &rays)]);
     let arguments = [
         "trace",
         "scene.toml",
@@ -62,7 +51,7 @@ fn folder(count: u64) -> tempfile::TempDir {
         "hits.csv",
         "--quiet",
     ];
-    assert_eq!(run(folder.path(), &arguments).0, 0);
+    assert_eq!(cyltrace(folder.path(), &arguments).0, 0);
     folder
 }
 
@@ -103,7 +92,7 @@ fn check_json_has_the_promised_keys_and_the_scene_holds() {
         "--json",
         "-",
     ];
-    let (code, out, err) = run(folder.path(), &arguments);
+    let (code, out, err) = cyltrace(folder.path(), &arguments);
     assert_eq!(code, 0, "{err}{out}");
     let figures: Value = serde_json::from_str(&out).expect("nothing but JSON");
     assert_eq!(figures["violations"], 0);
@@ -165,7 +154,7 @@ fn check_report_is_written_whole_and_needs_nothing_else() {
         "--report",
         "new/report",
     ];
-    let (code, out, err) = run(folder.path(), &arguments);
+    let (code, out, err) = cyltrace(folder.path(), &arguments);
     assert_eq!(code, 0, "{err}{out}");
     assert!(out.contains("holds") && out.contains("index.html"), "{out}");
     let names: Vec<_> = fs::read_dir(folder.path().join("new/report"))
@@ -193,7 +182,7 @@ fn hits_rounded_to_f32_hold() {
     let folder = folder(3000);
     let rounded = told(folder.path(), |_, t| t.map(|t| f64::from(t as f32)));
     fs::write(folder.path().join("told.csv"), rounded).unwrap();
-    let (code, out, err) = run(folder.path(), &AGAINST);
+    let (code, out, err) = cyltrace(folder.path(), &AGAINST);
     assert_eq!(code, 0, "{err}{out}");
 }
 
@@ -221,7 +210,7 @@ fn wrong_hits_fail_both_ways_with_ray_line_and_both_answers() {
             },
         );
         fs::write(&path, text).unwrap();
-        let (code, out, err) = run(folder.path(), &AGAINST);
+        let (code, out, err) = cyltrace(folder.path(), &AGAINST);
         assert_eq!(code, 1, "{expected}: {err}{out}");
         // The comment and the header come before the first row.
         let place = format!("ray {wrong} (told.csv:{}): {expected}", wrong + 3);
@@ -234,7 +223,7 @@ fn wrong_hits_fail_both_ways_with_ray_line_and_both_answers() {
     }
     // What is wrong is right with enough tolerance.
     let arguments = [&AGAINST[..], &["--tolerance", "0.01"]].concat();
-    assert_eq!(run(folder.path(), &arguments).0, 0);
+    assert_eq!(cyltrace(folder.path(), &arguments).0, 0);
 }
 
 #[test]
@@ -261,7 +250,7 @@ fn bad_tables_of_hits_are_refused_with_file_and_line() {
         ),
     ] {
         fs::write(folder.path().join("told.csv"), text).unwrap();
-        let (code, out, err) = run(folder.path(), &AGAINST);
+        let (code, out, err) = cyltrace(folder.path(), &AGAINST);
         assert_eq!((code, out.as_str()), (2, ""), "{err}");
         assert!(err.contains(expected), "no {expected:?} in {err}");
     }
@@ -295,7 +284,7 @@ fn arguments_that_do_not_fit_are_refused() {
             "destroy",
         ),
     ] {
-        let (code, out, err) = run(
+        let (code, out, err) = cyltrace(
             folder.path(),
             &[&["check", "scene.toml"], arguments].concat(),
         );
@@ -332,7 +321,7 @@ fn mesh_within_its_deviation_holds_and_beyond_fails() {
     for (name, text) in [("good", good), ("shifted", shifted), ("silent", silent)] {
         fs::write(folder.path().join(format!("{name}.obj")), text).unwrap();
     }
-    let with = |more: &[&str]| run(folder.path(), &[&["check", "scene.toml"], more].concat());
+    let with = |more: &[&str]| cyltrace(folder.path(), &[&["check", "scene.toml"], more].concat());
     for more in [
         &["--mesh", "good.obj", "--rays", "4000"][..],
         &["--mesh", "good.obj", "--rays", "rays.csv"],

@@ -1,38 +1,22 @@
 //! `--max-memory`: scenes that take more are refused before anything is made.
 
-use std::fs;
-use std::path::Path;
+#[path = "support/program.rs"]
+mod program;
 
-use assert_cmd::Command;
+use program::{cyltrace, folder_of};
 use serde_json::Value;
-use tempfile::TempDir;
 
 /// Four thousand million placements: 447 GB of records.
 const MANY: &str = "[[prototype]]\nname = \"tree\"\n\
     [[prototype.cylinder]]\np0 = [0, 0, 0]\np1 = [0, 0, 1]\nradius = 0.1\n\
     [[scatter]]\nof = \"tree\"\npattern = \"grid\"\ncount = COUNT\nspacing = 2\n";
 
-fn write(folder: &TempDir, name: &str, text: &str) {
-    fs::write(folder.path().join(name), text).expect("a file is written");
-}
-
-fn cyltrace(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let output = Command::cargo_bin("cyltrace")
-        .expect("the program is built")
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .expect("the program runs");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8 output");
-    let code = output.status.code().expect("no signal");
-    (code, text(output.stdout), text(output.stderr))
-}
-
 #[test]
 fn scatter_beyond_the_limit_is_refused_with_what_takes_the_memory() {
-    let folder = tempfile::tempdir().expect("a folder");
-    write(&folder, "scene.toml", &MANY.replace("COUNT", "4294967295"));
-    write(&folder, "rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n");
+    let folder = folder_of(&[
+        ("scene.toml", MANY.replace("COUNT", "4294967295").as_str()),
+        ("rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n"),
+    ]);
     for command in [
         &["render", "scene.toml", "-o", "out.png"][..],
         &["trace", "scene.toml", "--rays", "rays.csv", "-o", "out.csv"],
@@ -60,19 +44,11 @@ fn scatter_beyond_the_limit_is_refused_with_what_takes_the_memory() {
 
 #[test]
 fn tables_beyond_the_limit_are_refused_by_their_lines() {
-    let folder = tempfile::tempdir().expect("a folder");
-    write(
-        &folder,
-        "scene.toml",
-        "[[cylinder_table]]\nfile = \"tree.csv\"\n\
-         columns = { p0 = [\"a\", \"b\", \"c\"], p1 = [\"d\", \"e\", \"f\"], radius = \"r\" }\n",
-    );
+    let scene = "[[cylinder_table]]\nfile = \"tree.csv\"\n\
+         columns = { p0 = [\"a\", \"b\", \"c\"], p1 = [\"d\", \"e\", \"f\"], radius = \"r\" }\n";
     let rows = "0,0,0,0,0,1,1\n".repeat(999);
-    write(
-        &folder,
-        "tree.csv",
-        &format!("a,b,c,d,e,f,r\n{rows}0,0,0,0,0,1,1"),
-    );
+    let table = format!("a,b,c,d,e,f,r\n{rows}0,0,0,0,0,1,1");
+    let folder = folder_of(&[("scene.toml", scene), ("tree.csv", &table)]);
     let (code, _, error) = cyltrace(
         folder.path(),
         &["info", "scene.toml", "--max-memory", "63999"],
@@ -91,8 +67,7 @@ fn tables_beyond_the_limit_are_refused_by_their_lines() {
 
 #[test]
 fn info_says_what_the_limit_is_held_against() {
-    let folder = tempfile::tempdir().expect("a folder");
-    write(&folder, "scene.toml", &MANY.replace("COUNT", "50000"));
+    let folder = folder_of(&[("scene.toml", MANY.replace("COUNT", "50000"))]);
     let arguments = ["info", "scene.toml", "--json", "-"];
     let (code, printed, error) = cyltrace(folder.path(), &arguments);
     assert_eq!(code, 0, "{error}");

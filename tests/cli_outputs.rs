@@ -1,10 +1,14 @@
 //! Outputs of the commands: none may destroy an input or another output, and
 //! what cannot be written is said in plain words.
 
+#[path = "support/program.rs"]
+mod program;
+
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use program::{command, cyltrace, folder_of, words};
 use tempfile::TempDir;
 
 const SCENE: &str = r#"
@@ -33,30 +37,9 @@ const FILES: [(&str, &str); 5] = [
 ];
 
 fn workplace() -> TempDir {
-    let directory = tempfile::tempdir().expect("directory");
-    for (name, text) in FILES {
-        fs::write(directory.path().join(name), text).expect("written");
-    }
+    let directory = folder_of(&FILES);
     fs::create_dir(directory.path().join("sub")).expect("directory");
     directory
-}
-
-fn command(directory: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_cyltrace"));
-    command.current_dir(directory).args(arguments);
-    command
-}
-
-fn cyltrace(directory: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let output = command(directory, arguments).output().expect("it runs");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8 output");
-    let code = output.status.code().expect("no signal");
-    (code, text(output.stdout), text(output.stderr))
-}
-
-/// The words of a command line without quoting.
-fn words(line: &str) -> Vec<&str> {
-    line.split_whitespace().collect()
 }
 
 /// Runs a command that must be refused, name its reasons, and change nothing.

@@ -1,10 +1,12 @@
 //! `cyltrace trace --points`: tables of points in, tables of the solids that hold them
-//! out; and that commands which know cylinders only refuse other solids.
+//! out.
+
+#[path = "support/program.rs"]
+mod program;
 
 use std::fs;
-use std::path::Path;
 
-use assert_cmd::Command;
+use program::{cyltrace, folder_of};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -54,22 +56,7 @@ point,inside,prototype,solid,primitive,instance
 ";
 
 fn workplace(points: &str) -> TempDir {
-    let directory = tempfile::tempdir().expect("directory");
-    fs::write(directory.path().join("scene.toml"), SCENE).expect("written");
-    fs::write(directory.path().join("points.csv"), points).expect("written");
-    directory
-}
-
-fn cyltrace(directory: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let output = Command::cargo_bin("cyltrace")
-        .expect("the program is built")
-        .current_dir(directory)
-        .args(arguments)
-        .output()
-        .expect("the program runs");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8 output");
-    let code = output.status.code().expect("no signal");
-    (code, text(output.stdout), text(output.stderr))
+    folder_of(&[("scene.toml", SCENE), ("points.csv", points)])
 }
 
 #[test]
@@ -148,20 +135,4 @@ fn rays_and_points_and_all_do_not_go_together() {
     let (code, _, err) = cyltrace(directory.path(), &points[..4]);
     assert_eq!(code, 2);
     assert!(err.contains("--rays <FILE>|--points <FILE>"), "{err}");
-}
-
-#[test]
-fn commands_that_know_cylinders_only_refuse_other_solids() {
-    let directory = workplace(POINTS);
-    for arguments in [
-        &["check", "scene.toml", "--rays", "10"][..],
-        &["tessellate", "scene.toml", "-o", "scene.obj"],
-    ] {
-        let (code, _, err) = cyltrace(directory.path(), arguments);
-        assert_eq!(code, 2, "{err}");
-        assert!(
-            err.contains("the scene holds 3 solids that are no cylinders"),
-            "{err}"
-        );
-    }
 }

@@ -1,9 +1,12 @@
 //! `cyltrace render` and `cyltrace info`, from scene files to pictures.
 
+#[path = "support/program.rs"]
+mod program;
+
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
+use program::{command, cyltrace, folder_of};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -58,21 +61,7 @@ radius = 0.3
 
 /// A directory that holds `scene.toml`.
 fn workplace() -> TempDir {
-    let directory = tempfile::tempdir().expect("directory");
-    fs::write(directory.path().join("scene.toml"), SCENE).expect("written");
-    directory
-}
-
-fn cyltrace(directory: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let output = Command::cargo_bin("cyltrace")
-        .expect("the program is built")
-        .current_dir(directory)
-        .args(arguments)
-        .output()
-        .expect("the program runs");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8 output");
-    let code = output.status.code().expect("no signal");
-    (code, text(output.stdout), text(output.stderr))
+    folder_of(&[("scene.toml", SCENE)])
 }
 
 fn files_in(directory: &Path) -> Vec<String> {
@@ -228,9 +217,7 @@ fn full_standard_output_is_an_error_and_no_panic() {
     let rendered = [&render[..], &["--json", "a.json"]].concat();
     for arguments in [&["info", "scene.toml"][..], &rendered] {
         let full = fs::File::options().write(true).open("/dev/full");
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_cyltrace"))
-            .current_dir(directory.path())
-            .args(arguments)
+        let output = command(directory.path(), arguments)
             .stdout(full.expect("there"))
             .output()
             .expect("the program runs");
@@ -321,18 +308,17 @@ fn interrupted_render_keeps_the_old_picture_and_exits_130() {
     let directory = workplace();
     let old = directory.path().join("a.png");
     fs::write(&old, "old").expect("written");
-    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_cyltrace"))
-        .current_dir(directory.path())
-        .args([
-            "render",
-            "scene.toml",
-            "-o",
-            "a.png",
-            "--spp",
-            "20000",
-            "--threads",
-            "2",
-        ])
+    let arguments = [
+        "render",
+        "scene.toml",
+        "-o",
+        "a.png",
+        "--spp",
+        "20000",
+        "--threads",
+        "2",
+    ];
+    let mut child = command(directory.path(), &arguments)
         .stderr(std::process::Stdio::null())
         .spawn()
         .expect("the program runs");

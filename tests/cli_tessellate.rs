@@ -1,9 +1,13 @@
 //! `cyltrace tessellate`: files, figures, and what it refuses.
 
+#[path = "support/program.rs"]
+mod program;
+
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use program::{command, cyltrace, folder_of, words};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -27,22 +31,12 @@ caps = "none"
 "#;
 
 fn workplace() -> TempDir {
-    let directory = tempfile::tempdir().expect("directory");
-    fs::write(directory.path().join("scene.toml"), SCENE).expect("written");
-    directory
+    folder_of(&[("scene.toml", SCENE)])
 }
 
 /// Runs `cyltrace tessellate` with words that need no quoting.
 fn tessellate(directory: &Path, line: &str) -> (i32, String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_cyltrace"))
-        .current_dir(directory)
-        .arg("tessellate")
-        .args(line.split_whitespace())
-        .output()
-        .expect("it runs");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8 output");
-    let code = output.status.code().expect("no signal");
-    (code, text(output.stdout), text(output.stderr))
+    cyltrace(directory, &[&["tessellate"], &words(line)[..]].concat())
 }
 
 #[test]
@@ -204,9 +198,8 @@ fn interrupted_mesh_keeps_the_old_file_and_exits_130() {
         "{SCENE}\n[[scatter]]\nof = \"tube\"\npattern = \"grid\"\ncount = 100000\nspacing = 2\n"
     );
     fs::write(directory.path().join("many.toml"), many).expect("written");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_cyltrace"))
-        .current_dir(directory.path())
-        .args("tessellate many.toml -o a.obj --segments 512 --max-memory 1TB".split(' '))
+    let line = "tessellate many.toml -o a.obj --segments 512 --max-memory 1TB";
+    let mut child = command(directory.path(), &words(line))
         .stdout(std::process::Stdio::null())
         .stderr(std::process::Stdio::null())
         .spawn()

@@ -1,9 +1,13 @@
 //! `cyltrace trace`: tables of rays in, tables of hits out.
 
+#[path = "support/program.rs"]
+mod program;
+
 use std::fs;
 use std::path::Path;
 
 use assert_cmd::Command;
+use program::{cyltrace, folder_of};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -62,23 +66,12 @@ const HITS: [&str; 6] = [
 ];
 
 fn workplace(rays: &[u8]) -> TempDir {
-    let directory = tempfile::tempdir().expect("directory");
-    fs::write(directory.path().join("scene.toml"), SCENE).expect("written");
-    fs::write(directory.path().join("rays.csv"), rays).expect("written");
-    directory
+    folder_of(&[("scene.toml", SCENE.as_bytes()), ("rays.csv", rays)])
 }
 
 fn trace(directory: &Path, flags: &[&str]) -> (i32, String, String) {
-    let output = Command::cargo_bin("cyltrace")
-        .expect("the program is built")
-        .current_dir(directory)
-        .args(["trace", "scene.toml", "--rays", "rays.csv"])
-        .args(flags)
-        .output()
-        .expect("the program runs");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8 output");
-    let code = output.status.code().expect("no signal");
-    (code, text(output.stdout), text(output.stderr))
+    let arguments = ["trace", "scene.toml", "--rays", "rays.csv"];
+    cyltrace(directory, &[&arguments, flags].concat())
 }
 
 #[test]

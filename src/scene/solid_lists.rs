@@ -51,120 +51,95 @@ pub trait Listed: Sized + 'static {
     fn list(solids: &Solids) -> &[SolidRecord<Self>];
 }
 
+/// A composed solid with its number and material.
+pub type CompositionRecord = SolidRecord<Composition>;
+
+/// What is the same of every list; those of `singles` hold solids that are not composed
+/// of others.
 macro_rules! listed {
-    ($($kind:ident in $list:ident)*) => {$(
-        impl Listed for $kind {
+    (singles: $($single:ident)*; all: $($kind:ident in $list:ident)*) => {
+        $(impl Listed for $kind {
             #[inline(always)]
             fn list(solids: &Solids) -> &[SolidRecord<Self>] {
                 &solids.$list
             }
+        })*
+
+        impl Solids {
+            /// How many there are.
+            #[must_use]
+            pub fn len(&self) -> usize {
+                [$(self.$list.len()),*].iter().sum()
+            }
+
+            /// The bytes of the records, with what the compositions are made of.
+            #[must_use]
+            pub fn records_bytes(&self) -> usize {
+                let lists: usize = [$(size_of_val(self.$list.as_slice())),*].iter().sum();
+                let compositions = self.compositions.iter();
+                let parts: usize = compositions.map(|record| record.solid.heap_bytes()).sum();
+                lists + parts
+            }
+
+            /// Those that are not composed of others, kind by kind, each with its number.
+            pub fn singles(&self) -> impl Iterator<Item = (u32, AnySolid)> {
+                std::iter::empty()$(.chain(numbered(&self.$single)))*
+            }
+
+            /// The one of those with a number.
+            #[must_use]
+            pub fn single(&self, primitive: u32) -> Option<AnySolid> {
+                None$(.or_else(|| find(&self.$single, primitive)))*
+            }
+
+            /// A box around all of them.
+            #[must_use]
+            pub fn bounds(&self) -> Bounds {
+                let boxes = std::iter::empty()
+                    $(.chain(self.$list.iter().map(|record| record.solid.bounds())))*;
+                boxes.fold(Bounds::EMPTY, |sum, bounds| sum.union(&bounds))
+            }
+
+            /// Gives back the memory beyond what the lists hold.
+            pub(super) fn trim(&mut self) {
+                $(self.$list.shrink_to_fit();)*
+            }
         }
-    )*};
+    };
 }
 
 listed! {
-    Sphere in spheres
-    Cuboid in cuboids
-    Cone in cones
-    RoundedCone in rounded_cones
-    Disk in disks
-    Composition in compositions
+    singles: spheres cuboids cones rounded_cones disks;
+    all:
+        Sphere in spheres
+        Cuboid in cuboids
+        Cone in cones
+        RoundedCone in rounded_cones
+        Disk in disks
+        Composition in compositions
 }
 
-/// A composed solid with its number and material.
-pub type CompositionRecord = SolidRecord<Composition>;
-
 impl Solids {
-    /// How many there are.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.spheres.len()
-            + self.cuboids.len()
-            + self.cones.len()
-            + self.rounded_cones.len()
-            + self.disks.len()
-            + self.compositions.len()
-    }
-
     /// Whether there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+}
 
-    /// The bytes of the records, with what the compositions are made of.
-    #[must_use]
-    pub fn records_bytes(&self) -> usize {
-        let parts = self.compositions.iter();
-        let parts: usize = parts.map(|record| record.solid.heap_bytes()).sum();
-        size_of_val(self.spheres.as_slice())
-            + size_of_val(self.cuboids.as_slice())
-            + size_of_val(self.cones.as_slice())
-            + size_of_val(self.rounded_cones.as_slice())
-            + size_of_val(self.disks.as_slice())
-            + size_of_val(self.compositions.as_slice())
-            + parts
-    }
+/// The solids of a list with their numbers.
+fn numbered<S: ConvexSolid + Into<AnySolid>>(
+    list: &[SolidRecord<S>],
+) -> impl Iterator<Item = (u32, AnySolid)> {
+    list.iter()
+        .map(|record| (record.primitive, record.solid.into()))
+}
 
-    /// Those that are not composed of others, kind by kind, each with its number.
-    pub fn singles(&self) -> impl Iterator<Item = (u32, AnySolid)> {
-        fn all<S: ConvexSolid + Into<AnySolid>>(
-            list: &[SolidRecord<S>],
-        ) -> impl Iterator<Item = (u32, AnySolid)> {
-            list.iter()
-                .map(|record| (record.primitive, record.solid.into()))
-        }
-        all(&self.spheres)
-            .chain(all(&self.cuboids))
-            .chain(all(&self.cones))
-            .chain(all(&self.rounded_cones))
-            .chain(all(&self.disks))
-    }
-
-    /// The one of those with a number.
-    #[must_use]
-    pub fn single(&self, primitive: u32) -> Option<AnySolid> {
-        fn of<S: ConvexSolid + Into<AnySolid>>(
-            list: &[SolidRecord<S>],
-            primitive: u32,
-        ) -> Option<AnySolid> {
-            let position = list.binary_search_by_key(&primitive, |record| record.primitive);
-            position.ok().map(|position| list[position].solid.into())
-        }
-        of(&self.spheres, primitive)
-            .or_else(|| of(&self.cuboids, primitive))
-            .or_else(|| of(&self.cones, primitive))
-            .or_else(|| of(&self.rounded_cones, primitive))
-            .or_else(|| of(&self.disks, primitive))
-    }
-
-    /// A box around all of them.
-    #[must_use]
-    pub fn bounds(&self) -> Bounds {
-        fn all<S: ConvexSolid>(list: &[SolidRecord<S>]) -> Bounds {
-            let boxes = list.iter().map(|record| record.solid.bounds());
-            boxes.fold(Bounds::EMPTY, |sum, bounds| sum.union(&bounds))
-        }
-        let compositions = self.compositions.iter();
-        let compositions = compositions.map(|record| record.solid.bounds());
-        let singles = [
-            all(&self.spheres),
-            all(&self.cuboids),
-            all(&self.cones),
-            all(&self.rounded_cones),
-            all(&self.disks),
-        ];
-        let boxes = singles.into_iter().chain(compositions);
-        boxes.fold(Bounds::EMPTY, |sum, bounds| sum.union(&bounds))
-    }
-
-    /// Gives back the memory beyond what the lists hold.
-    pub(super) fn trim(&mut self) {
-        self.spheres.shrink_to_fit();
-        self.cuboids.shrink_to_fit();
-        self.cones.shrink_to_fit();
-        self.rounded_cones.shrink_to_fit();
-        self.disks.shrink_to_fit();
-        self.compositions.shrink_to_fit();
-    }
+/// The solid of a list with a number.
+fn find<S: ConvexSolid + Into<AnySolid>>(
+    list: &[SolidRecord<S>],
+    primitive: u32,
+) -> Option<AnySolid> {
+    let position = list.binary_search_by_key(&primitive, |record| record.primitive);
+    position.ok().map(|position| list[position].solid.into())
 }

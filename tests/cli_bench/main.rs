@@ -2,25 +2,17 @@
 //! takes.
 
 mod accuracy;
+#[path = "../support/program.rs"]
+mod program;
 mod scenes;
 
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
 use serde_json::Value;
 
 fn bench(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let output = Command::cargo_bin("cyltrace")
-        .expect("the program is built")
-        .current_dir(folder)
-        .arg("bench")
-        .args(arguments)
-        .output()
-        .expect("the program runs");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8 output");
-    let code = output.status.code().expect("no signal");
-    (code, text(output.stdout), text(output.stderr))
+    program::cyltrace(folder, &[&["bench"], arguments].concat())
 }
 
 /// The figures that a run writes to standard output.

@@ -1,5 +1,6 @@
 //! The truncated cone as users state it.
 
+mod ends;
 pub(super) mod heights;
 mod rounded;
 pub(super) mod solver;
@@ -12,6 +13,8 @@ use super::cylinder::disc_reach;
 use super::exact::{self, Expression, Number, difference, dot};
 use super::{Caps, Chord, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint};
 use crate::math::Bounds;
+pub use ends::ConeError;
+pub(super) use ends::Ends;
 use wall::{Fit, Measures};
 
 /// The surface of a part of a circular cone: two endpoints, the radius at
@@ -24,48 +27,8 @@ use wall::{Fit, Measures};
 /// disc there is a point, the apex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
-    p0: DVec3,
-    p1: DVec3,
-    radius0: f64,
-    radius1: f64,
+    ends: Ends,
     caps: Caps,
-}
-
-/// Why numbers are not a cone.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum ConeError {
-    /// A coordinate of an endpoint is NaN, infinite or beyond [`Cylinder::GREATEST`].
-    #[error("{which} is ({:?}, {:?}, {:?}): every coordinate must be finite and at most {:.1e} in size", point.x, point.y, point.z, Cylinder::GREATEST)]
-    Endpoint {
-        /// `"p0"` or `"p1"`.
-        which: &'static str,
-        /// The endpoint as given.
-        point: DVec3,
-    },
-    /// A radius is neither zero nor in [`Cylinder::LEAST`, `Cylinder::GREATEST`].
-    #[error(
-        "{which} is {radius:?}: it must be zero or between {:.1e} and {:.1e}",
-        Cylinder::LEAST,
-        Cylinder::GREATEST
-    )]
-    Radius {
-        /// `"radius0"` or `"radius1"`.
-        which: &'static str,
-        /// The radius as given.
-        radius: f64,
-    },
-    /// Both radii are zero.
-    #[error("radius0 and radius1 are both zero: one of them must be positive")]
-    NoRadius,
-    /// The endpoints are the same, or nearer than [`Cylinder::LEAST`].
-    #[error(
-        "p0 and p1 are {length:?} apart: a cone needs a length of at least {:.1e}",
-        Cylinder::LEAST
-    )]
-    Length {
-        /// The distance between the endpoints.
-        length: f64,
-    },
 }
 
 impl Cone {
@@ -81,49 +44,48 @@ impl Cone {
         radius1: f64,
         caps: Caps,
     ) -> Result<Self, ConeError> {
-        check_ends(p0, p1, radius0, radius1)?;
-        let length = (p1 - p0).length();
+        let ends = Ends::new(p0, p1, radius0, radius1)?;
+        let length = ends.length();
         if length < Cylinder::LEAST {
             return Err(ConeError::Length { length });
         }
-        // A radius of -0 is one of 0.
-        Ok(Self::from_valid(p0, p1, radius0.abs(), radius1.abs(), caps))
+        Ok(Self { ends, caps })
     }
 
     /// The cone of numbers that [`Cone::new`] accepted before.
     #[inline]
     pub(crate) fn from_valid(p0: DVec3, p1: DVec3, radius0: f64, radius1: f64, caps: Caps) -> Self {
-        Self {
+        let ends = Ends {
             p0,
             p1,
             radius0,
             radius1,
-            caps,
-        }
+        };
+        Self { ends, caps }
     }
 
     /// The first endpoint.
     #[must_use]
     pub fn p0(&self) -> DVec3 {
-        self.p0
+        self.ends.p0
     }
 
     /// The second endpoint.
     #[must_use]
     pub fn p1(&self) -> DVec3 {
-        self.p1
+        self.ends.p1
     }
 
     /// The radius at `p0`, not negative.
     #[must_use]
     pub fn radius0(&self) -> f64 {
-        self.radius0
+        self.ends.radius0
     }
 
     /// The radius at `p1`, not negative.
     #[must_use]
     pub fn radius1(&self) -> f64 {
-        self.radius1
+        self.ends.radius1
     }
 
     /// The closed ends.
@@ -133,44 +95,26 @@ impl Cone {
     }
 }
 
-/// Whether each of these numbers alone is in range, and there is a radius.
-pub(super) fn check_ends(
-    p0: DVec3,
-    p1: DVec3,
-    radius0: f64,
-    radius1: f64,
-) -> Result<(), ConeError> {
-    for (which, point) in [("p0", p0), ("p1", p1)] {
-        if !Cylinder::is_in_range(point) {
-            return Err(ConeError::Endpoint { which, point });
-        }
-    }
-    for (which, radius) in [("radius0", radius0), ("radius1", radius1)] {
-        if radius != 0.0 && !(Cylinder::LEAST..=Cylinder::GREATEST).contains(&radius) {
-            return Err(ConeError::Radius { which, radius });
-        }
-    }
-    if radius0 == 0.0 && radius1 == 0.0 {
-        return Err(ConeError::NoRadius);
-    }
-    Ok(())
-}
-
 impl ConvexSolid for Cone {
     const KIND: SolidKind = SolidKind::Cone;
 
     fn bounds(&self) -> Bounds {
-        let a = self.p1 - self.p0;
-        let (reach0, reach1) = (disc_reach(a, self.radius0), disc_reach(a, self.radius1));
+        let Ends {
+            p0,
+            p1,
+            radius0,
+            radius1,
+        } = self.ends;
+        let (reach0, reach1) = (disc_reach(p1 - p0, radius0), disc_reach(p1 - p0, radius1));
         Bounds {
-            lower: (self.p0 - reach0).min(self.p1 - reach1),
-            upper: (self.p0 + reach0).max(self.p1 + reach1),
+            lower: (p0 - reach0).min(p1 - reach1),
+            upper: (p0 + reach0).max(p1 + reach1),
         }
         .rounded_outward()
     }
 
     fn anchor(&self) -> DVec3 {
-        self.p0
+        self.ends.p0
     }
 
     fn caps(&self) -> Caps {
@@ -200,7 +144,7 @@ impl ConvexSolid for Cone {
     }
 
     fn size(&self) -> f64 {
-        (self.p1 - self.p0).length() + 2.0 * self.radius0.max(self.radius1)
+        self.ends.size()
     }
 }
 
@@ -222,14 +166,14 @@ impl Expression for Beyond<'_> {
     fn value<N: Number>(&self) -> N {
         let cone = self.cone;
         let (a, x) = (
-            difference::<N>(cone.p1, cone.p0),
-            difference(self.point, cone.p0),
+            difference::<N>(cone.ends.p1, cone.ends.p0),
+            difference(self.point, cone.ends.p0),
         );
         match self.limit {
             Limit::Disc0 => N::of(0.0).minus(&dot(&x, &a)),
             Limit::Disc1 => dot(&x, &a).minus(&dot(&a, &a)),
             Limit::Wall => {
-                Measures::new(&a, cone.radius0, cone.radius1, Fit::Discs).outside(&a, &x)
+                Measures::new(&a, cone.ends.radius0, cone.ends.radius1, Fit::Discs).outside(&a, &x)
             }
         }
     }

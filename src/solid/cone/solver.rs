@@ -10,24 +10,22 @@ use std::cmp::Ordering::{Equal, Greater, Less};
 
 use glam::DVec3;
 
-use super::Cone;
 use super::heights::{End, Heights, Root};
-use super::wall::{Fit, Inside, Meets, Taper};
+use super::wall::{Fit, Inside, Meets};
+use super::{Cone, Ends};
 use crate::solid::chord::{Chord, ChordEnd};
 use crate::solid::{Caps, Cylinder, Part, triple_product};
 
 /// The interval in which the line `p0 + x + t d` is inside the closed cone.
 pub(super) fn chord(cone: &Cone, x: DVec3, d: DVec3) -> Option<Chord> {
-    if cone.radius0 == cone.radius1 {
-        let cylinder = Cylinder::from_valid(cone.p0, cone.p1, cone.radius0, Caps::Both);
+    let Ends {
+        p0, p1, radius0, ..
+    } = cone.ends;
+    if radius0 == cone.ends.radius1 {
+        let cylinder = Cylinder::from_valid(p0, p1, radius0, Caps::Both);
         return triple_product::chord(&cylinder, x, d);
     }
-    let taper = Taper {
-        a: cone.p1 - cone.p0,
-        radius0: cone.radius0,
-        radius1: cone.radius1,
-        fit: Fit::Discs,
-    };
+    let taper = cone.ends.taper(Fit::Discs);
     let meets = taper.meets(x, d)?;
     let heights = Heights::new(&taper, x, d);
     match meets {

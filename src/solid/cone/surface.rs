@@ -26,9 +26,9 @@ use crate::solid::{Cylinder, Part, SurfacePoint, surface_point as surface_point_
 
 /// The point of `part` nearest to `p0 + from_p0`; `u` and `v` as a cylinder's.
 pub(super) fn surface_point(cone: &Cone, part: Part, from_p0: DVec3) -> SurfacePoint {
-    let (r0, r1) = (cone.radius0, cone.radius1);
+    let (r0, r1) = (cone.ends.radius0, cone.ends.radius1);
     let disc = |radius| {
-        let cylinder = Cylinder::from_valid(cone.p0, cone.p1, radius, cone.caps);
+        let cylinder = Cylinder::from_valid(cone.ends.p0, cone.ends.p1, radius, cone.caps);
         surface_point_of_cylinder(&cylinder, part, from_p0)
     };
     match part {
@@ -39,12 +39,12 @@ pub(super) fn surface_point(cone: &Cone, part: Part, from_p0: DVec3) -> SurfaceP
         Part::Side => {}
         part => unreachable!("a cone has no part {}", part.name()),
     }
-    let a = cone.p1 - cone.p0;
+    let a = cone.ends.axis();
     let around = Around::new(a, from_p0);
     let (aa, delta) = (a.length_squared(), r1 - r0);
     let along = from_p0.dot(a) + delta * (around.distance - r0);
     let v = (along / (aa + delta * delta)).clamp(0.0, 1.0);
-    let point = cone.p0 + (a * v + around.outward * (r0 + delta * v));
+    let point = cone.ends.p0 + (a * v + around.outward * (r0 + delta * v));
     let normal = around.outward * aa.sqrt() - around.axis * delta;
     SurfacePoint {
         point,

@@ -5,7 +5,7 @@ mod surface;
 
 use glam::DVec3;
 
-use super::cone::check_ends;
+use super::cone::Ends;
 use super::cone::wall::{Fit, Measures};
 use super::exact::{self, Expression, Number, difference, dot};
 use super::{Chord, ConeError, ConvexSolid, Location, Part, SolidKind, SurfacePoint, ball};
@@ -20,10 +20,7 @@ use crate::math::Bounds;
 /// centres may coincide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundedCone {
-    p0: DVec3,
-    p1: DVec3,
-    radius0: f64,
-    radius1: f64,
+    ends: Ends,
 }
 
 /// Why numbers are not a rounded cone: one of them is out of the range that a
@@ -39,44 +36,33 @@ impl RoundedCone {
     /// When a number is not finite or out of range, a radius is negative or both
     /// are zero.
     pub fn new(p0: DVec3, p1: DVec3, radius0: f64, radius1: f64) -> Result<Self, RoundedConeError> {
-        check_ends(p0, p1, radius0, radius1)?;
-        // A radius of -0 is one of 0.
-        Ok(Self::from_valid(p0, p1, radius0.abs(), radius1.abs()))
-    }
-
-    /// The rounded cone of numbers that [`RoundedCone::new`] accepted before.
-    #[inline]
-    pub(crate) fn from_valid(p0: DVec3, p1: DVec3, radius0: f64, radius1: f64) -> Self {
-        Self {
-            p0,
-            p1,
-            radius0,
-            radius1,
-        }
+        Ok(Self {
+            ends: Ends::new(p0, p1, radius0, radius1)?,
+        })
     }
 
     /// The first centre.
     #[must_use]
     pub fn p0(&self) -> DVec3 {
-        self.p0
+        self.ends.p0
     }
 
     /// The second centre.
     #[must_use]
     pub fn p1(&self) -> DVec3 {
-        self.p1
+        self.ends.p1
     }
 
     /// The radius of the ball around `p0`, not negative.
     #[must_use]
     pub fn radius0(&self) -> f64 {
-        self.radius0
+        self.ends.radius0
     }
 
     /// The radius of the ball around `p1`, not negative.
     #[must_use]
     pub fn radius1(&self) -> f64 {
-        self.radius1
+        self.ends.radius1
     }
 }
 
@@ -84,15 +70,21 @@ impl ConvexSolid for RoundedCone {
     const KIND: SolidKind = SolidKind::RoundedCone;
 
     fn bounds(&self) -> Bounds {
+        let Ends {
+            p0,
+            p1,
+            radius0,
+            radius1,
+        } = self.ends;
         Bounds {
-            lower: (self.p0 - self.radius0).min(self.p1 - self.radius1),
-            upper: (self.p0 + self.radius0).max(self.p1 + self.radius1),
+            lower: (p0 - radius0).min(p1 - radius1),
+            upper: (p0 + radius0).max(p1 + radius1),
         }
         .rounded_outward()
     }
 
     fn anchor(&self) -> DVec3 {
-        self.p0
+        self.ends.p0
     }
 
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
@@ -112,11 +104,13 @@ impl ConvexSolid for RoundedCone {
                 limit,
             }))
         };
-        let balls = ball::locate(self.p0, self.radius0, point).max(ball::locate(
-            self.p1,
-            self.radius1,
-            point,
-        ));
+        let Ends {
+            p0,
+            p1,
+            radius0,
+            radius1,
+        } = self.ends;
+        let balls = ball::locate(p0, radius0, point).max(ball::locate(p1, radius1, point));
         // The discs at the seams are inside of the balls but for their rims, so that
         // the first need not be asked for; and where one ball holds the other, no
         // height is beyond it and not beyond the other.
@@ -134,7 +128,7 @@ impl ConvexSolid for RoundedCone {
     }
 
     fn size(&self) -> f64 {
-        (self.p1 - self.p0).length() + 2.0 * self.radius0.max(self.radius1)
+        self.ends.size()
     }
 }
 
@@ -156,10 +150,10 @@ impl Expression for Beyond<'_> {
     fn value<N: Number>(&self) -> N {
         let solid = self.solid;
         let (a, x) = (
-            difference::<N>(solid.p1, solid.p0),
-            difference(self.point, solid.p0),
+            difference::<N>(solid.ends.p1, solid.ends.p0),
+            difference(self.point, solid.ends.p0),
         );
-        let (r0, r1) = (solid.radius0, solid.radius1);
+        let (r0, r1) = (solid.ends.radius0, solid.ends.radius1);
         let measures = Measures::new(&a, r0, r1, Fit::Balls);
         let z = || dot(&x, &a).plus(&N::of(r0).times(&measures.delta));
         match self.limit {

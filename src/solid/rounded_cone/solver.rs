@@ -27,11 +27,11 @@ use crate::solid::{Part, ball};
 
 /// The interval in which the line `p0 + x + t d` is inside the hull.
 pub(super) fn chord(solid: &RoundedCone, x: DVec3, d: DVec3) -> Option<Chord> {
-    let a = solid.p1 - solid.p0;
-    let ball0 = || ball::chord(x, d, solid.radius0, Part::Cap0);
-    let ball1 = || ball::chord_about(a, x, d, solid.radius1, Part::Cap1);
+    let a = solid.ends.axis();
+    let ball0 = || ball::chord(x, d, solid.ends.radius0, Part::Cap0);
+    let ball1 = || ball::chord_about(a, x, d, solid.ends.radius1, Part::Cap1);
     let Some(taper) = solid.taper() else {
-        return if solid.radius0 >= solid.radius1 {
+        return if solid.ends.radius0 >= solid.ends.radius1 {
             ball0()
         } else {
             ball1()
@@ -98,12 +98,7 @@ fn between_seams(heights: &Heights, root: Root, t: f64) -> Option<ChordEnd> {
 impl RoundedCone {
     /// The cone that touches both balls; `None` if one holds the other.
     pub(in crate::solid) fn taper(&self) -> Option<Taper> {
-        let taper = Taper {
-            a: self.p1 - self.p0,
-            radius0: self.radius0,
-            radius1: self.radius1,
-            fit: Fit::Balls,
-        };
+        let taper = self.ends.taper(Fit::Balls);
         (taper.beta() > 0.0).then_some(taper)
     }
 }
