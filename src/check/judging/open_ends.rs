@@ -25,7 +25,7 @@ use crate::oracle::{Exact, ExactVector, exact, to_f64};
 
 use crate::check::hulls::mesh_frame::MeshFrame;
 use crate::check::hulls::window::PlacedSolid;
-use crate::solid::{AnySolid, Caps};
+use crate::solid::AnySolid;
 
 /// The planes of the discs that a tube does not have, in the mesh's space.
 #[derive(Clone, Debug, Default)]
@@ -40,17 +40,14 @@ struct Plane {
 impl OpenEnds {
     /// The planes for one solid; none if it is closed.
     pub fn new(placed: &PlacedSolid, frame: &MeshFrame) -> Self {
-        let Some((ends, caps)) = ends_of(&placed.solid) else {
+        let Some([(p0, is_open0), (p1, is_open1)]) = ends_of(&placed.solid) else {
             return Self::default();
         };
-        let missing = [
-            (!caps.at_p0(), ends[0], 1.0),
-            (!caps.at_p1(), ends[1], -1.0),
-        ];
+        let missing = [(is_open0, p0, 1.0), (is_open1, p1, -1.0)];
         let planes = missing.into_iter().filter(|&(is_missing, ..)| is_missing);
         Self(
             planes
-                .map(|(_, end, side)| plane((ends, placed), frame, end, side))
+                .map(|(_, end, side)| plane(([p0, p1], placed), frame, end, side))
                 .collect(),
         )
     }
@@ -68,11 +65,18 @@ impl OpenEnds {
     }
 }
 
-/// The ends of a solid that may be open, and which are not.
-pub(super) fn ends_of(solid: &AnySolid) -> Option<([DVec3; 2], Caps)> {
+/// The ends of a solid that may be open, and whether they are. The disc at an apex is a
+/// point of the wall, and never missing.
+pub(super) fn ends_of(solid: &AnySolid) -> Option<[(DVec3, bool); 2]> {
     match solid {
-        AnySolid::Cylinder(one) => Some(([one.p0(), one.p1()], one.caps())),
-        AnySolid::Cone(one) => Some(([one.p0(), one.p1()], one.caps())),
+        AnySolid::Cylinder(one) => Some([
+            (one.p0(), !one.caps().at_p0()),
+            (one.p1(), !one.caps().at_p1()),
+        ]),
+        AnySolid::Cone(one) => Some([
+            (one.p0(), !one.caps().at_p0() && one.radius0() > 0.0),
+            (one.p1(), !one.caps().at_p1() && one.radius1() > 0.0),
+        ]),
         _ => None,
     }
 }

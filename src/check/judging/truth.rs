@@ -148,15 +148,15 @@ fn displaced_bounds(window: &Window, leaves: Range<u32>, ray: &Ray) -> Option<In
 /// Whether the point at a parameter is farther than `margin` from the planes
 /// of the discs that the solid does not have, on its side of them.
 fn is_between_ends(placed: &PlacedSolid, local: &LocalRay, t: f64, margin: f64) -> bool {
-    let Some(([p0, p1], caps)) = ends_of(&placed.solid) else {
+    let Some([(p0, is_open0), (p1, is_open1)]) = ends_of(&placed.solid) else {
         return true;
     };
-    if caps.at_p0() && caps.at_p1() {
+    if !is_open0 && !is_open1 {
         return true;
     }
     let (axis, length) = ((p1 - p0).normalize(), (p1 - p0).length());
     let height = local.at(t).dot(axis);
-    t.is_finite() && (caps.at_p0() || height > margin) && (caps.at_p1() || height < length - margin)
+    t.is_finite() && (!is_open0 || height > margin) && (!is_open1 || height < length - margin)
 }
 
 /// The crossings of a solid grown and shrunk by the leeway; `None` if it is too small.

@@ -12,11 +12,11 @@
 //!
 //! so that a plane separates it from the solid, whatever its own plane does, and let the
 //! solid's middle `c` be strictly behind its own plane. No triangle comes to the solid,
-//! so `S` winds around all of it as often as around `c`. That is once: it is so for the
-//! mesh that is not rounded, whose corners have (1) with the same `m`, as has everything
-//! between them and the rounded ones. Seen from `c` every triangle shows its inner
-//! side, at a positive solid angle; the angles add up to 4π, so `S` is the surface of a
-//! star-shaped body without folds that holds the solid. So a ray that starts outside of
+//! so `S` winds around all of it as often as around `c`. Seen from `c` every triangle
+//! shows its inner side, at a positive solid angle, so that is at least once. It is once
+//! for the mesh that is not rounded, whose corners have (1) with the same `m`, as has
+//! everything between them and the rounded ones: the angles add up to 4π, and `S` is the
+//! surface of a star-shaped body without folds that holds the solid. So a ray that starts outside of
 //! the body meets `S` from outside first, one that starts inside from inside, and a line
 //! that is in the solid from `t1` to `t2` meets `S` from outside at least once at `t <=
 //! t1`, and from inside at least once at `t >= t2`. That is all that is asked of the mesh
