@@ -159,10 +159,10 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// `ε`: by how much a vertex is off in the mesh, which half an ulp of f32 and what
-    /// computing it costs: a corner in f64 is a sum of products that rounds 16 times at
-    /// most, after what [`corner_error_of`] says. Corners are within what a mesh of few
-    /// sides sticks out of the solid's box.
+    /// `ε`: by how much a vertex is off in the mesh. Rounding to f32 takes half an ulp of
+    /// its coordinates, which are within the solid's box and what a mesh of few sides
+    /// sticks out of it; the corner in f64 is a sum of products that rounds 16 times at
+    /// most, and off by what [`corner_error_of`] says.
     fn vertex_error(&self, segments: u32) -> f64 {
         let fewest = FEWEST.min(segments);
         let bounds = self.placed.bounds();
