@@ -41,6 +41,13 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// non-finite argument is a miss.
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord>;
 
+    /// Whether that line certainly misses the closed solid, if a few products tell;
+    /// `false` says nothing. It has no branch, so that a row of rays is tested at once.
+    #[inline(always)]
+    fn passes_by(&self, _from_anchor: DVec3, _direction: DVec3) -> bool {
+        false
+    }
+
     /// The first point of that line on the surface, among those with
     /// `t_min <= t + shift <= t_max`; see [`Chord::first`].
     #[inline]

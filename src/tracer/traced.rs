@@ -46,6 +46,13 @@ pub(crate) trait TracedSolid: Listed + Send + Sync {
     /// A box that holds it.
     fn bounds(&self) -> Bounds;
 
+    /// Whether the ray certainly misses it, if a few products tell; `false` says
+    /// nothing. As [`ConvexSolid::passes_by`].
+    #[inline(always)]
+    fn passes_by(&self, _ray: &LocalRay) -> bool {
+        false
+    }
+
     /// The first meeting of the ray with its surface in a range of the whole
     /// ray's `t`.
     fn first(&self, ray: &LocalRay, t_min: f64, t_max: f64) -> Option<Met>;
@@ -75,6 +82,11 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
 
     fn bounds(&self) -> Bounds {
         ConvexSolid::bounds(self)
+    }
+
+    #[inline(always)]
+    fn passes_by(&self, ray: &LocalRay) -> bool {
+        ConvexSolid::passes_by(self, ray.origin_from(self.anchor()), ray.direction)
     }
 
     #[inline]

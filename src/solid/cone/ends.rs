@@ -81,6 +81,7 @@ impl Ends {
     }
 
     /// From the one point to the other, rounded.
+    #[inline(always)]
     pub fn axis(&self) -> DVec3 {
         self.p1 - self.p0
     }
@@ -96,6 +97,7 @@ impl Ends {
     }
 
     /// The cone's wall that belongs to them.
+    #[inline(always)]
     pub fn taper(&self, fit: Fit) -> Taper {
         Taper {
             a: self.axis(),

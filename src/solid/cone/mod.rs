@@ -2,6 +2,7 @@
 
 mod ends;
 pub(super) mod heights;
+pub(super) mod passing;
 mod rounded;
 pub(super) mod solver;
 mod surface;
@@ -15,6 +16,7 @@ use super::{Caps, Chord, ConvexSolid, Cylinder, Location, Part, SolidKind, Surfa
 use crate::math::Bounds;
 pub use ends::ConeError;
 pub(super) use ends::Ends;
+use passing::Line;
 use wall::{Fit, Measures};
 
 /// The surface of a part of a circular cone: two endpoints, the radius at
@@ -122,7 +124,15 @@ impl ConvexSolid for Cone {
     }
 
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
+        if self.passes_by(from_anchor, direction) {
+            return None;
+        }
         solver::chord(self, from_anchor, direction)
+    }
+
+    #[inline(always)]
+    fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
+        Line::new(from_anchor, direction).passes_wall(&self.ends.taper(Fit::Discs))
     }
 
     fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {

@@ -262,11 +262,11 @@ pub(in crate::solid) enum Term {
 }
 
 /// One of them.
-struct Exactly<'a> {
-    taper: &'a Taper,
-    x: DVec3,
-    d: DVec3,
-    term: Term,
+pub(super) struct Exactly<'a> {
+    pub taper: &'a Taper,
+    pub x: DVec3,
+    pub d: DVec3,
+    pub term: Term,
 }
 
 impl Expression for Exactly<'_> {

@@ -6,6 +6,7 @@ mod surface;
 use glam::DVec3;
 
 use super::cone::Ends;
+use super::cone::passing::Line;
 use super::cone::wall::{Fit, Measures};
 use super::exact::{self, Expression, Number, difference, dot};
 use super::{Chord, ConeError, ConvexSolid, Location, Part, SolidKind, SurfacePoint, ball};
@@ -88,7 +89,22 @@ impl ConvexSolid for RoundedCone {
     }
 
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
+        if self.passes_by(from_anchor, direction) {
+            return None;
+        }
         solver::chord(self, from_anchor, direction)
+    }
+
+    #[inline(always)]
+    fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
+        let Ends {
+            radius0, radius1, ..
+        } = self.ends;
+        let from_p0 = Line::new(from_anchor, direction);
+        let from_p1 = Line::new(from_anchor - self.ends.axis(), direction);
+        from_p0.passes_ball(radius0)
+            & from_p1.passes_ball(radius1)
+            & from_p0.passes_wall(&self.ends.taper(Fit::Balls))
     }
 
     fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {

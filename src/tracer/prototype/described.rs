@@ -120,6 +120,7 @@ impl<S: TracedSolid> UserGeometry for SolidList<S> {
         query.meets_solid(self.solid(primitive))
     }
 
+    #[inline(always)]
     fn intersect_packet(
         &self,
         primitive: u32,
@@ -132,6 +133,7 @@ impl<S: TracedSolid> UserGeometry for SolidList<S> {
         packet.visit_solid(self, primitive, rays, t_far)
     }
 
+    #[inline(always)]
     fn occluded_packet(&self, primitive: u32, rays: RaySet, packet: &mut Packet) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;

@@ -176,8 +176,9 @@ impl Packet {
         RaySet::from_bits(blocked)
     }
 
-    /// As [`Packet::visit`] for a solid of another kind, ray by ray.
-    #[inline]
+    /// As [`Packet::visit`] for a solid of another kind, ray by ray but for those
+    /// that pass it by.
+    #[inline(always)]
     pub fn visit_solid<S: TracedSolid>(
         &mut self,
         list: &SolidList<S>,
@@ -188,7 +189,7 @@ impl Packet {
         let solid = list.solid(record);
         let member = Member::new(solid.kind(), record);
         let mut shorter = RaySet::EMPTY;
-        for ray in rays {
+        for ray in self.near(solid, rays) {
             if let Some(met) = self.first_of_solid(solid, ray, self.bound(ray))
                 && self.offer(ray, met.meeting.t, list.described(), member)
             {
@@ -200,10 +201,10 @@ impl Packet {
     }
 
     /// As [`Packet::meets`] for a solid of another kind.
-    #[inline]
+    #[inline(always)]
     pub fn meets_solid(&self, solid: &impl TracedSolid, rays: RaySet) -> RaySet {
         let mut blocked = RaySet::EMPTY;
-        for ray in rays {
+        for ray in self.near(solid, rays) {
             let t_max = lane(&self.t_max, ray);
             if self.first_of_solid(solid, ray, t_max).is_some() {
                 blocked.insert(ray);
@@ -212,10 +213,24 @@ impl Packet {
         blocked
     }
 
+    /// The rays without those that certainly pass by a solid.
+    #[inline(always)]
+    fn near(&self, solid: &impl TracedSolid, rays: RaySet) -> RaySet {
+        counters::solved(rays.bits().count_ones());
+        let mut near = 0;
+        for row in 0..ROWS {
+            let mut in_row = LaneMask::splat(false);
+            for lane in 0..LANES {
+                in_row.0[lane] = !solid.passes_by(&self.rays().ray(row, lane));
+            }
+            near |= u16::from(in_row.bits()) << (row * LANES);
+        }
+        rays & RaySet::from_bits(near)
+    }
+
     /// Where a ray first meets a solid, up to `t_max`.
-    #[inline]
+    #[inline(never)]
     fn first_of_solid(&self, solid: &impl TracedSolid, ray: usize, t_max: f64) -> Option<Met> {
-        counters::solved(1);
         let local = self.rays().ray(ray / LANES, ray % LANES);
         solid.first(&local, lane(&self.t_min, ray), t_max)
     }

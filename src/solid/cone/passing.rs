@@ -1,0 +1,168 @@
+//! Lines that certainly pass by balls and the wall between them, told by a few
+//! products.
+//!
+//! Most of the rays that come to a slender solid's box pass it by, and not
+//! narrowly. For those the bounds that `rounded.rs` keeps of every term are not
+//! needed, nor is any root or branch: so a row of rays is tested at once.
+//!
+//! A line passes by a ball of radius `r` iff `|l| > r |d|`, `l = x × d`, with `x`
+//! counted from its centre; and by the wall, both nappes, iff `E < 0` of (4) in
+//! `wall.rs`, which is `√τ |w| > |k|` with `τ = (β + Δ²) / |a|²`. What is computed of
+//! these, u = 2^-53, is off by
+//!
+//! ```text
+//! |δl| <= 5 u |x| |d|,   |δw| <= 6 u |x| |a| |d|,   |δk| <= 6 u |d| (r0 |a| + |Δ| |x|)
+//! ```
+//!
+//! (of `l` one u for an `x` that is itself a rounded difference). So it is certain
+//! where the left side is above the right one by as much, `p > q + ε`; and, squared,
+//! since `(q + ε)² <= (1 + η) q² + (1 + 1/η) ε²` for any `η > 0`, where
+//!
+//! ```text
+//! |l|² > (1 + η) r² |d|² + ρ |d|² |x|²
+//! τ w² > (1 + η) |k|² + ρ |d|² (r0² |a|² + Δ² |x|² + τ |x|² |a|²)
+//! ```
+//!
+//! `ε²` is `(6 u)²` times the square of a sum of sums, so at most four times the sum
+//! of the squares: with `η` = 2^-20, `ρ` = 2^-78 is above `(1 + 1/η) · 144 u²`. Lines
+//! that pass by within 2^-20 of the radius, or a 2^-38th of the way to it, are left to
+//! the solver.
+
+use glam::DVec3;
+
+use super::wall::{Fit, Taper};
+use crate::math::power_of_two;
+
+/// `1 + η`, and four times the η for the roundings of the squares.
+const WIDER: f64 = 1.0 + power_of_two(-18);
+
+/// `ρ`, doubled for its roundings.
+const ROUNDINGS: f64 = power_of_two(-77);
+
+/// Below this a square may have lost what is compared to underflow.
+const LEAST: f64 = power_of_two(-900);
+
+/// A line `x + t d`.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solid) struct Line {
+    x: DVec3,
+    d: DVec3,
+    /// `x × d`.
+    across: DVec3,
+    xx: f64,
+    dd: f64,
+}
+
+impl Line {
+    #[inline(always)]
+    pub fn new(x: DVec3, d: DVec3) -> Self {
+        Self {
+            x,
+            d,
+            across: x.cross(d),
+            xx: x.dot(x),
+            dd: d.dot(d),
+        }
+    }
+
+    /// Whether it certainly passes by the ball about the origin. Says nothing if not,
+    /// as for what is not finite.
+    #[inline(always)]
+    pub fn passes_ball(&self, radius: f64) -> bool {
+        let beside = self.across.dot(self.across);
+        is_above(beside, radius * radius * self.dd, self.dd * self.xx)
+    }
+
+    /// Whether it certainly passes by the wall on both sides of the apex. Says nothing
+    /// if not.
+    #[inline(always)]
+    pub fn passes_wall(&self, taper: &Taper) -> bool {
+        let (a, r0) = (taper.a, taper.radius0);
+        let (aa, delta) = (a.dot(a), taper.radius1 - r0);
+        let squared = delta * delta;
+        let tau = match taper.fit {
+            Fit::Discs => 1.0 + squared / aa,
+            Fit::Balls => 1.0,
+        };
+        let n = a.cross(self.d);
+        let (w, k) = (self.x.dot(n), n * r0 + self.across * delta);
+        let sizes = r0 * r0 * aa + squared * self.xx + tau * self.xx * aa;
+        is_above(tau * (w * w), k.dot(k), self.dd * sizes)
+    }
+}
+
+/// Whether a square is certainly above another; `sizes` is what [`ROUNDINGS`] are of.
+#[inline(always)]
+fn is_above(one: f64, other: f64, sizes: f64) -> bool {
+    (one > WIDER * other + ROUNDINGS * sizes) & (one > LEAST)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cmp::Ordering;
+
+    use super::super::wall::{Exactly, Term};
+    use super::*;
+    use crate::math::Random;
+    use crate::solid::exact::sign;
+
+    const SEED: u64 = 41;
+
+    #[test]
+    fn balls_are_told_from_a_little_beyond_the_radius_on() {
+        let mut random = Random::new(SEED, 0);
+        for _ in 0..10_000 {
+            let (away, radius) = (random.direction(), random.log_uniform(1e-3, 1e3));
+            let heading = away.any_orthonormal_vector() * random.log_uniform(1e-3, 1e3);
+            let back = heading * random.uniform(-1e3, 1e3) * radius;
+            let at = |factor: f64| Line::new(away * (radius * factor) + back, heading);
+            assert!(at(1.0001).passes_ball(radius));
+            assert!(!at(1.0).passes_ball(radius));
+            assert!(!at(0.9999).passes_ball(radius));
+        }
+    }
+
+    /// The radii are chosen for `E` = 0, but for a factor. The sign of `E` is told by
+    /// numbers of any length.
+    #[test]
+    fn walls_are_told_from_a_little_beyond_the_radii_on() {
+        let mut random = Random::new(SEED, 1);
+        let mut told = 0;
+        for _ in 0..10_000 {
+            let a = random.direction() * random.log_uniform(1e-3, 1e3);
+            let (x, d) = (random.direction() * a.length() * 9.0, random.direction());
+            let (one, other) = (random.unit(), random.unit());
+            let (n, w) = (a.cross(d), x.dot(a.cross(d)));
+            let k = n * one + x.cross(d) * (other - one);
+            for factor in [0.9999, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 1.0001] {
+                let scale = factor * w.abs() / k.length();
+                let taper = Taper {
+                    a,
+                    radius0: scale * one,
+                    radius1: scale * other,
+                    fit: Fit::Balls,
+                };
+                let passes = Line::new(x, d).passes_wall(&taper);
+                let e = sign(&Exactly {
+                    taper: &taper,
+                    x,
+                    d,
+                    term: Term::E,
+                });
+                assert!(!passes || e == Ordering::Less, "{taper:?} {x} {d}");
+                assert!(passes || factor > 0.99995, "{taper:?} {x} {d}");
+                told += usize::from(passes);
+            }
+        }
+        assert_eq!(told, 10_000, "within 2^-20 nothing is told");
+    }
+
+    #[test]
+    fn what_is_no_number_or_too_small_is_left_to_the_solver() {
+        let far = DVec3::new(0.0, 9.0, 0.0);
+        assert!(Line::new(far, DVec3::X).passes_ball(1.0));
+        assert!(!Line::new(far * f64::INFINITY, DVec3::X).passes_ball(1.0));
+        assert!(!Line::new(far * f64::NAN, DVec3::X).passes_ball(1.0));
+        assert!(!Line::new(far * power_of_two(-460), DVec3::X).passes_ball(0.0));
+    }
+}
