@@ -50,21 +50,18 @@ struct Within {
 impl Within {
     /// In a leaf, from `t_min` on.
     fn leaf(crossings: &LeafCrossings, t_min: f64) -> Self {
-        let span = |one: &Crossings| -> Spans {
+        let span = |one: &Crossings, starts_inside: bool| -> Spans {
             if one.is_none() {
                 return smallvec![];
             }
-            let start = if one.starts_inside() {
-                t_min
-            } else {
-                one.enter
-            };
+            let start = if starts_inside { t_min } else { one.enter };
             smallvec![(start, one.last_leave)]
         };
-        let mut surely = span(&crossings.inner);
+        let LeafCrossings { outer, inner } = crossings;
+        let mut surely = span(inner, inner.starts_inside());
         surely.retain(|span| span.0 <= span.1);
         // A line that comes in and is not seen to leave is told by `is_odd`.
-        let mut perhaps = span(&crossings.outer);
+        let mut perhaps = span(outer, outer.may_start_inside());
         perhaps
             .iter_mut()
             .for_each(|span| span.1 = span.1.max(span.0));
@@ -228,7 +225,7 @@ fn is_odd(leaf: &LeafCrossings) -> bool {
         || is_endless(inner)
         || (outer.is_none() && !inner.is_none())
         || inner.last_leave > outer.last_leave
-        || (!outer.starts_inside() && (inner.starts_inside() || inner.enter < outer.enter))
+        || (!outer.may_start_inside() && (inner.starts_inside() || inner.enter < outer.enter))
 }
 
 #[cfg(test)]

@@ -29,7 +29,9 @@
 //! solid, nor its last exit `b` before the solid's end; each point of the inner
 //! prism's triangles is between its vertices and hence in the solid, so any
 //! entry is at or after `e`, any exit at or before `l`. A ray starts inside a
-//! prism if it meets an exit before any entry.
+//! prism if it meets an exit before any entry. Where it meets both at once, where two
+//! faces join, it may start on either side: it is taken to start inside of an outer
+//! prism and outside of an inner one, which claims less.
 //!
 //! *Tubes.* Without one of its discs the surface is a part of the boundary of
 //! `C`: a first hit is that of the boundary or later, so the lower bounds hold.
@@ -107,8 +109,15 @@ impl Crossings {
         self.enter == f64::INFINITY && self.leave == f64::INFINITY
     }
 
+    /// Whether the ray certainly starts inside: it is met on the way out first.
     pub fn starts_inside(&self) -> bool {
         self.leave < self.enter
+    }
+
+    /// Whether it may: both ways are met at once where two faces join, by a ray that
+    /// grazes the edge from outside or, if the edge is a fold inward, from inside.
+    pub fn may_start_inside(&self) -> bool {
+        self.leave <= self.enter && self.leave < f64::INFINITY
     }
 }
 
@@ -191,7 +200,7 @@ pub(crate) fn solid_bounds(
             f64::INFINITY
         }
     };
-    if !outer.starts_inside() {
+    if !outer.may_start_inside() {
         let is_certain_entry = enters && is_certain(outer.enter);
         let high = match (enters, is_certain_entry) {
             (_, true) => inner.enter,
@@ -223,7 +232,7 @@ pub(crate) fn sheet_bounds(outer: &Crossings, sheets: &Crossings, t_min: f64) ->
     let is_through = both < LATER;
     let low = if outer.is_none() {
         f64::INFINITY
-    } else if outer.starts_inside() {
+    } else if outer.may_start_inside() {
         t_min
     } else {
         outer.enter
@@ -275,6 +284,19 @@ mod tests {
         // Through the missing disc.
         assert_eq!(both(&outer, &inner, false), (1.0, f64::INFINITY));
         assert_eq!(both(&outer[1..], &inner[1..], false), (3.0, f64::INFINITY));
+    }
+
+    #[test]
+    fn ray_that_meets_an_edge_may_start_on_either_side_of_it() {
+        let (enter, leave) = (true, false);
+        let fold = [(1.0, enter), (1.0, leave), (4.0, leave)];
+        // The solid is left at 0.9, or entered at 2.
+        assert_eq!(both(&fold, &[], true), (0.5, f64::INFINITY));
+        let inner = [(2.0, enter), (3.0, leave)];
+        assert_eq!(both(&fold, &inner, true), (0.5, 4.0));
+        let inner_fold = [(2.0, enter), (2.0, leave), (3.0, leave)];
+        let outer = [(1.0, enter), (4.0, leave)];
+        assert_eq!(both(&outer, &inner_fold, true), (1.0, 2.0));
     }
 
     #[test]
