@@ -15,11 +15,8 @@ const GROUPS: [Group; 5] = [
     ("callback in C", Symbol::Circle, false, |one| {
         one == Representation::CCallback
     }),
-    ("Embree's cone curve", Symbol::Diamond, false, |one| {
-        matches!(
-            one,
-            Representation::EmbreeCone | Representation::EmbreeConePacket
-        )
+    ("Embree's own solids", Symbol::Diamond, false, |one| {
+        one.name().starts_with("embree_")
     }),
     ("mesh of N sides", Symbol::Square, true, |one| {
         one.name().starts_with(MESH)
@@ -75,7 +72,7 @@ pub fn figures(found: &Traversal) -> Vec<Shown> {
             }));
         }
         let titles = [
-            "bytes for each cylinder that is stored",
+            "bytes for each solid that is stored",
             "position error in radii, 99th percentile",
         ];
         let point = |one: &Figures| Some((one.bytes_per_cylinder, one.p99_error_r?));
@@ -288,7 +285,7 @@ fn ratio_rows(found: &Traversal) -> Vec<Vec<String>> {
 const READING: [&str; 3] = [
     "Above 1 this library is faster, each side in its fastest mode. Rivals are timed one by one in turns with this library on the same rays; a ratio is the median over neighbouring measurements of some milliseconds, averaged by time over all rays; spreads are median absolute deviations, as if all pieces were off together. Rows with several threads share the rays out; figures are of the first number of threads.",
     "Coherent rays are the camera's, in tiles of 4 by 4 pixels; shadow rays go from their hits to the sun and stop at anything; incoherent ones start anywhere in the box, in any direction. All are f32 numbers, so that everybody has the same ray. An exact oracle says of a sample of them what is hit first, among candidates found by brute force.",
-    "Wrong is a hit for a miss, a miss for a hit, or another cylinder than the first. The position error is along the ray, in radii of the cylinder that is hit, over the rays with the right cylinder. Bytes are records and all that Embree holds, for each cylinder that is stored: those of a placed prototype count once, placements come on top.",
+    "Wrong is a hit for a miss, a miss for a hit, or another solid than the first. The position error is along the ray, in radii of the solid that is hit (the greater one where it tapers, the least half width of a cuboid), over the rays with the right solid. Bytes are records and all that Embree holds, for each solid that is stored: those of a placed prototype count once, placements come on top.",
 ];
 
 #[cfg(test)]
