@@ -1,5 +1,7 @@
 //! The comparison as figures, as tables and as a page.
 
+use std::collections::HashSet;
+
 use super::outcome::{Figures, RIVALS, Row, Traversal};
 use super::rays::Kind;
 use super::representation::Representation;
@@ -234,11 +236,8 @@ pub fn page(found: &Traversal, circumstances: &str) -> String {
     let mut page = Page::new("Rays through whole scenes: time, error and memory");
     page.note(circumstances);
     page.heading("Times as fast");
-    let headings: Vec<&str> = ["scene", "rays"]
-        .into_iter()
-        .chain(RIVALS.map(|(name, _)| name))
-        .collect();
-    page.table(&headings, &ratio_rows(found));
+    let (headings, rows) = ratio_table(found);
+    page.table(&headings, &rows);
     for paragraph in READING {
         page.paragraph(paragraph);
     }
@@ -247,38 +246,52 @@ pub fn page(found: &Traversal, circumstances: &str) -> String {
         page.figure(&shown.svg);
     }
     page.heading("All figures");
-    let rows: Vec<Vec<String>> = found.rows.iter().map(summary).collect();
-    page.table(&SUMMARY_HEADINGS, &rows);
+    let measured = found.rows.iter().filter(|row| row.found.is_ok());
+    page.table(
+        &SUMMARY_HEADINGS,
+        &measured.map(summary).collect::<Vec<_>>(),
+    );
     page.heading("What is missing");
     let missing = found.rows.iter().filter_map(|row| {
         let reason = row.found.as_ref().err()?;
         let (scene, name) = (row.scene.name(), row.representation.name());
         Some(format!("{name} of {scene}: {reason}"))
     });
-    let mut missing: Vec<String> = missing.collect();
-    missing.dedup();
-    for one in missing {
+    // Each stands at several kinds of rays and numbers of threads.
+    let mut told = HashSet::new();
+    for one in missing.filter(|one| told.insert(one.clone())) {
         page.note(&one);
     }
     page.finish()
 }
 
-fn ratio_rows(found: &Traversal) -> Vec<Vec<String>> {
-    let mut rows = Vec::new();
-    for &scene in &found.scenes {
-        for rays in Kind::ALL {
-            let mut cells = vec![scene.name().to_owned(), rays.name().to_owned()];
-            cells.extend(RIVALS.map(|(_, rivals)| {
-                let ratio = found.ratio(scene, rays, rivals);
-                ratio.map_or_else(
-                    |_| String::from("–"),
-                    |ratio| format!("{:.2} ± {:.2}", ratio.spread.median, ratio.spread.deviation),
-                )
-            }));
-            rows.push(cells);
-        }
-    }
-    rows
+/// The headings and the rows: a column for each rival that some scene has.
+fn ratio_table(found: &Traversal) -> (Vec<&'static str>, Vec<Vec<String>>) {
+    let asked = || {
+        let scenes = found.scenes.iter();
+        scenes.flat_map(|&scene| Kind::ALL.map(|rays| (scene, rays)))
+    };
+    let is_there = |rivals: &[Representation]| {
+        asked().any(|(scene, rays)| found.ratio(scene, rays, rivals).is_ok())
+    };
+    let rivals: Vec<_> = RIVALS
+        .into_iter()
+        .filter(|(_, rivals)| is_there(rivals))
+        .collect();
+    let mut headings = vec!["scene", "rays"];
+    headings.extend(rivals.iter().map(|(name, _)| name));
+    let row = |(scene, rays): (SceneName, Kind)| {
+        let mut cells = vec![scene.name().to_owned(), rays.name().to_owned()];
+        cells.extend(rivals.iter().map(|(_, rivals)| {
+            let ratio = found.ratio(scene, rays, rivals);
+            ratio.map_or_else(
+                |_| String::from("–"),
+                |ratio| format!("{:.2} ± {:.2}", ratio.spread.median, ratio.spread.deviation),
+            )
+        }));
+        cells
+    };
+    (headings, asked().map(row).collect())
 }
 
 /// How to read the page.
@@ -328,6 +341,7 @@ mod tests {
                 row(Mesh16, Kind::Coherent, 400.0, Some(0.02)),
                 row(Mesh32, Kind::Coherent, 500.0, Some(0.005)),
                 row(Mesh64, Kind::Coherent, 0.0, None),
+                row(Mesh64, Kind::Shadow, 0.0, None),
                 row(EmbreeCone, Kind::Shadow, 90.0, None),
             ],
         }
@@ -361,6 +375,9 @@ mod tests {
     #[test]
     fn page_has_ratios_figures_and_reasons() {
         let text = page(&sample(), "here");
+        // Once, although of two kinds of rays; and no column for what no scene has.
+        assert_eq!(text.matches("mesh_64 of lattice").count(), 1);
+        assert!(text.contains("vs_embree_cone") && !text.contains("vs_embree_disc"));
         for part in [
             "<td>1.50 ± 0.50</td>",
             "<svg",
