@@ -260,6 +260,68 @@ fn traversal_other_solids_have_rows_and_rivals_of_their_own() {
     }
 }
 
+/// Cylinders and spheres of one prototype, which is placed on a ground.
+const MIXED: &str = r#"
+[[cylinder]]
+p0 = [0, 0, -0.2]
+p1 = [0, 0, 0]
+radius = 20
+
+[[prototype]]
+name = "dumbbell"
+
+[[prototype.cylinder]]
+p0 = [0, 0, 0]
+p1 = [0, 0, 3]
+radius = 0.5
+
+[[prototype.sphere]]
+center = [0, 0, 3]
+radius = 1
+
+[[instance]]
+of = "dumbbell"
+
+[[instance]]
+of = "dumbbell"
+translate = [3, 0, 0]
+"#;
+
+const COMPOSED: &str = r#"
+[[union]]
+of = [
+    { sphere = { center = [0, 0, 0], radius = 1 } },
+    { sphere = { center = [1, 0, 0], radius = 1 } },
+]
+"#;
+
+#[test]
+fn traversal_mixed_solids_have_meshes_and_composed_ones_a_reason() {
+    let folder = tempfile::tempdir().expect("a directory");
+    fs::create_dir(folder.path().join("mine")).unwrap();
+    fs::write(folder.path().join("mine/lattice.toml"), MIXED).unwrap();
+    fs::write(folder.path().join("mine/forest.toml"), COMPOSED).unwrap();
+    let mut arguments = vec!["traversal", "--scene", "lattice", "--scene", "forest"];
+    arguments.extend(["--scenes", "mine", "--rays", "512"]);
+    arguments.extend(["--rounds", "1", "--threads", "1"]);
+    let found = figures(folder.path(), &arguments);
+    for row in found["rows"].as_array().expect("an array") {
+        let name = row["representation"].as_str().unwrap();
+        let missing = row["reason"].as_str();
+        if row["scene"] == "forest" {
+            assert!(missing.unwrap().contains("composed of others"), "{row}");
+        } else if name.starts_with("analytic") {
+            assert_eq!(row["wrong_percent"], 0.0, "{row}");
+        } else if name == "mesh_64" {
+            assert!(row["wrong_percent"].as_f64().unwrap() < 5.0, "{row}");
+        } else if name == "embree_cone" {
+            assert!(missing.unwrap().contains("of the kind sphere"), "{row}");
+        } else if name == "embree_sphere" {
+            assert!(missing.unwrap().contains("of the kind cylinder"), "{row}");
+        }
+    }
+}
+
 #[test]
 fn traversal_report_is_written_whole_and_needs_nothing_else() {
     let folder = tempfile::tempdir().expect("a directory");

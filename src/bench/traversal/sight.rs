@@ -112,3 +112,58 @@ impl Sight {
         !is_beside
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::rays::random_rays;
+    use super::super::thicket::{sticks, thicket};
+    use super::*;
+    use crate::math::Bounds;
+    use crate::oracle::first_hit_of_any;
+    use crate::solid::{RoundedCone, SolidKind};
+
+    #[test]
+    fn rays_that_hit_enter_the_ball_and_near_the_axis() {
+        const SEED: u64 = 19;
+        let kinds = [
+            SolidKind::Cone,
+            SolidKind::RoundedCone,
+            SolidKind::Sphere,
+            SolidKind::Cuboid,
+            SolidKind::Disk,
+        ];
+        let others = kinds.map(|kind| thicket(kind, 30, SEED));
+        let cube = Bounds {
+            lower: DVec3::ZERO,
+            upper: DVec3::ONE,
+        };
+        let rays = random_rays(&cube, 200, SEED);
+        for scene in others.into_iter().chain([sticks(30, SEED)]) {
+            let (mut hits, mut left) = (0, 0);
+            for (_, solid) in scene.prototypes[0].singles() {
+                for ray in &rays {
+                    let sight = Sight::new(ray.origin, ray.direction, ray.t_min);
+                    let entered = sight.enters(&Ball::of(&solid));
+                    let is_left = entered.is_some() && sight.nears_axis(&solid);
+                    left += usize::from(is_left);
+                    if let Some(hit) = first_hit_of_any(&solid, ray) {
+                        hits += 1;
+                        assert!(
+                            is_left && entered <= Some(hit.t_f64()),
+                            "seed {SEED}, {solid:?}, {ray:?}"
+                        );
+                    }
+                }
+            }
+            // Of 6000 pairs; a candidate is a hit more often than every fifth time.
+            assert!(hits > 50 && left < 5 * hits, "{hits} hits of {left} left");
+        }
+    }
+
+    #[test]
+    fn a_rounded_cone_without_an_axis_is_near() {
+        let ball = RoundedCone::new(DVec3::ONE, DVec3::ONE, 0.5, 0.25).unwrap();
+        let sight = Sight::new(DVec3::ZERO, DVec3::ONE, 0.0);
+        assert!(sight.nears_axis(&ball.into()));
+    }
+}
