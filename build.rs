@@ -24,9 +24,10 @@ const FUNCTIONS: &str = "cyltrace_.*|rtc(New|Release)(Device|Scene|Geometry)\
     |rtcSetGeometry(Bounds|Intersect|Occluded|IntersectFilter)Function";
 
 /// The constants of C enumerations that Rust names.
-const CONSTANTS: [&str; 30] = [
+const CONSTANTS: [&str; 33] = [
     "RTC_BUFFER_TYPE_FLAGS",
     "RTC_BUFFER_TYPE_INDEX",
+    "RTC_BUFFER_TYPE_NORMAL",
     "RTC_BUFFER_TYPE_VERTEX",
     "RTC_DEVICE_PROPERTY_BACKFACE_CULLING_ENABLED",
     "RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED",
@@ -51,7 +52,9 @@ const CONSTANTS: [&str; 30] = [
     "RTC_FORMAT_UINT3",
     "RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE",
     "RTC_GEOMETRY_TYPE_INSTANCE",
+    "RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT",
     "RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE",
+    "RTC_GEOMETRY_TYPE_SPHERE_POINT",
     "RTC_GEOMETRY_TYPE_TRIANGLE",
     "RTC_GEOMETRY_TYPE_USER",
     "RTC_SCENE_FLAG_ROBUST",

@@ -107,6 +107,14 @@ pub enum Error {
         /// How many segments.
         segments: usize,
     },
+    /// Normals that don't belong to the discs.
+    #[error("{normals} normals were given for {discs} discs")]
+    NormalCount {
+        /// How many normals.
+        normals: usize,
+        /// How many discs.
+        discs: usize,
+    },
 }
 
 /// Embree's kinds of errors; unknown numbers are kept.

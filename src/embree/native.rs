@@ -1,5 +1,5 @@
-//! Geometry that Embree intersects by itself: triangle meshes and straight
-//! curves.
+//! Geometry that Embree intersects by itself: triangle meshes, straight curves,
+//! spheres and discs.
 
 use super::error::Error;
 use super::query::Query;
@@ -96,6 +96,64 @@ impl<Q: Query> SceneBuilder<Q> {
         self.attach(&curves)
     }
 
+    /// Adds spheres of Embree's own (`SPHERE_POINT`): points and radii. A ray meets one
+    /// where it enters it, or where it leaves it if it starts inside.
+    ///
+    /// # Errors
+    /// When a number is not finite or too far out, a radius is negative, or Embree
+    /// refuses.
+    pub fn attach_spheres(&mut self, spheres: &[[f32; 4]]) -> Result<GeometryId, Error> {
+        let points = self.new_points(sys::RTC_GEOMETRY_TYPE_SPHERE_POINT, spheres)?;
+        self.attach(&points)
+    }
+
+    /// Adds flat discs of Embree's own (`ORIENTED_DISC_POINT`): points and radii, and
+    /// for each a normal of any length. A ray meets them from either side.
+    ///
+    /// # Errors
+    /// As for [`attach_spheres`](Self::attach_spheres), and when a normal is not finite
+    /// or too long, or there are not as many as discs.
+    pub fn attach_discs(
+        &mut self,
+        discs: &[[f32; 4]],
+        normals: &[[f32; 3]],
+    ) -> Result<GeometryId, Error> {
+        check_vertices(normals, |_| true)?;
+        if normals.len() != discs.len() {
+            return Err(Error::NormalCount {
+                normals: normals.len(),
+                discs: discs.len(),
+            });
+        }
+        let points = self.new_points(sys::RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT, discs)?;
+        // Read with 16 bytes each, too, but Embree does not pad this buffer.
+        let padded: Vec<[f32; 4]> = normals.iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
+        self.fill(
+            &points,
+            sys::RTC_BUFFER_TYPE_NORMAL,
+            sys::RTC_FORMAT_FLOAT3,
+            &padded,
+        )?;
+        self.attach(&points)
+    }
+
+    /// Points with radii that are not attached yet.
+    fn new_points(
+        &self,
+        kind: sys::RTCGeometryType,
+        vertices: &[[f32; 4]],
+    ) -> Result<GeometryHandle, Error> {
+        check_vertices(vertices, |&[_, _, _, radius]| radius >= 0.0)?;
+        let points = GeometryHandle::new(self.device(), kind)?;
+        self.fill(
+            &points,
+            sys::RTC_BUFFER_TYPE_VERTEX,
+            sys::RTC_FORMAT_FLOAT4,
+            vertices,
+        )?;
+        Ok(points)
+    }
+
     /// Curves that are not attached yet.
     pub(super) fn new_curves(
         &self,
@@ -147,8 +205,8 @@ impl<Q: Query> SceneBuilder<Q> {
         Ok(curves)
     }
 
-    /// Copies `items` into a new buffer of Embree's, which pads it for the
-    /// 16-byte loads it reads vertices with.
+    /// Copies `items` into a new buffer of Embree's, which pads one of vertices for
+    /// the 16-byte loads it reads them with.
     fn fill<T: Copy>(
         &self,
         geometry: &GeometryHandle,

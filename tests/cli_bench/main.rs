@@ -4,7 +4,8 @@
 mod accuracy;
 #[path = "../support/program.rs"]
 mod program;
-mod scenes;
+mod scale;
+mod traversal;
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Embree's own triangles and cone curves.
+//! Embree's own triangles, straight curves, spheres and discs.
 
 use cyltrace::embree::{Device, DeviceOptions, Error, NativeHit, Ray32, SceneBuilder};
 
@@ -180,6 +180,74 @@ fn round_curves_end_in_spheres() {
     let beyond = ray([-3.0, 0.0, 2.4], [1.0, 0.0, 0.0]);
     let hit = scene.closest_native(&beyond, &mut ()).unwrap();
     assert!(is_near(hit.t, 2.7), "{hit:?}");
+}
+
+/// With as many normals as fill the last 16 bytes of their buffer, and fewer.
+#[test]
+fn discs_are_met_from_both_sides_within_their_radius() {
+    for count in [1_u8, 3, 4, 8] {
+        let discs: Vec<[f32; 4]> = (0..count)
+            .map(|i| [10.0 * f32::from(i), 0.0, 1.0, 0.5])
+            .collect();
+        // Of any length, and the last one tilted.
+        let mut normals = vec![[0.0, 0.0, 3.0]; discs.len()];
+        *normals.last_mut().unwrap() = [1.0, 0.0, 1.0];
+        let mut builder = builder();
+        let attached = builder.attach_discs(&discs, &normals).unwrap();
+        let scene = builder.commit().unwrap();
+        let x = 10.0 * f32::from(count - 1);
+        for (from, towards) in [(5.0, -1.0), (-5.0, 1.0)] {
+            let slanting = ray([x + 0.25, 0.0, from], [0.0, 0.0, towards]);
+            let hit = scene.closest_native(&slanting, &mut ()).unwrap();
+            assert_eq!(
+                (hit.geometry, hit.primitive),
+                (attached, u32::from(count) - 1)
+            );
+            assert!(is_near(hit.t, (0.75 - from).abs()), "{hit:?}");
+            // Within the radius of a disc that is seen from above, not of this one.
+            let beside = ray([x + 0.4, 0.0, from], [0.0, 0.0, towards]);
+            assert_eq!(scene.closest_native(&beside, &mut ()), None);
+            if count > 1 {
+                let first = ray([0.4, 0.0, from], [0.0, 0.0, towards]);
+                let hit = scene.closest_native(&first, &mut ()).unwrap();
+                assert_eq!(hit.primitive, 0);
+                assert!(is_near(hit.t, (1.0 - from).abs()), "{hit:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn spheres_are_met_from_outside_and_from_inside() {
+    let mut builder = builder();
+    let spheres = [[9.0, 9.0, 9.0, 1.0], [0.0, 0.0, 1.0, 0.5]];
+    let attached = builder.attach_spheres(&spheres).unwrap();
+    let scene = builder.commit().unwrap();
+    for (origin, t, normal) in [(-3.0, 3.5, -1.0), (1.25, 0.25, 1.0)] {
+        let along = ray([0.0, 0.0, origin], [0.0, 0.0, 1.0]);
+        let hit = scene.closest_native(&along, &mut ()).unwrap();
+        assert_eq!((hit.geometry, hit.primitive), (attached, 1));
+        assert!(is_near(hit.t, t) && hit.normal[2] * normal > 0.0, "{hit:?}");
+    }
+    let beside = ray([0.51, 0.0, -3.0], [0.0, 0.0, 1.0]);
+    assert_eq!(scene.closest_native(&beside, &mut ()), None);
+}
+
+#[test]
+fn points_bad_input_is_refused_before_embree_sees_it() {
+    let mut builder = builder();
+    let disc = [0.0, 0.0, 0.0, 1.0];
+    assert_eq!(
+        builder.attach_discs(&[disc], &[]),
+        Err(Error::NormalCount {
+            normals: 0,
+            discs: 1
+        })
+    );
+    let bad_normal = builder.attach_discs(&[disc], &[[f32::NAN, 0.0, 1.0]]);
+    assert!(bad_normal.is_err());
+    let negative = builder.attach_spheres(&[disc, [0.0, 0.0, 0.0, -1.0]]);
+    assert!(negative.unwrap_err().to_string().starts_with("vertex 1"));
 }
 
 #[test]

@@ -12,6 +12,7 @@
 //! scene of cylinders apart from one another ([`Spaced`]), the same for all.
 
 mod native;
+mod shape;
 mod spaced;
 mod traced;
 
@@ -21,7 +22,8 @@ use crate::solid::formulations::{Answer, Batch, Formulation, Precision, Problem}
 use crate::solid::{Caps, Cylinder};
 
 pub(super) use native::ray_for_embree;
-pub use native::{Native, SIDES, Shape};
+pub use native::{Native, SIDES};
+pub use shape::Shape;
 pub use spaced::Spaced;
 pub use traced::Traced;
 

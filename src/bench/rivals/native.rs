@@ -1,8 +1,9 @@
-//! Geometry that Embree intersects by itself: the cone curve with equal radii,
-//! and inscribed triangle meshes.
+//! Cylinders as geometry that Embree intersects by itself: the cone curve with equal
+//! radii, and inscribed triangle meshes.
 
 use glam::DVec3;
 
+use super::shape::Shape;
 use super::spaced::Spaced;
 use super::{CYLINDERS_TIMED, Rival, Row, measured_cylinders};
 use crate::embree::{
@@ -10,8 +11,7 @@ use crate::embree::{
 };
 use crate::math::Ray;
 use crate::solid::formulations::{Answer, Batch, Precision, Problem};
-use crate::solid::tessellation::{inscribed_prism, prism_size};
-use crate::solid::{Caps, Cylinder, Part};
+use crate::solid::{Cylinder, Part};
 
 /// The meshes, by the number of their sides.
 pub const SIDES: [(u32, &str); 11] = [
@@ -28,83 +28,6 @@ pub const SIDES: [(u32, &str); 11] = [
     (1024, "mesh-1024"),
 ];
 
-/// What Embree makes of a cylinder.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
-    /// A segment of `CONE_LINEAR_CURVE` with the same radius at both ends.
-    Cone,
-    /// The inscribed prism with so many sides.
-    Mesh(u32),
-}
-
-impl Shape {
-    /// Attaches one geometry of all these cylinders, in their order.
-    ///
-    /// # Errors
-    /// When Embree refuses one.
-    pub fn attach(
-        self,
-        builder: &mut SceneBuilder<()>,
-        cylinders: impl Iterator<Item = Cylinder>,
-    ) -> Result<(), Error> {
-        match self {
-            Self::Cone => attach_cones(builder, cylinders),
-            Self::Mesh(sides) => attach_meshes(builder, cylinders, sides),
-        }
-    }
-
-    /// How many of Embree's primitives a cylinder with these discs becomes.
-    #[must_use]
-    pub fn primitives(self, caps: Caps) -> u64 {
-        match self {
-            Self::Cone => 1,
-            Self::Mesh(sides) => prism_size(caps, sides).1,
-        }
-    }
-}
-
-fn attach_cones(
-    builder: &mut SceneBuilder<()>,
-    cylinders: impl Iterator<Item = Cylinder>,
-) -> Result<(), Error> {
-    let (mut vertices, mut first, mut neighbours) = (Vec::new(), Vec::new(), Vec::new());
-    for cylinder in cylinders {
-        first.push(vertices.len() as u32);
-        for end in [cylinder.p0(), cylinder.p1()] {
-            let [x, y, z] = end.as_vec3().to_array();
-            vertices.push([x, y, z, cylinder.radius() as f32]);
-        }
-        // An end without disc is one that a neighbour continues.
-        neighbours.push(match cylinder.caps() {
-            Caps::Both => 0,
-            Caps::P1 => 1,
-            Caps::P0 => 2,
-            Caps::None => 3,
-        });
-    }
-    builder.attach_cone_curves(&vertices, &first, Some(&neighbours))?;
-    Ok(())
-}
-
-fn attach_meshes(
-    builder: &mut SceneBuilder<()>,
-    cylinders: impl Iterator<Item = Cylinder>,
-    sides: u32,
-) -> Result<(), Error> {
-    // In f32 from the start: a million prisms in f64 are gigabytes.
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for cylinder in cylinders {
-        let prism = inscribed_prism(&cylinder, sides);
-        let first = vertices.len() as u32;
-        let corners = |triangle: &[u32; 3]| triangle.map(|corner| first + corner);
-        triangles.extend(prism.triangles.iter().map(corners));
-        let narrow = |vertex: &DVec3| vertex.as_vec3().to_array();
-        vertices.extend(prism.vertices.iter().map(narrow));
-    }
-    builder.attach_triangles(&vertices, &triangles)?;
-    Ok(())
-}
-
 /// Cylinders as Embree's own geometry.
 #[derive(Debug)]
 pub struct Native {
@@ -118,7 +41,8 @@ impl Native {
     /// The name of [`Shape::Cone`] in tables.
     pub const CONE_NAME: &str = "cone-curve";
 
-    /// Makes ready to ask Embree, and measures what it keeps for a cylinder.
+    /// Makes ready to ask Embree, and measures what it keeps for a cylinder. The shape
+    /// is one that represents cylinders.
     ///
     /// # Errors
     /// When Embree cannot be set up.
@@ -139,7 +63,8 @@ impl Native {
     /// A scene of these cylinders and nothing else.
     fn build(&self, cylinders: &[Cylinder]) -> Result<Scene<()>, Error> {
         let mut builder = SceneBuilder::new(&self.device)?;
-        self.shape.attach(&mut builder, cylinders.iter().copied())?;
+        let solids = cylinders.iter().map(|&cylinder| cylinder.into());
+        self.shape.attach(&mut builder, solids)?;
         builder.commit()
     }
 
@@ -150,7 +75,7 @@ impl Native {
         let at_p1 = match self.shape {
             Shape::Mesh(sides) if hit.primitive < 2 * sides => return Part::Side,
             Shape::Mesh(sides) => !cylinder.caps().at_p0() || hit.primitive >= 3 * sides,
-            Shape::Cone => {
+            _ => {
                 let axis = cylinder.p1() - cylinder.p0();
                 let along = normal.dot(axis);
                 if along * along < 0.5 * normal.length_squared() * axis.length_squared() {
@@ -231,6 +156,7 @@ pub(in crate::bench) fn ray_for_embree(ray: &Ray) -> Option<Ray32> {
 mod tests {
     use super::*;
     use crate::bench::samples::{self, Shifted};
+    use crate::solid::Caps;
     use crate::solid::formulations::Formulation;
     use crate::solid::tessellation::sagitta;
 

@@ -9,11 +9,12 @@ use std::sync::Arc;
 use glam::DAffine3;
 
 use crate::oracle::ExactAffine;
-use crate::scene::{CylinderList, PrototypeIndex, Scene};
+use crate::scene::{CylinderList, Prototype, PrototypeIndex, Scene};
+use crate::solid::{AnySolid, SolidKind};
 
 /// A prototype in the world.
 pub struct Placed {
-    /// What stands there; it has cylinders of its own.
+    /// What stands there; it has solids of its own.
     pub prototype: PrototypeIndex,
     /// The composed map, without rounding.
     pub exact: ExactAffine,
@@ -25,7 +26,7 @@ pub struct Placed {
 pub struct Flat {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// The places of all prototypes with cylinders, those of the root first.
+    /// The places of all prototypes with solids, those of the root first.
     pub placed: Vec<Placed>,
     numbers: HashMap<Vec<u32>, u32>,
 }
@@ -52,7 +53,7 @@ impl Flat {
         path: &mut Vec<u32>,
     ) {
         let description = &scene.prototypes[prototype.0 as usize];
-        if !description.cylinders.is_empty() {
+        if !description.has_no_solids() {
             let number = self.placed.len() as u32;
             self.numbers.insert(path.clone(), number);
             self.placed.push(Placed {
@@ -72,7 +73,7 @@ impl Flat {
     /// The position in `placed` of the prototype at the end of a path.
     ///
     /// # Panics
-    /// When there is none with cylinders.
+    /// When there is none with solids.
     #[must_use]
     pub fn number(&self, path: &[u32]) -> u32 {
         self.numbers[path]
@@ -84,10 +85,54 @@ impl Flat {
         !self.scene.prototypes[0].placements.is_empty()
     }
 
+    /// What a prototype is.
+    #[must_use]
+    pub fn prototype(&self, index: PrototypeIndex) -> &Prototype {
+        &self.scene.prototypes[index.0 as usize]
+    }
+
     /// The cylinders of a prototype.
     #[must_use]
     pub fn cylinders(&self, prototype: PrototypeIndex) -> &CylinderList {
-        &self.scene.prototypes[prototype.0 as usize].cylinders
+        &self.prototype(prototype).cylinders
+    }
+
+    /// The solids of a prototype in an order of their own, which is that of rivals'
+    /// primitives.
+    pub fn solids(&self, prototype: PrototypeIndex) -> impl Iterator<Item = AnySolid> {
+        self.prototype(prototype).singles().map(|(_, solid)| solid)
+    }
+
+    /// Whether a solid is composed of others, which rivals have nothing for.
+    #[must_use]
+    pub fn has_compositions(&self) -> bool {
+        let prototypes = &self.scene.prototypes;
+        prototypes
+            .iter()
+            .any(|one| !one.solids.compositions.is_empty())
+    }
+
+    /// The kinds of solids that stand somewhere, each once.
+    #[must_use]
+    pub fn kinds(&self) -> Vec<SolidKind> {
+        let mut kinds = Vec::new();
+        for prototype in self.prototypes() {
+            // All of the list are of one kind, and may be millions.
+            let has_cylinders = !self.cylinders(prototype).is_empty();
+            kinds.extend(has_cylinders.then_some(SolidKind::Cylinder));
+            let others = self.prototype(prototype).solids.singles();
+            kinds.extend(others.map(|(_, solid)| solid.kind()));
+        }
+        kinds.sort_unstable();
+        kinds.dedup();
+        kinds
+    }
+
+    /// Whether nothing but cylinders stands anywhere.
+    #[must_use]
+    pub fn is_of_cylinders_alone(&self) -> bool {
+        let kinds = self.kinds();
+        kinds.iter().all(|&kind| kind == SolidKind::Cylinder)
     }
 
     /// The prototypes that stand somewhere, each once.
@@ -99,10 +144,11 @@ impl Flat {
         used
     }
 
-    /// Cylinders that are stored: those of a prototype count once.
+    /// Solids that are stored: those of a prototype count once.
     #[must_use]
     pub fn stored(&self) -> usize {
         let used = self.prototypes();
-        used.iter().map(|&one| self.cylinders(one).len()).sum()
+        let count = |one| self.cylinders(one).len() + self.prototype(one).solids.len();
+        used.into_iter().map(count).sum()
     }
 }

@@ -20,6 +20,8 @@ mod race;
 mod rays;
 mod representation;
 mod scenes;
+mod sight;
+mod thicket;
 mod witness;
 
 pub use flat::{Flat, Placed};
@@ -31,4 +33,5 @@ pub use race::Crew;
 pub(super) use race::{Lap, race};
 pub use rays::{Kind, Rays, TILE, camera_rays, random_rays};
 pub use representation::{Met, Representation, Representative, SolidId};
-pub use scenes::{SceneName, sticks};
+pub use scenes::SceneName;
+pub use thicket::{sticks, thicket};

@@ -18,9 +18,10 @@ use crate::bench::rivals::Shape;
 use crate::embree::{
     Device, DeviceOptions, Error, NativeHit, PacketWidth, Ray32, Scene, SceneBuilder,
 };
-use crate::scene::PrototypeIndex;
+use crate::scene::{Prototype, PrototypeIndex};
+use crate::solid::AnySolid;
 
-/// What a prototype's cylinders become.
+/// What a prototype's solids become.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solids {
     /// Geometry that Embree intersects by itself.
@@ -29,14 +30,43 @@ pub enum Solids {
     Narrow,
 }
 
+/// Which solids the primitives of a prototype are.
+struct Primitives {
+    /// The first one of each solid.
+    first: Vec<u32>,
+    /// The solids' numbers.
+    numbers: Vec<u32>,
+}
+
+impl Primitives {
+    /// Of a prototype in which a solid becomes `count` primitives.
+    fn new(prototype: &Prototype, count: impl Fn(&AnySolid) -> u64) -> Self {
+        let mut next = 0;
+        let (first, numbers) = prototype
+            .singles()
+            .map(|(number, solid)| {
+                let first = next;
+                next += count(&solid) as u32;
+                (first, number)
+            })
+            .unzip();
+        Self { first, numbers }
+    }
+
+    /// The number of the solid of a primitive.
+    fn number(&self, primitive: u32) -> u32 {
+        let after = self.first.partition_point(|&first| first <= primitive);
+        self.numbers[after - 1]
+    }
+}
+
 /// A scene as Embree traces it.
 pub struct Native {
     device: Device,
     scene: Scene<()>,
     flat: Arc<Flat>,
-    /// The first primitive of each cylinder, for prototypes in which a cylinder
-    /// is several.
-    first_primitives: HashMap<PrototypeIndex, Vec<u32>>,
+    /// What Embree's primitives are, by prototype.
+    primitives: HashMap<PrototypeIndex, Primitives>,
     /// Bytes beside Embree's.
     records_bytes: usize,
 }
@@ -49,10 +79,7 @@ impl Native {
     pub fn new(flat: &Arc<Flat>, solids: Solids, options: &DeviceOptions) -> Result<Self, Error> {
         let device = Device::new(options)?;
         let attach = |builder: &mut SceneBuilder<()>, prototype| match solids {
-            Solids::Shape(shape) => {
-                let records = flat.cylinders(prototype).iter();
-                shape.attach(builder, records.map(|record| record.cylinder()))
-            }
+            Solids::Shape(shape) => shape.attach(builder, flat.solids(prototype)),
             Solids::Narrow => c_callback::attach_narrow(builder, flat.cylinders(prototype)),
         };
         let mut builder = SceneBuilder::new(&device)?;
@@ -70,20 +97,24 @@ impl Native {
         } else if !flat.placed.is_empty() {
             attach(&mut builder, PrototypeIndex::ROOT)?;
         }
-        let (first_primitives, records_bytes) = match solids {
-            Solids::Shape(shape @ Shape::Mesh(_)) => {
-                let prototypes = flat.prototypes().into_iter();
-                let firsts = prototypes.map(|one| (one, first_primitives(flat, one, shape)));
-                (firsts.collect(), 0)
-            }
-            Solids::Shape(Shape::Cone) => (HashMap::new(), 0),
-            Solids::Narrow => (HashMap::new(), flat.stored() * c_callback::RECORD_BYTES),
+        let count = |solid: &AnySolid| match solids {
+            Solids::Shape(shape) => shape.primitives(solid),
+            Solids::Narrow => 1,
+        };
+        let primitives = flat
+            .prototypes()
+            .into_iter()
+            .map(|one| (one, Primitives::new(flat.prototype(one), count)))
+            .collect();
+        let records_bytes = match solids {
+            Solids::Shape(_) => 0,
+            Solids::Narrow => flat.stored() * c_callback::RECORD_BYTES,
         };
         Ok(Self {
             device,
             scene: builder.commit()?,
             flat: Arc::clone(flat),
-            first_primitives,
+            primitives,
             records_bytes,
         })
     }
@@ -103,30 +134,14 @@ impl Native {
         // Instances are attached in the order of the places, and alone.
         let placed = hit.instance.map_or(0, |geometry| geometry.0);
         let prototype = self.flat.placed[placed as usize].prototype;
-        let cylinder = match self.first_primitives.get(&prototype) {
-            None => hit.primitive as usize,
-            Some(firsts) => firsts.partition_point(|&first| first <= hit.primitive) - 1,
-        };
         Met {
             t: f64::from(hit.t),
             solid: SolidId {
                 placed,
-                primitive: self.flat.cylinders(prototype).primitive(cylinder),
+                primitive: self.primitives[&prototype].number(hit.primitive),
             },
         }
     }
-}
-
-fn first_primitives(flat: &Flat, prototype: PrototypeIndex, shape: Shape) -> Vec<u32> {
-    let mut next = 0;
-    let records = flat.cylinders(prototype).iter();
-    records
-        .map(|record| {
-            let first = next;
-            next += shape.primitives(record.cylinder().caps()) as u32;
-            first
-        })
-        .collect()
 }
 
 /// The map in f32, by rows.
@@ -164,5 +179,80 @@ impl Representative for Native {
 
     fn bytes(&self) -> usize {
         self.device.memory_bytes() + self.records_bytes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ours;
+    use super::super::representation::Representation;
+    use super::super::thicket::{sticks, thicket};
+    use super::super::witness::Witness;
+    use super::*;
+    use crate::solid::SolidKind;
+    use crate::tracer::Options;
+
+    const SEED: u64 = 31;
+
+    /// Rays with a wrong answer are few, and the others are off by no more than `most`
+    /// radii, for all that represents the solids of a scene.
+    fn agrees(scene: crate::scene::Scene, representations: &[(Representation, f64)]) {
+        let flat = Arc::new(Flat::new(Arc::new(scene)));
+        let modes = ours::modes(&flat, &Options::default()).unwrap();
+        let tracer = modes[0].1.tracer();
+        let witness = Witness::new(&flat);
+        for rays in Rays::of_scene(&flat, tracer, 2048, SEED) {
+            let judged = witness.judge(&rays, 512);
+            for &(representation, most) in representations {
+                let shape = Solids::Shape(representation.shape().unwrap());
+                let native = Native::new(&flat, shape, &DeviceOptions::default()).unwrap();
+                let single = judged.errors(&native, &rays);
+                let mut all = vec![single];
+                if representation.is_by_packets() {
+                    let packets = super::super::native_packets::by_packets(native).unwrap();
+                    all.push(judged.errors(packets.as_ref(), &rays));
+                }
+                for errors in all {
+                    let told = format!(
+                        "{}, {} rays: {errors:?}",
+                        representation.name(),
+                        rays.kind.name()
+                    );
+                    assert!(errors.wrong_percent() < 2.0, "{told}");
+                    assert!(errors.p99_r.is_none_or(|p99| p99 < most), "{told}");
+                    assert_eq!(errors.p99_r.is_none(), rays.kind == Kind::Shadow, "{told}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn embree_s_own_solids_are_nearly_those_that_they_represent() {
+        use Representation::{
+            EmbreeConePacket, EmbreeDiscPacket, EmbreeRoundPacket, EmbreeSpherePacket, Mesh64,
+            MeshFaces,
+        };
+        let of = |kind| thicket(kind, 1000, SEED);
+        agrees(
+            sticks(1000, SEED),
+            &[(EmbreeConePacket, 1e-2), (Mesh64, 0.1)],
+        );
+        agrees(
+            of(SolidKind::Cone),
+            &[(EmbreeConePacket, 1e-2), (Mesh64, 0.1)],
+        );
+        agrees(
+            of(SolidKind::RoundedCone),
+            &[(EmbreeRoundPacket, 1e-2), (Mesh64, 0.1)],
+        );
+        agrees(
+            of(SolidKind::Sphere),
+            &[(EmbreeSpherePacket, 1e-2), (Mesh64, 0.1)],
+        );
+        agrees(
+            of(SolidKind::Disk),
+            &[(EmbreeDiscPacket, 1e-2), (Mesh64, 0.1)],
+        );
+        agrees(of(SolidKind::Cuboid), &[(MeshFaces, 1e-2)]);
     }
 }

@@ -7,6 +7,7 @@ use std::time::Instant;
 use super::flat::Flat;
 use super::rays::{Kind, Rays};
 use super::representation::{Met, Representation, Representative, SolidId};
+use crate::solid::SolidKind;
 use crate::tracer::counters::{self, Counts};
 use crate::tracer::{BuildTime, FirstHit, Layout, Options, Tracer, TracerError};
 
@@ -18,7 +19,8 @@ pub struct Ours {
     in_batches: bool,
 }
 
-/// The modes, with the seconds that each took to build.
+/// The modes, with the seconds that each took to build. Blocks are of cylinders: a
+/// scene without has one mode less.
 ///
 /// # Errors
 /// When Embree refuses the scene.
@@ -36,12 +38,7 @@ pub fn modes(
         let tracer = Tracer::new(Arc::clone(&flat.scene), &options)?;
         Ok((Arc::new(tracer), start.elapsed().as_secs_f64()))
     };
-    let (single, block) = (built(Layout::Single)?, built(Layout::Block)?);
-    let ours = |mode| {
-        let (tracer, build_s) = match mode {
-            Representation::AnalyticBlock => &block,
-            _ => &single,
-        };
+    let ours = |mode, (tracer, build_s): &(Arc<Tracer>, f64)| {
         let ours = Ours {
             tracer: Arc::clone(tracer),
             flat: Arc::clone(flat),
@@ -49,7 +46,16 @@ pub fn modes(
         };
         (mode, ours, *build_s)
     };
-    Ok(Representation::OURS.map(ours).into())
+    let single = built(Layout::Single)?;
+    let mut modes = vec![
+        ours(Representation::AnalyticSingle, &single),
+        ours(Representation::AnalyticPacket, &single),
+    ];
+    if flat.kinds().contains(&SolidKind::Cylinder) {
+        let block = built(Layout::Block)?;
+        modes.push(ours(Representation::AnalyticBlock, &block));
+    }
+    Ok(modes)
 }
 
 impl Ours {

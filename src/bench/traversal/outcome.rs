@@ -13,18 +13,19 @@ pub struct Figures {
     /// Rays with a wrong answer, of those that the oracle judged.
     pub wrong_percent: f64,
     /// The distance of the answer from the true hit, along the ray, in radii of
-    /// the cylinder that is hit: the 99th percentile over the rays with the
-    /// right cylinder, for others are wrong. `None` where only a hit is asked
+    /// the solid that is hit (where it tapers, in the greater one; of a cuboid in its
+    /// least half width): the 99th percentile over the rays with the right solid, for
+    /// others are wrong. `None` where only a hit is asked
     /// for.
     pub p99_error_r: Option<f64>,
     /// What is kept for the scene, records and all that Embree holds, for each
-    /// cylinder that is stored (those of a prototype count once).
+    /// solid that is stored (those of a prototype count once).
     pub bytes_per_cylinder: f64,
     /// Seconds from the description to what can be traced.
     pub build_s: f64,
     /// Callbacks a ray, where the library counts them.
     pub callbacks_per_ray: Option<f64>,
-    /// Rays put to a cylinder or to a block of them, a ray, where it is counted.
+    /// Rays put to a solid or to a block of them, a ray, where it is counted.
     pub solves_per_ray: Option<f64>,
     /// Its time over that of a mode of this library, which is named.
     pub ratio: Option<(Spread, Representation)>,
@@ -65,13 +66,32 @@ pub struct Ratio {
 }
 
 /// The rivals that ratios are to, by the names of their keys.
-pub const RIVALS: [(&str, &[Representation]); 3] = [
+pub const RIVALS: [(&str, &[Representation]); 7] = [
     (
         "vs_embree_cone",
         &[Representation::EmbreeCone, Representation::EmbreeConePacket],
     ),
+    (
+        "vs_embree_round",
+        &[
+            Representation::EmbreeRound,
+            Representation::EmbreeRoundPacket,
+        ],
+    ),
+    (
+        "vs_embree_sphere",
+        &[
+            Representation::EmbreeSphere,
+            Representation::EmbreeSpherePacket,
+        ],
+    ),
+    (
+        "vs_embree_disc",
+        &[Representation::EmbreeDisc, Representation::EmbreeDiscPacket],
+    ),
     ("vs_mesh_32", &[Representation::Mesh32]),
     ("vs_mesh_64", &[Representation::Mesh64]),
+    ("vs_mesh_faces", &[Representation::MeshFaces]),
 ];
 
 /// The outcome.

@@ -1,5 +1,7 @@
 //! The comparison as figures, as tables and as a page.
 
+use std::collections::HashSet;
+
 use super::outcome::{Figures, RIVALS, Row, Traversal};
 use super::rays::Kind;
 use super::representation::Representation;
@@ -15,11 +17,8 @@ const GROUPS: [Group; 5] = [
     ("callback in C", Symbol::Circle, false, |one| {
         one == Representation::CCallback
     }),
-    ("Embree's cone curve", Symbol::Diamond, false, |one| {
-        matches!(
-            one,
-            Representation::EmbreeCone | Representation::EmbreeConePacket
-        )
+    ("Embree's own solids", Symbol::Diamond, false, |one| {
+        one.name().starts_with("embree_")
     }),
     ("mesh of N sides", Symbol::Square, true, |one| {
         one.name().starts_with(MESH)
@@ -75,7 +74,7 @@ pub fn figures(found: &Traversal) -> Vec<Shown> {
             }));
         }
         let titles = [
-            "bytes for each cylinder that is stored",
+            "bytes for each solid that is stored",
             "position error in radii, 99th percentile",
         ];
         let point = |one: &Figures| Some((one.bytes_per_cylinder, one.p99_error_r?));
@@ -237,11 +236,8 @@ pub fn page(found: &Traversal, circumstances: &str) -> String {
     let mut page = Page::new("Rays through whole scenes: time, error and memory");
     page.note(circumstances);
     page.heading("Times as fast");
-    let headings: Vec<&str> = ["scene", "rays"]
-        .into_iter()
-        .chain(RIVALS.map(|(name, _)| name))
-        .collect();
-    page.table(&headings, &ratio_rows(found));
+    let (headings, rows) = ratio_table(found);
+    page.table(&headings, &rows);
     for paragraph in READING {
         page.paragraph(paragraph);
     }
@@ -250,45 +246,59 @@ pub fn page(found: &Traversal, circumstances: &str) -> String {
         page.figure(&shown.svg);
     }
     page.heading("All figures");
-    let rows: Vec<Vec<String>> = found.rows.iter().map(summary).collect();
-    page.table(&SUMMARY_HEADINGS, &rows);
+    let measured = found.rows.iter().filter(|row| row.found.is_ok());
+    page.table(
+        &SUMMARY_HEADINGS,
+        &measured.map(summary).collect::<Vec<_>>(),
+    );
     page.heading("What is missing");
     let missing = found.rows.iter().filter_map(|row| {
         let reason = row.found.as_ref().err()?;
         let (scene, name) = (row.scene.name(), row.representation.name());
         Some(format!("{name} of {scene}: {reason}"))
     });
-    let mut missing: Vec<String> = missing.collect();
-    missing.dedup();
-    for one in missing {
+    // Each stands at several kinds of rays and numbers of threads.
+    let mut told = HashSet::new();
+    for one in missing.filter(|one| told.insert(one.clone())) {
         page.note(&one);
     }
     page.finish()
 }
 
-fn ratio_rows(found: &Traversal) -> Vec<Vec<String>> {
-    let mut rows = Vec::new();
-    for &scene in &found.scenes {
-        for rays in Kind::ALL {
-            let mut cells = vec![scene.name().to_owned(), rays.name().to_owned()];
-            cells.extend(RIVALS.map(|(_, rivals)| {
-                let ratio = found.ratio(scene, rays, rivals);
-                ratio.map_or_else(
-                    |_| String::from("–"),
-                    |ratio| format!("{:.2} ± {:.2}", ratio.spread.median, ratio.spread.deviation),
-                )
-            }));
-            rows.push(cells);
-        }
-    }
-    rows
+/// The headings and the rows: a column for each rival that some scene has.
+fn ratio_table(found: &Traversal) -> (Vec<&'static str>, Vec<Vec<String>>) {
+    let asked = || {
+        let scenes = found.scenes.iter();
+        scenes.flat_map(|&scene| Kind::ALL.map(|rays| (scene, rays)))
+    };
+    let is_there = |rivals: &[Representation]| {
+        asked().any(|(scene, rays)| found.ratio(scene, rays, rivals).is_ok())
+    };
+    let rivals: Vec<_> = RIVALS
+        .into_iter()
+        .filter(|(_, rivals)| is_there(rivals))
+        .collect();
+    let mut headings = vec!["scene", "rays"];
+    headings.extend(rivals.iter().map(|(name, _)| name));
+    let row = |(scene, rays): (SceneName, Kind)| {
+        let mut cells = vec![scene.name().to_owned(), rays.name().to_owned()];
+        cells.extend(rivals.iter().map(|(_, rivals)| {
+            let ratio = found.ratio(scene, rays, rivals);
+            ratio.map_or_else(
+                |_| String::from("–"),
+                |ratio| format!("{:.2} ± {:.2}", ratio.spread.median, ratio.spread.deviation),
+            )
+        }));
+        cells
+    };
+    (headings, asked().map(row).collect())
 }
 
 /// How to read the page.
 const READING: [&str; 3] = [
     "Above 1 this library is faster, each side in its fastest mode. Rivals are timed one by one in turns with this library on the same rays; a ratio is the median over neighbouring measurements of some milliseconds, averaged by time over all rays; spreads are median absolute deviations, as if all pieces were off together. Rows with several threads share the rays out; figures are of the first number of threads.",
     "Coherent rays are the camera's, in tiles of 4 by 4 pixels; shadow rays go from their hits to the sun and stop at anything; incoherent ones start anywhere in the box, in any direction. All are f32 numbers, so that everybody has the same ray. An exact oracle says of a sample of them what is hit first, among candidates found by brute force.",
-    "Wrong is a hit for a miss, a miss for a hit, or another cylinder than the first. The position error is along the ray, in radii of the cylinder that is hit, over the rays with the right cylinder. Bytes are records and all that Embree holds, for each cylinder that is stored: those of a placed prototype count once, placements come on top.",
+    "Wrong is a hit for a miss, a miss for a hit, or another solid than the first. The position error is along the ray, in radii of the solid that is hit (the greater one where it tapers, the least half width of a cuboid), over the rays with the right solid. Bytes are records and all that Embree holds, for each solid that is stored: those of a placed prototype count once, placements come on top.",
 ];
 
 #[cfg(test)]
@@ -331,6 +341,7 @@ mod tests {
                 row(Mesh16, Kind::Coherent, 400.0, Some(0.02)),
                 row(Mesh32, Kind::Coherent, 500.0, Some(0.005)),
                 row(Mesh64, Kind::Coherent, 0.0, None),
+                row(Mesh64, Kind::Shadow, 0.0, None),
                 row(EmbreeCone, Kind::Shadow, 90.0, None),
             ],
         }
@@ -364,6 +375,9 @@ mod tests {
     #[test]
     fn page_has_ratios_figures_and_reasons() {
         let text = page(&sample(), "here");
+        // Once, although of two kinds of rays; and no column for what no scene has.
+        assert_eq!(text.matches("mesh_64 of lattice").count(), 1);
+        assert!(text.contains("vs_embree_cone") && !text.contains("vs_embree_disc"));
         for part in [
             "<td>1.50 ± 0.50</td>",
             "<svg",

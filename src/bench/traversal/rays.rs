@@ -12,6 +12,7 @@ use crate::bench::rivals::ray_for_embree;
 use crate::embree::Ray32;
 use crate::math::{Bounds, Random, Ray};
 use crate::scene::{AimedCamera, Scene};
+use crate::solid::SolidKind;
 use crate::tracer::Tracer;
 
 /// Neighbouring rays of one kind come in tiles of so many: 4 by 4 pixels.
@@ -148,10 +149,15 @@ const SUN: DVec3 = DVec3::new(0.3, -0.5, 0.8);
 /// surface, so it is first lifted by sixteen times of what that rounds.
 fn shadow_rays(flat: &Flat, tracer: &Tracer, coherent: &[Ray]) -> Vec<Ray> {
     let sun = flat.scene.sun.map_or(SUN, |sun| sun.direction);
-    let hits = coherent.iter().filter_map(|ray| tracer.closest(ray));
-    hits.map(|hit| {
+    let hits = coherent
+        .iter()
+        .filter_map(|ray| Some((ray, tracer.closest(ray)?)));
+    hits.map(|(ray, hit)| {
         let lift = 16.0 * f64::from(f32::EPSILON) * hit.point.abs().max_element();
-        narrow_ray(hit.point + hit.normal * lift, sun)
+        // A disk is seen from behind as well: the start is on the side that is seen.
+        let is_behind = hit.solid == SolidKind::Disk && hit.normal.dot(ray.direction) > 0.0;
+        let seen = if is_behind { -hit.normal } else { hit.normal };
+        narrow_ray(hit.point + seen * lift, sun)
     })
     .collect()
 }
@@ -175,10 +181,8 @@ fn placed_bounds(flat: &Flat) -> Bounds {
         .prototypes
         .iter()
         .map(|prototype| {
-            let cylinders = prototype.cylinders.iter();
-            cylinders.fold(Bounds::EMPTY, |all, record| {
-                all.union(&record.cylinder().bounds())
-            })
+            let solids = prototype.singles();
+            solids.fold(Bounds::EMPTY, |all, (_, solid)| all.union(&solid.bounds()))
         })
         .collect();
     let placed = flat.placed.iter();

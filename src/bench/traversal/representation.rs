@@ -6,7 +6,7 @@ use super::rays::Rays;
 use crate::bench::rivals::Shape;
 use crate::tracer::counters::Counts;
 
-/// How cylinders are represented and rays traced through them.
+/// How solids are represented and rays traced through them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Representation {
     /// This library, a ray at a time, a cylinder a primitive.
@@ -22,14 +22,28 @@ pub enum Representation {
     EmbreeCone,
     /// Embree's cone curve, 16 rays at a time.
     EmbreeConePacket,
-    /// Inscribed prisms of 8 sides.
+    /// Embree's round linear curve, a ray at a time.
+    EmbreeRound,
+    /// The same, 16 rays at a time.
+    EmbreeRoundPacket,
+    /// Embree's sphere point, a ray at a time.
+    EmbreeSphere,
+    /// The same, 16 rays at a time.
+    EmbreeSpherePacket,
+    /// Embree's oriented disc point, a ray at a time.
+    EmbreeDisc,
+    /// The same, 16 rays at a time.
+    EmbreeDiscPacket,
+    /// Inscribed meshes of 8 sides.
     Mesh8,
-    /// Inscribed prisms of 16 sides.
+    /// Inscribed meshes of 16 sides.
     Mesh16,
-    /// Inscribed prisms of 32 sides.
+    /// Inscribed meshes of 32 sides.
     Mesh32,
-    /// Inscribed prisms of 64 sides.
+    /// Inscribed meshes of 64 sides.
     Mesh64,
+    /// Cuboids as the triangles of their faces.
+    MeshFaces,
     /// The callback in C below Embree's own instances, on their f32 rays.
     NativeInstances,
     /// The same below one of Embree 4's arrays of instances.
@@ -38,17 +52,24 @@ pub enum Representation {
 
 impl Representation {
     /// All, in the order of tables; this library's own come first.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 19] = [
         Self::AnalyticSingle,
         Self::AnalyticPacket,
         Self::AnalyticBlock,
         Self::CCallback,
         Self::EmbreeCone,
         Self::EmbreeConePacket,
+        Self::EmbreeRound,
+        Self::EmbreeRoundPacket,
+        Self::EmbreeSphere,
+        Self::EmbreeSpherePacket,
+        Self::EmbreeDisc,
+        Self::EmbreeDiscPacket,
         Self::Mesh8,
         Self::Mesh16,
         Self::Mesh32,
         Self::Mesh64,
+        Self::MeshFaces,
         Self::NativeInstances,
         Self::InstanceArray,
     ];
@@ -70,10 +91,17 @@ impl Representation {
             Self::CCallback => "c_callback",
             Self::EmbreeCone => "embree_cone",
             Self::EmbreeConePacket => "embree_cone_packet",
+            Self::EmbreeRound => "embree_round",
+            Self::EmbreeRoundPacket => "embree_round_packet",
+            Self::EmbreeSphere => "embree_sphere",
+            Self::EmbreeSpherePacket => "embree_sphere_packet",
+            Self::EmbreeDisc => "embree_disc",
+            Self::EmbreeDiscPacket => "embree_disc_packet",
             Self::Mesh8 => "mesh_8",
             Self::Mesh16 => "mesh_16",
             Self::Mesh32 => "mesh_32",
             Self::Mesh64 => "mesh_64",
+            Self::MeshFaces => "mesh_faces",
             Self::NativeInstances => "native_instances",
             Self::InstanceArray => "instance_array",
         }
@@ -84,12 +112,28 @@ impl Representation {
     pub fn shape(self) -> Option<Shape> {
         match self {
             Self::EmbreeCone | Self::EmbreeConePacket => Some(Shape::Cone),
+            Self::EmbreeRound | Self::EmbreeRoundPacket => Some(Shape::Round),
+            Self::EmbreeSphere | Self::EmbreeSpherePacket => Some(Shape::Sphere),
+            Self::EmbreeDisc | Self::EmbreeDiscPacket => Some(Shape::Disc),
             Self::Mesh8 => Some(Shape::Mesh(8)),
             Self::Mesh16 => Some(Shape::Mesh(16)),
             Self::Mesh32 => Some(Shape::Mesh(32)),
             Self::Mesh64 => Some(Shape::Mesh(64)),
+            Self::MeshFaces => Some(Shape::Faces),
             _ => None,
         }
+    }
+
+    /// Whether Embree is handed packets of rays.
+    #[must_use]
+    pub fn is_by_packets(self) -> bool {
+        matches!(
+            self,
+            Self::EmbreeConePacket
+                | Self::EmbreeRoundPacket
+                | Self::EmbreeSpherePacket
+                | Self::EmbreeDiscPacket
+        )
     }
 
     /// Whether it is this library.
@@ -99,7 +143,7 @@ impl Representation {
     }
 }
 
-/// A cylinder of the scene.
+/// A solid of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SolidId {
     /// Where its prototype stands: the position in
@@ -131,7 +175,7 @@ pub trait Representative: Send + Sync {
     /// depends on every answer. It is what is timed.
     fn run(&self, rays: &Rays, range: Range<usize>) -> u64;
 
-    /// What is kept for the scene, in bytes: records of cylinders and
+    /// What is kept for the scene, in bytes: records of solids and
     /// placements, and what Embree holds.
     fn bytes(&self) -> usize;
 

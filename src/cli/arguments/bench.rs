@@ -47,20 +47,21 @@ pub struct AccuracyArguments {
     pub common: Common,
 }
 
-/// Compare whole traversals: this library beside a callback in C, Embree's cone
-/// curve, meshes and instances
+/// Compare whole traversals: this library beside a callback in C, Embree's own
+/// solids, meshes and instances
 ///
 /// Each rival is timed in turns with this library, on the same coherent, shadow
 /// and incoherent rays; an exact oracle judges a sample of them. A rival that
 /// cannot be built here is a row without figures that says why.
 ///
 /// Scenes: sticks_1e4, sticks_1e5 and sticks_1e6 are random sticks in the unit
-/// cube, n^(-1/3) long and a twentieth of that in radius; lattice and forest are
-/// read from their files in --scenes. Without --threads, one thread and all
-/// are timed.
+/// cube, 2 n^(-1/3) long and a twentieth of that in radius; lattice and forest are
+/// read from their files in --scenes; cones_1e5, rounded_cones_1e5, spheres_1e5,
+/// cuboids_1e5 and disks_1e5 are random solids, of which a ray meets as many as of
+/// sticks. Without --threads, one thread and all are timed.
 #[derive(Args, Debug)]
 pub struct TraversalArguments {
-    /// Only this scene; may be repeated [default: all five]
+    /// Only this scene; may be repeated [default: all ten]
     #[arg(long, value_name = "NAME", value_parser = parse_scene)]
     pub scene: Vec<SceneName>,
     /// Where lattice.toml and forest.toml are
@@ -72,7 +73,7 @@ pub struct TraversalArguments {
     /// Samples of each time
     #[arg(long, value_name = "N", default_value = "11")]
     pub rounds: NonZeroUsize,
-    /// Chooses sticks and rays
+    /// Chooses solids and rays
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
     /// Leave out rivals that would take more than SIZE, such as 500MB or 4GiB

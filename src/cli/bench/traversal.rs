@@ -14,7 +14,7 @@ use crate::cli::arguments::TraversalArguments;
 use crate::cli::target::{make_directory, write_text};
 use crate::cli::{interrupt, json, progress, scene};
 
-/// Time, error and memory of everything that traces cylinders.
+/// Time, error and memory of everything that traces solids.
 pub fn run(arguments: &TraversalArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
     json::check(common)?;
@@ -87,14 +87,11 @@ fn summary_text(found: &Traversal, sentence: &str) -> String {
     let mut text = format!("{sentence}\n{table}");
     for &scene in &found.scenes {
         for rays in Kind::ALL {
-            let ratios = RIVALS.map(|(key, rivals)| {
-                let ratio = found.ratio(scene, rays, rivals);
-                let number = ratio.map_or_else(
-                    |_| String::from("–"),
-                    |ratio| format!("{:.2}", ratio.spread.median),
-                );
-                format!("{key} {number}")
+            let ratios = RIVALS.iter().filter_map(|(key, rivals)| {
+                let ratio = found.ratio(scene, rays, rivals).ok()?;
+                Some(format!("{key} {:.2}", ratio.spread.median))
             });
+            let ratios: Vec<String> = ratios.collect();
             let (scene, rays) = (scene.name(), rays.name());
             text += &format!("times as fast: {scene}, {rays}: {}\n", ratios.join(", "));
         }

@@ -1,4 +1,4 @@
-//! `cyltrace bench traversal` and `bench scale`, on scenes that take seconds.
+//! `cyltrace bench traversal`, on scenes that take seconds.
 
 use std::fs;
 
@@ -17,17 +17,24 @@ const ROW_KEYS: [&str; 10] = [
     "build_s",
 ];
 
-const REPRESENTATIONS: [&str; 12] = [
+const REPRESENTATIONS: [&str; 19] = [
     "analytic_single",
     "analytic_packet",
     "analytic_block",
     "c_callback",
     "embree_cone",
     "embree_cone_packet",
+    "embree_round",
+    "embree_round_packet",
+    "embree_sphere",
+    "embree_sphere_packet",
+    "embree_disc",
+    "embree_disc_packet",
     "mesh_8",
     "mesh_16",
     "mesh_32",
     "mesh_64",
+    "mesh_faces",
     "native_instances",
     "instance_array",
 ];
@@ -60,9 +67,9 @@ fn traversal_json_has_every_row_and_ratio_or_its_reason() {
         assert_eq!(row["scene"], "sticks_1e4");
         assert_eq!(
             row["rays"],
-            ["coherent", "shadow", "incoherent"][number / 12]
+            ["coherent", "shadow", "incoherent"][number / REPRESENTATIONS.len()]
         );
-        let name = REPRESENTATIONS[number % 12];
+        let name = REPRESENTATIONS[number % REPRESENTATIONS.len()];
         assert_eq!(row["representation"], name);
         assert_eq!(row["threads"], 2);
         if row["ns_per_ray"].is_null() {
@@ -92,7 +99,18 @@ fn traversal_json_has_every_row_and_ratio_or_its_reason() {
     assert_eq!(keys(&found["ratios"]), ["sticks_1e4"]);
     for rays in ["coherent", "shadow", "incoherent"] {
         let ratios = &found["ratios"]["sticks_1e4"][rays];
-        assert_eq!(keys(ratios), ["vs_embree_cone", "vs_mesh_32", "vs_mesh_64"]);
+        assert_eq!(
+            keys(ratios),
+            [
+                "vs_embree_cone",
+                "vs_embree_round",
+                "vs_embree_sphere",
+                "vs_embree_disc",
+                "vs_mesh_32",
+                "vs_mesh_64",
+                "vs_mesh_faces",
+            ]
+        );
         let reasons = &found["reasons"]["sticks_1e4"][rays];
         assert!(ratios["vs_embree_cone"].as_f64().unwrap() > 0.0);
         assert!(reasons["vs_embree_cone"].is_null());
@@ -159,7 +177,7 @@ fn traversal_nested_placements_are_instanced_and_absent_scenes_say_so() {
         ],
     );
     let rows = found["rows"].as_array().expect("an array");
-    assert_eq!(rows.len(), 2 * 3 * 12);
+    assert_eq!(rows.len(), 2 * 3 * REPRESENTATIONS.len());
     for row in rows {
         let name = row["representation"].as_str().unwrap();
         let missing = row["reason"].as_str();
@@ -171,6 +189,9 @@ fn traversal_nested_placements_are_instanced_and_absent_scenes_say_so() {
         match name {
             "c_callback" => assert!(missing.unwrap().contains("places prototypes")),
             "embree_cone_packet" | "instance_array" => {}
+            _ if is_of_other_kinds(name) => {
+                assert!(missing.unwrap().contains("of the kind cylinder"), "{row}");
+            }
             _ => assert_eq!(missing, None, "{row}"),
         }
         if name.starts_with("analytic") {
@@ -183,6 +204,122 @@ fn traversal_nested_placements_are_instanced_and_absent_scenes_say_so() {
     }
     let ratios = &found["ratios"]["forest"]["coherent"];
     assert!(ratios["vs_embree_cone"].is_null());
+}
+
+fn is_of_other_kinds(representation: &str) -> bool {
+    let own = ["embree_round", "embree_sphere", "embree_disc", "mesh_faces"];
+    own.iter().any(|one| representation.starts_with(one))
+}
+
+#[test]
+fn traversal_other_solids_have_rows_and_rivals_of_their_own() {
+    let folder = tempfile::tempdir().expect("a directory");
+    let scenes = [
+        ("cuboids_1e5", &["mesh_faces"][..]),
+        (
+            "disks_1e5",
+            &["embree_disc", "embree_disc_packet", "mesh_8"],
+        ),
+    ];
+    for (scene, rivals) in scenes {
+        let mut arguments = STICKS;
+        arguments[2] = scene;
+        // Room for 12 triangles a solid, not for 16.
+        arguments[12] = "160MB";
+        let found = figures(folder.path(), &arguments);
+        let rows = found["rows"].as_array().expect("an array");
+        assert_eq!(rows.len(), 3 * REPRESENTATIONS.len());
+        for row in rows {
+            let name = row["representation"].as_str().unwrap();
+            let measured = ["analytic_single", "analytic_packet"];
+            if measured.contains(&name) || rivals.contains(&name) {
+                assert!(row["reason"].is_null(), "{row}");
+                // A polygon of 8 sides is a tenth smaller than its disk.
+                let most = match name {
+                    "mesh_8" => 25.0,
+                    _ if rivals.contains(&name) => 3.0,
+                    _ => 0.0,
+                };
+                assert!(row["wrong_percent"].as_f64().unwrap() <= most, "{row}");
+                continue;
+            }
+            assert!(row["ns_per_ray"].is_null(), "{row}");
+            let reason = row["reason"].as_str().unwrap();
+            let expected = match name {
+                "analytic_block" => "blocks are of cylinders",
+                "c_callback" => "this scene has other solids",
+                "native_instances" => "other solids",
+                "instance_array" => "no placements",
+                _ if name.starts_with("mesh_") && scene == "disks_1e5" && name != "mesh_faces" => {
+                    "more than the 160 MB"
+                }
+                _ => "of the kind",
+            };
+            assert!(reason.contains(expected), "{name}: {reason}");
+        }
+    }
+}
+
+/// Cylinders and spheres of one prototype, which is placed on a ground.
+const MIXED: &str = r#"
+[[cylinder]]
+p0 = [0, 0, -0.2]
+p1 = [0, 0, 0]
+radius = 20
+
+[[prototype]]
+name = "dumbbell"
+
+[[prototype.cylinder]]
+p0 = [0, 0, 0]
+p1 = [0, 0, 3]
+radius = 0.5
+
+[[prototype.sphere]]
+center = [0, 0, 3]
+radius = 1
+
+[[instance]]
+of = "dumbbell"
+
+[[instance]]
+of = "dumbbell"
+translate = [3, 0, 0]
+"#;
+
+const COMPOSED: &str = r#"
+[[union]]
+of = [
+    { sphere = { center = [0, 0, 0], radius = 1 } },
+    { sphere = { center = [1, 0, 0], radius = 1 } },
+]
+"#;
+
+#[test]
+fn traversal_mixed_solids_have_meshes_and_composed_ones_a_reason() {
+    let folder = tempfile::tempdir().expect("a directory");
+    fs::create_dir(folder.path().join("mine")).unwrap();
+    fs::write(folder.path().join("mine/lattice.toml"), MIXED).unwrap();
+    fs::write(folder.path().join("mine/forest.toml"), COMPOSED).unwrap();
+    let mut arguments = vec!["traversal", "--scene", "lattice", "--scene", "forest"];
+    arguments.extend(["--scenes", "mine", "--rays", "512"]);
+    arguments.extend(["--rounds", "1", "--threads", "1"]);
+    let found = figures(folder.path(), &arguments);
+    for row in found["rows"].as_array().expect("an array") {
+        let name = row["representation"].as_str().unwrap();
+        let missing = row["reason"].as_str();
+        if row["scene"] == "forest" {
+            assert!(missing.unwrap().contains("composed of others"), "{row}");
+        } else if name.starts_with("analytic") {
+            assert_eq!(row["wrong_percent"], 0.0, "{row}");
+        } else if name == "mesh_64" {
+            assert!(row["wrong_percent"].as_f64().unwrap() < 5.0, "{row}");
+        } else if name == "embree_cone" {
+            assert!(missing.unwrap().contains("of the kind sphere"), "{row}");
+        } else if name == "embree_sphere" {
+            assert!(missing.unwrap().contains("of the kind cylinder"), "{row}");
+        }
+    }
 }
 
 #[test]
@@ -204,7 +341,8 @@ fn traversal_report_is_written_whole_and_needs_nothing_else() {
         ]
     );
     let read = |name: &str| fs::read_to_string(folder.path().join("new/report").join(name));
-    assert_eq!(read("traversal.csv").unwrap().lines().count(), 1 + 36);
+    let rows = 3 * REPRESENTATIONS.len();
+    assert_eq!(read("traversal.csv").unwrap().lines().count(), 1 + rows);
     let page = read("index.html").unwrap();
     assert!(page.contains(&read("sticks_1e4-coherent.svg").unwrap()));
 }
@@ -214,74 +352,7 @@ fn traversal_unknown_scene_is_refused_with_the_known_ones() {
     let folder = tempfile::tempdir().expect("a directory");
     let (code, out, err) = bench(folder.path(), &["traversal", "--scene", "sticks"]);
     assert_eq!((code, out.as_str()), (2, ""));
-    for part in ["sticks_1e4", "sticks_1e6", "lattice", "forest"] {
+    for part in ["sticks_1e4", "lattice", "forest", "rounded_cones_1e5"] {
         assert!(err.contains(part), "no {part} in {err}");
     }
-}
-
-const SCALE: [&str; 11] = [
-    "scale",
-    "--most",
-    "10000",
-    "--rays",
-    "64",
-    "--rounds",
-    "1",
-    "--threads",
-    "1",
-    "--seed",
-    "3",
-];
-
-#[test]
-fn scale_json_has_decades_fits_and_reasons() {
-    let folder = tempfile::tempdir().expect("a directory");
-    let arguments = [&SCALE[..], &["--max-memory", "1MB"]].concat();
-    let found = figures(folder.path(), &arguments);
-    let numbers = |series: &str| -> Vec<u64> {
-        let rows = found[series].as_array().expect("an array");
-        rows.iter().map(|row| row["n"].as_u64().unwrap()).collect()
-    };
-    assert_eq!(numbers("cylinders"), [1000, 10_000]);
-    assert_eq!(numbers("placements"), [100, 1000, 10_000]);
-    let first = &found["cylinders"][0];
-    assert_eq!(
-        keys(first)[..6],
-        [
-            "n",
-            "build_s",
-            "bytes",
-            "bytes_per",
-            "resident_bytes",
-            "rays_per_s"
-        ]
-    );
-    let bytes = first["bytes"].as_f64().unwrap();
-    assert_eq!(first["bytes_per"].as_f64().unwrap(), bytes / 1000.0);
-    assert!(first["rays_per_s"].as_f64().unwrap() > 0.0);
-    assert!(found["cylinders"][1]["bytes"].is_null());
-    let reason = found["cylinders"][1]["reason"].as_str().unwrap();
-    assert!(reason.contains("more than the 1.0 MB"), "{reason}");
-
-    assert!(found["fits"]["cylinders"]["bytes"].is_null());
-    let growth = found["fits"]["placements"]["bytes"].as_f64().unwrap();
-    assert!((0.0..1.0).contains(&growth), "{growth}");
-}
-
-#[test]
-fn scale_report_is_written_whole() {
-    let folder = tempfile::tempdir().expect("a directory");
-    let (out, names) = report(folder.path(), &SCALE);
-    assert!(
-        out.contains("memory as n^") && out.contains("index.html"),
-        "{out}"
-    );
-    let expected = [
-        "build.svg",
-        "bytes.svg",
-        "index.html",
-        "rays.svg",
-        "scale.csv",
-    ];
-    assert_eq!(names, expected);
 }
