@@ -130,6 +130,7 @@ impl Orientation {
     }
 
     /// A direction of the world as the object sees it, rounded.
+    #[inline]
     #[must_use]
     pub fn to_object(&self, world: DVec3) -> DVec3 {
         let frame = &self.world_from_object;

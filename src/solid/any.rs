@@ -82,6 +82,12 @@ impl AnySolid {
         of_each!(self, solid => solid.chord(from_anchor, direction))
     }
 
+    /// As [`ConvexSolid::passes_by`].
+    #[must_use]
+    pub fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
+        of_each!(self, solid => solid.passes_by(from_anchor, direction))
+    }
+
     /// As [`ConvexSolid::surface_point`].
     #[must_use]
     pub fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {

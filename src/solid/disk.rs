@@ -24,6 +24,7 @@ use glam::DVec3;
 
 use super::cylinder::disc_reach;
 use super::exact::{Expression, Number, cross, difference, dot, sign, vector};
+use super::passing::Line;
 use super::surface::Around;
 use super::{
     Chord, ChordEnd, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint, ball, linear,
@@ -163,6 +164,11 @@ impl ConvexSolid for Disk {
                 lies_on: None,
             }
         })
+    }
+
+    #[inline(always)]
+    fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
+        Line::new(from_anchor, direction).passes_disk(self.normal, self.radius)
     }
 
     /// `u` is the angle about the normal in turns, counted as on a cylinder whose

@@ -13,6 +13,7 @@ pub mod exact;
 pub mod formulations;
 pub mod lanes;
 mod linear;
+mod passing;
 mod rounded_cone;
 mod slab;
 mod spawn;

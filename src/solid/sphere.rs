@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::passing::Line;
 use super::surface::turn;
 use super::{Chord, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint, ball};
 use crate::math::{Bounds, UNIT_ROUNDOFF, unit};
@@ -88,6 +89,11 @@ impl ConvexSolid for Sphere {
     #[inline]
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
         ball::chord(from_anchor, direction, self.radius, Part::Side)
+    }
+
+    #[inline(always)]
+    fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
+        Line::new(from_anchor, direction).passes_ball(self.radius)
     }
 
     /// `u` is the angle about z, from x towards y, in turns; 0 at the poles. `v` is

@@ -2,7 +2,6 @@
 
 mod ends;
 pub(super) mod heights;
-pub(super) mod passing;
 mod rounded;
 pub(super) mod solver;
 mod surface;
@@ -12,11 +11,11 @@ use glam::DVec3;
 
 use super::cylinder::disc_reach;
 use super::exact::{self, Expression, Number, difference, dot};
+use super::passing::Line;
 use super::{Caps, Chord, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint};
 use crate::math::Bounds;
 pub use ends::ConeError;
 pub(super) use ends::Ends;
-use passing::Line;
 use wall::{Fit, Measures};
 
 /// The surface of a part of a circular cone: two endpoints, the radius at

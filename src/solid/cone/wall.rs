@@ -262,7 +262,7 @@ pub(in crate::solid) enum Term {
 }
 
 /// One of them.
-pub(super) struct Exactly<'a> {
+pub(in crate::solid) struct Exactly<'a> {
     pub taper: &'a Taper,
     pub x: DVec3,
     pub d: DVec3,

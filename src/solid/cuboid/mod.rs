@@ -1,6 +1,7 @@
 //! The cuboid as users state it.
 
 mod chord;
+mod passing;
 
 use glam::DVec3;
 
@@ -133,6 +134,11 @@ impl ConvexSolid for Cuboid {
     #[inline]
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
         chord::chord(self, from_anchor, direction)
+    }
+
+    #[inline(always)]
+    fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
+        passing::passes_by(self, from_anchor, direction)
     }
 
     /// `u` and `v` are the two coordinates of the face, in the order y z for a face

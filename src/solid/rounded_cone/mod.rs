@@ -6,9 +6,9 @@ mod surface;
 use glam::DVec3;
 
 use super::cone::Ends;
-use super::cone::passing::Line;
 use super::cone::wall::{Fit, Measures};
 use super::exact::{self, Expression, Number, difference, dot};
+use super::passing::Line;
 use super::{Chord, ConeError, ConvexSolid, Location, Part, SolidKind, SurfacePoint, ball};
 use crate::math::Bounds;
 

@@ -1,17 +1,18 @@
-//! Lines that certainly pass by balls and the wall between them, told by a few
-//! products.
+//! Lines that certainly pass by balls, disks and cones' walls, told by a few products.
 //!
-//! Most of the rays that come to a slender solid's box pass it by, and not
-//! narrowly. For those the bounds that `rounded.rs` keeps of every term are not
-//! needed, nor is any root or branch: so a row of rays is tested at once.
+//! Most of the rays that come to a slender or turned solid's box pass it by, and not
+//! narrowly. For those the bounds that solvers keep of every term are not needed, nor
+//! is any root or branch: so a row of rays is tested at once.
 //!
 //! A line passes by a ball of radius `r` iff `|l| > r |d|`, `l = x × d`, with `x`
-//! counted from its centre; and by the wall, both nappes, iff `E < 0` of (4) in
-//! `wall.rs`, which is `√τ |w| > |k|` with `τ = (β + Δ²) / |a|²`. What is computed of
-//! these, u = 2^-53, is off by
+//! counted from its centre; by a disk with the normal `n` iff `|P| > r |v|`, `P = n × l`,
+//! `v = n·d` (`disk.rs`); and by a cone's wall, both nappes, iff `E < 0` of (4) in
+//! `cone/wall.rs`, which is `√τ |w| > |k|` with `τ = (β + Δ²) / |a|²`. What is computed
+//! of these, u = 2^-53, is off by
 //!
 //! ```text
-//! |δl| <= 5 u |x| |d|,   |δw| <= 6 u |x| |a| |d|,   |δk| <= 6 u |d| (r0 |a| + |Δ| |x|)
+//! |δl| <= 5 u |x| |d|,       |δP| <= 12 u |n| |x| |d|,   |δv| <= 6 u |n| |d|,
+//! |δw| <= 6 u |x| |a| |d|,   |δk| <= 6 u |d| (r0 |a| + |Δ| |x|)
 //! ```
 //!
 //! (of `l` one u for an `x` that is itself a rounded difference). So it is certain
@@ -20,31 +21,32 @@
 //!
 //! ```text
 //! |l|² > (1 + η) r² |d|² + ρ |d|² |x|²
+//! |P|² > (1 + η) r² v² + ρ |d|² |n|² (|x|² + r²)
 //! τ w² > (1 + η) |k|² + ρ |d|² (r0² |a|² + Δ² |x|² + τ |x|² |a|²)
 //! ```
 //!
-//! `ε²` is `(6 u)²` times the square of a sum of sums, so at most four times the sum
-//! of the squares: with `η` = 2^-20, `ρ` = 2^-78 is above `(1 + 1/η) · 144 u²`. Lines
-//! that pass by within 2^-20 of the radius, or a 2^-38th of the way to it, are left to
-//! the solver.
+//! `ε²` is the square of a sum of two, so at most twice the sum of their squares, and
+//! for `k` twice that: `2 (12 u)²` and `4 (6 u)²` times what follows `ρ`. With `η` =
+//! 2^-20, `ρ` = 2^-77 is above `(1 + 1/η) · 288 u²`. Lines that pass by within 2^-20 of
+//! the radius, or a 2^-38th of the way to it, are left to the solver.
 
 use glam::DVec3;
 
-use super::wall::{Fit, Taper};
+use super::cone::wall::{Fit, Taper};
 use crate::math::power_of_two;
 
 /// `1 + η`, and four times the η for the roundings of the squares.
 const WIDER: f64 = 1.0 + power_of_two(-18);
 
 /// `ρ`, doubled for its roundings.
-const ROUNDINGS: f64 = power_of_two(-77);
+const ROUNDINGS: f64 = power_of_two(-76);
 
 /// Below this a square may have lost what is compared to underflow.
 const LEAST: f64 = power_of_two(-900);
 
 /// A line `x + t d`.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solid) struct Line {
+pub(super) struct Line {
     x: DVec3,
     d: DVec3,
     /// `x × d`.
@@ -71,6 +73,16 @@ impl Line {
     pub fn passes_ball(&self, radius: f64) -> bool {
         let beside = self.across.dot(self.across);
         is_above(beside, radius * radius * self.dd, self.dd * self.xx)
+    }
+
+    /// Whether it certainly passes by the disk about the origin across a normal, which
+    /// is not zero. Says nothing if not.
+    #[inline(always)]
+    pub fn passes_disk(&self, normal: DVec3, radius: f64) -> bool {
+        let (beside, slope) = (normal.cross(self.across), normal.dot(self.d));
+        let rr = radius * radius;
+        let sizes = self.dd * normal.dot(normal) * (self.xx + rr);
+        is_above(beside.dot(beside), rr * (slope * slope), sizes)
     }
 
     /// Whether it certainly passes by the wall on both sides of the apex. Says nothing
@@ -101,9 +113,9 @@ fn is_above(one: f64, other: f64, sizes: f64) -> bool {
 mod tests {
     use std::cmp::Ordering;
 
-    use super::super::wall::{Exactly, Term};
     use super::*;
     use crate::math::Random;
+    use crate::solid::cone::wall::{Exactly, Term};
     use crate::solid::exact::sign;
 
     const SEED: u64 = 41;
@@ -119,6 +131,25 @@ mod tests {
             assert!(at(1.0001).passes_ball(radius));
             assert!(!at(1.0).passes_ball(radius));
             assert!(!at(0.9999).passes_ball(radius));
+        }
+    }
+
+    #[test]
+    fn disks_are_told_from_a_little_beyond_the_rim_on() {
+        let mut random = Random::new(SEED, 2);
+        for _ in 0..10_000 {
+            let (axis, radius) = (random.direction(), random.log_uniform(1e-3, 1e3));
+            let normal = axis * random.log_uniform(1e-3, 1e3);
+            let away = axis.any_orthonormal_vector() * radius;
+            let d = random.direction();
+            let back = d * random.uniform(-1e3, 1e3) * radius;
+            let at = |factor: f64| Line::new(away * factor + back, d);
+            // Nearly along the plane the rim is too far away in the direction.
+            if axis.dot(d).abs() > 0.01 {
+                assert!(at(1.0001).passes_disk(normal, radius));
+            }
+            assert!(!at(1.0).passes_disk(normal, radius));
+            assert!(!at(0.9999).passes_disk(normal, radius));
         }
     }
 
