@@ -27,22 +27,30 @@
 //!
 //! `ε²` is the square of a sum of two, so at most twice the sum of their squares, and
 //! for `k` twice that: `2 (12 u)²` and `4 (6 u)²` times what follows `ρ`. With `η` =
-//! 2^-20, `ρ` = 2^-77 is above `(1 + 1/η) · 288 u²`. Lines that pass by within 2^-20 of
+//! 2^-20, `ρ` = 2^-77 is above `(1 + 1/η) · 288 u²`. Lines that pass by within 2^-19 of
 //! the radius, or a 2^-38th of the way to it, are left to the solver.
+//!
+//! **Underflow.** Lines are told where `|l|²`, `|P|²` or `w²` is above 2^-400. What
+//! the sides lose is then too little to matter: for the wall `|x| |a| |d| >= |w|`, so
+//! `|x|² |a|²` is above 2^-602 and `|x|²` above 2^-906, and the last of its terms is
+//! more than 2^-478, where products that lost all add up to less than 2^-870. That needs
+//! an `|a|²` that is not lost; where `|a|` is below 2^-171, the hull of two balls is
+//! within the margin of the greater one's test, for radii are at least 2^-150.
 
 use glam::DVec3;
 
 use super::cone::wall::{Fit, Taper};
 use crate::math::power_of_two;
 
-/// `1 + η`, and four times the η for the roundings of the squares.
+/// `1 + η`, with four times the `η` for the roundings of the squares.
 const WIDER: f64 = 1.0 + power_of_two(-18);
 
 /// `ρ`, doubled for its roundings.
 const ROUNDINGS: f64 = power_of_two(-76);
 
-/// Below this a square may have lost what is compared to underflow.
-const LEAST: f64 = power_of_two(-900);
+/// Squares up to this are left to the solver: what they are compared with may have been
+/// lost to underflow.
+const LEAST: f64 = power_of_two(-400);
 
 /// A line `x + t d`.
 #[derive(Clone, Copy, Debug)]
@@ -72,17 +80,18 @@ impl Line {
     #[inline(always)]
     pub fn passes_ball(&self, radius: f64) -> bool {
         let beside = self.across.dot(self.across);
-        is_above(beside, radius * radius * self.dd, self.dd * self.xx)
+        (beside > LEAST) & is_above(beside, radius * radius * self.dd, self.dd * self.xx)
     }
 
     /// Whether it certainly passes by the disk about the origin across a normal, which
     /// is not zero. Says nothing if not.
     #[inline(always)]
     pub fn passes_disk(&self, normal: DVec3, radius: f64) -> bool {
-        let (beside, slope) = (normal.cross(self.across), normal.dot(self.d));
+        let (p, slope) = (normal.cross(self.across), normal.dot(self.d));
+        let beside = p.dot(p);
         let rr = radius * radius;
         let sizes = self.dd * normal.dot(normal) * (self.xx + rr);
-        is_above(beside.dot(beside), rr * (slope * slope), sizes)
+        (beside > LEAST) & is_above(beside, rr * (slope * slope), sizes)
     }
 
     /// Whether it certainly passes by the wall on both sides of the apex. Says nothing
@@ -99,14 +108,15 @@ impl Line {
         let n = a.cross(self.d);
         let (w, k) = (self.x.dot(n), n * r0 + self.across * delta);
         let sizes = r0 * r0 * aa + squared * self.xx + tau * self.xx * aa;
-        is_above(tau * (w * w), k.dot(k), self.dd * sizes)
+        let ww = w * w;
+        (ww > LEAST) & is_above(tau * ww, k.dot(k), self.dd * sizes)
     }
 }
 
 /// Whether a square is certainly above another; `sizes` is what [`ROUNDINGS`] are of.
 #[inline(always)]
 fn is_above(one: f64, other: f64, sizes: f64) -> bool {
-    (one > WIDER * other + ROUNDINGS * sizes) & (one > LEAST)
+    one > WIDER * other + ROUNDINGS * sizes
 }
 
 #[cfg(test)]
@@ -185,7 +195,7 @@ mod tests {
                 told += usize::from(passes);
             }
         }
-        assert_eq!(told, 10_000, "within 2^-20 nothing is told");
+        assert_eq!(told, 10_000, "within 2^-19 nothing is told");
     }
 
     #[test]
@@ -195,5 +205,28 @@ mod tests {
         assert!(!Line::new(far * f64::INFINITY, DVec3::X).passes_ball(1.0));
         assert!(!Line::new(far * f64::NAN, DVec3::X).passes_ball(1.0));
         assert!(!Line::new(far * power_of_two(-460), DVec3::X).passes_ball(0.0));
+    }
+
+    /// Lines that come into the cone, of whose products most are lost.
+    #[test]
+    fn lines_at_an_apex_are_not_told_by_what_underflow_left() {
+        let d = DVec3::new(0.9998796021390856, 0.0, 0.015517126866271849);
+        let cone = |length: f64, radius1| Taper {
+            a: DVec3::Z * length,
+            radius0: 0.0,
+            radius1,
+            fit: Fit::Discs,
+        };
+        let beside = DVec3::Y * 7.233324068983989e-161;
+        let steep = cone(1.0, power_of_two(90));
+        assert!(!Line::new(beside, d).passes_wall(&steep));
+        let through = d * -power_of_two(-540);
+        for axis in [DVec3::new(0.3, -0.7, 0.1), DVec3::new(-0.9, 0.2, 0.5)] {
+            let long = Taper {
+                a: axis * power_of_two(149),
+                ..cone(1.0, 1.0)
+            };
+            assert!(!Line::new(through, d).passes_wall(&long));
+        }
     }
 }

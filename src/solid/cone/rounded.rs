@@ -5,7 +5,7 @@
 //! `|δ(x × d)| <= 3 u |x| |d|` and `|δ(d·a)| <= 3 u |a| |d|`, u = 2^-53. Where
 //! one is too large for what the value is used for, which is rare but for lines that
 //! graze the wall or are nearly along it, all are computed from exact numbers: then
-//! their signs are exact, and their relative errors a few u.
+//! their signs are exact, and their relative errors at most some ten u.
 //!
 //! What is asked: an error of `A` or `B` below [`GOOD`] of the value, of `B` of the
 //! sum `|B| + s`, `s = |a|² √(E/β)`, that does not cancel. Of `E` the sign is needed,
@@ -34,6 +34,10 @@ const GOOD_FROM_AFAR: f64 = power_of_two(-44);
 /// products will do: as of the triple product's constant term, 30 bits are left, more
 /// than an f32 has.
 const GOOD_CONSTANT_TERM: f64 = power_of_two(-30);
+
+/// The factor of all bounds: the roundings named above and those of further products and
+/// sums, at most 13 u, and of `β`, at most 10 u.
+const ROUNDINGS: f64 = 24.0 * UNIT_ROUNDOFF;
 
 /// A rounded difference and a bound of its error.
 #[derive(Clone, Copy, Debug)]
@@ -82,14 +86,14 @@ impl Rounded {
         let steep = pace * nn.sqrt() + nn + (delta * delta / beta) * (pace * slope.abs());
         let a = Difference {
             value: nn - h * h / beta,
-            error: 16.0 * U * (steep + 9.0 * U * pace * pace),
+            error: ROUNDINGS * (steep + 9.0 * U * pace * pace),
         };
         // |m·n| <= reach |n|, each with 3 u of reach and of pace.
         let g = r0 * aa + delta * x.dot(axis);
         let size = r0 * aa + delta.abs() * reach;
         let b = Difference {
             value: m.dot(n) - g * h / beta,
-            error: 16.0 * U * (reach * pace + size * (delta.abs() * pace) / beta),
+            error: ROUNDINGS * (reach * pace + size * (delta.abs() * pace) / beta),
         };
         // |δk| <= 5 u K with K = |d| (r0 |a| + |Δ| |x|), |δw| <= 6 u |x| |a| |d|.
         let (moment, triple) = (
@@ -101,7 +105,7 @@ impl Rounded {
         let value = kk - ww * tilt;
         let e = Difference {
             value,
-            error: 16.0 * U * (first + 3.0 * U * second),
+            error: ROUNDINGS * (first + 3.0 * U * second),
         };
         Self {
             aa,
@@ -144,7 +148,7 @@ impl Rounded {
         let second = self.reach * self.reach + size * (size / self.beta);
         let c = Difference {
             value: mm - g * (g / self.beta),
-            error: 16.0 * UNIT_ROUNDOFF * (wide + 3.0 * UNIT_ROUNDOFF * second),
+            error: ROUNDINGS * (wide + 3.0 * UNIT_ROUNDOFF * second),
         };
         c.is_within(GOOD_CONSTANT_TERM).then_some(c.value)
     }

@@ -44,7 +44,7 @@
 //!
 //! Each of `A`, `B`, `C` and `E` is a difference. `rounded.rs` says when rounded
 //! products will do for it. Where they do not, it is computed from exact numbers: then
-//! its sign is exact, and its relative error a few u, u = 2^-53. Of the two roots one
+//! its sign is exact, and its relative error at most some ten u, u = 2^-53. Of the two roots one
 //! has no cancellation in its sum `q`; where the other's terms cancel it is `C / q`.
 
 use glam::DVec3;

@@ -36,5 +36,38 @@ pub(super) fn passes_by(cuboid: &Cuboid, x: DVec3, d: DVec3) -> bool {
     );
     let sizes = x.abs().element_sum() + h.element_sum();
     let limit = across + ROUNDINGS * sizes * d.abs().element_sum();
-    (beside.x > limit.x) | (beside.y > limit.y) | (beside.z > limit.z)
+    let is_beyond = |beside: f64, limit: f64| (beside > limit) & (beside < f64::INFINITY);
+    is_beyond(beside.x, limit.x) | is_beyond(beside.y, limit.y) | is_beyond(beside.z, limit.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Orientation;
+
+    fn passes(height: f64, d: DVec3) -> bool {
+        let turned = Orientation::IDENTITY.rotated_z(30.0);
+        let cuboid = Cuboid::new(DVec3::ZERO, DVec3::new(2.0, 1.0, 3.0), turned);
+        let x = turned.to_world(DVec3::new(0.5, height, 0.25)) - d * 7.0;
+        passes_by(&cuboid.expect("it is one"), x, d)
+    }
+
+    #[test]
+    fn lines_beside_a_face_an_edge_and_a_corner_are_told() {
+        let turned = Orientation::IDENTITY.rotated_z(30.0);
+        for d in [DVec3::X, DVec3::Z, DVec3::new(3.0, 0.0, -2.0)] {
+            let d = turned.to_world(d);
+            assert!(passes(1.0 + 1e-9, d));
+            assert!(!passes(1.0, d));
+            assert!(!passes(1.0 - 1e-9, d));
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_or_too_large_is_left_to_the_solver() {
+        assert!(passes(9.0, DVec3::Z));
+        assert!(!passes(f64::NAN, DVec3::Z));
+        assert!(!passes(f64::INFINITY, DVec3::Z));
+        assert!(!passes(1e300, DVec3::new(1e30, 1e30, 1e30)));
+    }
 }

@@ -120,6 +120,7 @@ impl<S: TracedSolid> UserGeometry for SolidList<S> {
         query.meets_solid(self.solid(primitive))
     }
 
+    // Inlined for the rows of lanes within, as `embree::callback` says.
     #[inline(always)]
     fn intersect_packet(
         &self,

@@ -219,6 +219,9 @@ impl Packet {
         counters::solved(rays.bits().count_ones());
         let mut near = 0;
         for row in 0..ROWS {
+            if (rays.bits() >> (row * LANES)) as u8 == 0 {
+                continue;
+            }
             let mut in_row = LaneMask::splat(false);
             for lane in 0..LANES {
                 in_row.0[lane] = !solid.passes_by(&self.rays().ray(row, lane));
@@ -228,7 +231,8 @@ impl Packet {
         rays & RaySet::from_bits(near)
     }
 
-    /// Where a ray first meets a solid, up to `t_max`.
+    /// Where a ray first meets a solid, up to `t_max`. A call, for a solver with its
+    /// branches gains nothing from being compiled for each instruction set.
     #[inline(never)]
     fn first_of_solid(&self, solid: &impl TracedSolid, ray: usize, t_max: f64) -> Option<Met> {
         let local = self.rays().ray(ray / LANES, ray % LANES);
