@@ -119,15 +119,14 @@ impl ExactCrossings {
         if let (Some(leave), Some(last)) = (&self.leave, &self.last_leave) {
             crossings.leave = round(leave, is_out_up);
             crossings.last_leave = round(last, is_out_up);
-            // What is first stays first, also when both round to one number.
-            let starts_inside = self
-                .enter
-                .as_ref()
-                .is_none_or(|enter| leave.is_before(enter));
-            if starts_inside {
-                crossings.leave = crossings.leave.min(crossings.enter.next_down());
-            } else {
-                crossings.leave = crossings.leave.max(crossings.enter);
+            // Which is first is not lost to roundings, nor that neither is. A way out that
+            // comes second may round to the first way in, which claims less.
+            match &self.enter {
+                Some(enter) if enter.is_before(leave) => {
+                    crossings.leave = crossings.leave.max(crossings.enter);
+                }
+                Some(enter) if !leave.is_before(enter) => crossings.leave = crossings.enter,
+                _ => crossings.leave = crossings.leave.min(crossings.enter.next_down()),
             }
         }
         crossings
@@ -328,5 +327,17 @@ mod tests {
         };
         assert_eq!(bounds(3.0, 6.0).high, f64::INFINITY);
         assert_eq!(bounds(6.0, 3.0).low, 1.0);
+    }
+
+    /// A way in and a way out at a parameter that is no f64.
+    #[test]
+    fn edge_that_is_met_between_neighbours_of_f64_stays_one() {
+        let mut fold = from_to(beside_one(4.0), beside_one(4.0));
+        fold.add(beside_one(30.0), false);
+        for rounding in [[false, true], [true, false], [true, true], [false, false]] {
+            let crossings = fold.rounded(rounding);
+            assert!(crossings.may_start_inside(), "{crossings:?}");
+            assert!(!crossings.starts_inside(), "{crossings:?}");
+        }
     }
 }
