@@ -75,7 +75,7 @@ impl Native {
         let at_p1 = match self.shape {
             Shape::Mesh(sides) if hit.primitive < 2 * sides => return Part::Side,
             Shape::Mesh(sides) => !cylinder.caps().at_p0() || hit.primitive >= 3 * sides,
-            _ => {
+            Shape::Cone | Shape::Round | Shape::Sphere | Shape::Disc | Shape::Faces => {
                 let axis = cylinder.p1() - cylinder.p0();
                 let along = normal.dot(axis);
                 if along * along < 0.5 * normal.length_squared() * axis.length_squared() {

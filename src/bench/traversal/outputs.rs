@@ -20,7 +20,7 @@ const GROUPS: [Group; 5] = [
     ("Embree's own solids", Symbol::Diamond, false, |one| {
         one.name().starts_with("embree_")
     }),
-    ("mesh of N sides", Symbol::Square, true, |one| {
+    ("mesh", Symbol::Square, true, |one| {
         one.name().starts_with(MESH)
     }),
     (
@@ -36,7 +36,7 @@ const GROUPS: [Group; 5] = [
     ),
 ];
 
-/// What begins the name of a mesh; its sides follow.
+/// What begins the name of a mesh; its sides follow, or that it is of faces.
 const MESH: &str = "mesh_";
 
 /// A figure with the end of its file's name and its caption.
