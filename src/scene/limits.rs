@@ -1,5 +1,8 @@
-//! How far a scene may go. The tracer's proofs rest on the limits of
-//! placements.
+//! The limits of what is read, in one place; `docs/reliability.md` has them in a
+//! table. The tracer's proofs rest on those of placements. The limits of a kind of
+//! number are with it: of coordinates and radii in `Cylinder::GREATEST` and
+//! `Cylinder::LEAST`, of rays in [`crate::math::GREATEST_ORIGIN`] and
+//! [`crate::math::DIRECTION_SIZES`].
 
 use crate::math::power_of_two;
 
@@ -20,3 +23,32 @@ pub const GREATEST_STRETCH: f64 = power_of_two(64);
 /// Most pixels of a picture, 2^28 (16384 x 16384): its film takes 3 GiB, and
 /// twice that while tiles are put together.
 pub const GREATEST_PIXELS: u64 = 1 << 28;
+
+/// Most bytes of a scene file: 64 MiB, some 600 000 solids. Longer lists belong in
+/// tables, which are read a row at a time.
+pub const GREATEST_SCENE_BYTES: u64 = 64 << 20;
+
+/// Most threads: more than any machine has, few enough to start.
+pub const GREATEST_THREADS: usize = 1024;
+
+/// Most rays of a class that a check makes: some hours.
+pub const GREATEST_RAYS: u64 = 1_000_000_000;
+
+/// Most samples of a pixel: the numbers of samples of the largest picture fit in u64
+/// with room to spare, and more than 2^20 change no 8-bit colour.
+pub const GREATEST_SAMPLES: u32 = 1 << 20;
+
+/// Most numbers of sides that one check goes through.
+pub const MOST_SEGMENT_NUMBERS: usize = 64;
+
+/// Most violations that a check lists.
+pub const MOST_LISTED_VIOLATIONS: u64 = 1_000_000;
+
+/// Most cases of a family that `stress` and `bench accuracy` make.
+pub const GREATEST_CASES: u64 = 10_000_000;
+
+/// Most rays of a kind that `bench` traces: with their answers some gigabytes.
+pub const GREATEST_TIMED_RAYS: u64 = 10_000_000;
+
+/// Most samples of a time that `bench` takes.
+pub const GREATEST_ROUNDS: u64 = 100_000;

@@ -31,6 +31,7 @@ mod load;
 mod names;
 mod placing;
 mod pose;
+mod regular_file;
 mod scatter;
 mod scene_file;
 mod set_operations;
@@ -55,7 +56,11 @@ pub use description::{
     Projection, Prototype, PrototypeIndex, RenderSettings, Scene, Sky, Sun,
 };
 pub use error::{SceneError, Statement};
-pub use limits::{GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_PIXELS, GREATEST_STRETCH};
+pub use limits::{
+    GREATEST_CASES, GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_PIXELS, GREATEST_RAYS,
+    GREATEST_ROUNDS, GREATEST_SAMPLES, GREATEST_SCENE_BYTES, GREATEST_STRETCH, GREATEST_THREADS,
+    GREATEST_TIMED_RAYS, MOST_LISTED_VIOLATIONS, MOST_SEGMENT_NUMBERS,
+};
 pub use load::load;
 pub use scene_file::SceneFile;
 pub use solid_lists::{CompositionRecord, Listed, SolidRecord, Solids};

@@ -9,7 +9,7 @@ use super::defaults;
 use super::description::{Film, Integrator, Material, MaterialIndex, RenderSettings, Sky, Sun};
 use super::document::{FilmKeys, MaterialKeys, RenderKeys, SkyKeys, SunKeys, Triple};
 use super::error::SceneError;
-use super::limits::GREATEST_PIXELS;
+use super::limits::{GREATEST_PIXELS, GREATEST_SAMPLES};
 use super::names::{quoted, suggestion};
 use super::source::Source;
 use super::values::{Keys, Number, Whole};
@@ -122,7 +122,8 @@ pub(super) fn render(source: &Source, keys: &RenderKeys) -> Result<RenderSetting
             Some(word) => source.choose("integrator", word, &INTEGRATORS)?,
             None => defaults::RENDER.integrator,
         },
-        spp: count(source, "spp", keys.spp.as_ref(), u32::MAX)?.unwrap_or(defaults::RENDER.spp),
+        spp: count(source, "spp", keys.spp.as_ref(), GREATEST_SAMPLES)?
+            .unwrap_or(defaults::RENDER.spp),
     })
 }
 

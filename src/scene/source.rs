@@ -1,13 +1,14 @@
 //! The text of a scene file, and errors that point into it.
 
-use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 
 use super::error::{Excerpt, SceneError, Statement};
+use super::limits::GREATEST_SCENE_BYTES;
 use super::names::{quoted, suggestion};
+use super::regular_file::read_regular;
 use super::toml_message;
 
 /// Longest line that an error shows, in bytes; of a longer one, only the
@@ -23,7 +24,8 @@ pub(super) struct Source {
 impl Source {
     /// Reads a file of UTF-8 text, with or without a byte order mark.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let bytes = fs::read(path).map_err(|source| SceneError::Unreadable {
+        let bytes = read_regular(path, GREATEST_SCENE_BYTES);
+        let bytes = bytes.map_err(|source| SceneError::Unreadable {
             path: path.to_owned(),
             source,
         })?;
