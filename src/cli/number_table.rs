@@ -48,6 +48,7 @@ impl Row for Ray {
         if ray.direction == DVec3::ZERO {
             bail!("columns \"dx\", \"dy\", \"dz\": the direction is zero; it must have a length");
         }
+        ray.check_sizes()?;
         let (t_min, t_max) = (ray.t_min, ray.t_max);
         if t_min > t_max {
             bail!("columns \"t_min\", \"t_max\": {t_min:?} is greater than {t_max:?}");

@@ -26,7 +26,7 @@ pub use orientation::Orientation;
 pub use placement::{ChildFromParent, PlacementErrors, frobenius_norm};
 pub use pose::Pose;
 pub use random::Random;
-pub use ray::{Ray, RayOf};
+pub use ray::{DIRECTION_SIZES, GREATEST_ORIGIN, Ray, RayOf, RaySizeError};
 pub use real::{Real, RealVector, Wide, wide_cross, wide_square};
 pub use rotation::{rotation, sin_cos_degrees, unit};
 pub use rounding::{UNIT_ROUNDOFF, f32_above, f32_below, power_of_two, power_of_two_below};

@@ -1,8 +1,46 @@
 //! The ray of every query: a point, a direction of any length and a range.
 
+use std::ops::RangeInclusive;
+
 use glam::DVec3;
 
-use super::{Real, RealVector};
+use super::{Real, RealVector, power_of_two};
+
+/// The greatest size of a component of a ray's origin: 2^200, about 1.6e60, which is
+/// 2^50 times farther than a solid may lie.
+pub const GREATEST_ORIGIN: f64 = power_of_two(200);
+
+/// The sizes that the largest component of a ray's direction may have: 2^-500 to
+/// 2^500, about 3.1e-151 to 3.3e150.
+///
+/// A solid that is placed reaches up to 2^150 (its greatest coordinate) times 2^64 (the
+/// greatest stretch of placements), which is more than the farthest origin. So no hit
+/// has a `t` of more than 2^216 / 2^-500, and f64 contains it. Its square need not be
+/// finite: the tracer scales directions before it solves anything.
+pub const DIRECTION_SIZES: RangeInclusive<f64> = power_of_two(-500)..=power_of_two(500);
+
+/// Why a ray cannot be traced: a number of it is too large or too small.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum RaySizeError {
+    /// The origin is too far.
+    #[error(
+        "the origin has the component {component:e}: it must be a number of at most {GREATEST_ORIGIN:.1e} in size"
+    )]
+    Origin {
+        /// The component that is too large, or no number.
+        component: f64,
+    },
+    /// The direction is too long or too short.
+    #[error(
+        "the largest component of the direction is {component:e}: its size must be between {:.1e} and {:.1e}",
+        DIRECTION_SIZES.start(),
+        DIRECTION_SIZES.end()
+    )]
+    Direction {
+        /// The largest component, or one that is no number.
+        component: f64,
+    },
+}
 
 /// The set of points `origin + t * direction` with `t_min <= t <= t_max`.
 ///
@@ -12,7 +50,7 @@ use super::{Real, RealVector};
 pub struct Ray {
     /// The point at `t = 0`.
     pub origin: DVec3,
-    /// Any finite vector that is not zero.
+    /// Any vector whose largest component is within [`DIRECTION_SIZES`].
     pub direction: DVec3,
     /// Least `t` that counts; may be negative or minus infinity.
     pub t_min: f64,
@@ -38,15 +76,50 @@ impl Ray {
         self.origin + self.direction * t
     }
 
-    /// Whether the ray can hit anything: origin and direction are finite, the
-    /// direction is not zero, and the range is not empty (NaN makes it empty).
+    /// Whether the ray can hit anything: origin and direction have the sizes of
+    /// [`Ray::has_supported_sizes`], and the range is not empty (NaN makes it empty).
+    /// Any other ray is a miss.
     #[must_use]
     pub fn is_valid(&self) -> bool {
-        self.origin.is_finite()
-            && self.direction.is_finite()
-            && self.direction != DVec3::ZERO
-            && self.t_min <= self.t_max
+        self.has_supported_sizes() && self.t_min <= self.t_max
     }
+
+    /// Whether no component of the origin exceeds [`GREATEST_ORIGIN`] in size, and the
+    /// largest of the direction is within [`DIRECTION_SIZES`]. The others of the
+    /// direction may be as small as they like, and the limits of `t` are any numbers.
+    #[inline]
+    #[must_use]
+    pub fn has_supported_sizes(&self) -> bool {
+        // The sums are NaN where a component is; `max_element` might overlook it.
+        let (origin, direction) = (self.origin.abs(), self.direction.abs());
+        origin.max_element() <= GREATEST_ORIGIN
+            && DIRECTION_SIZES.contains(&direction.max_element())
+            && !(self.origin + self.direction).is_nan()
+    }
+
+    /// As [`Ray::has_supported_sizes`], with what is wrong.
+    ///
+    /// # Errors
+    /// When it has not.
+    pub fn check_sizes(&self) -> Result<(), RaySizeError> {
+        if self.has_supported_sizes() {
+            return Ok(());
+        }
+        let component = worst(self.origin);
+        if !(component.abs() <= GREATEST_ORIGIN) {
+            return Err(RaySizeError::Origin { component });
+        }
+        let component = worst(self.direction);
+        Err(RaySizeError::Direction { component })
+    }
+}
+
+/// The component that is no number, else the largest.
+fn worst(vector: DVec3) -> f64 {
+    let components = vector.to_array().into_iter();
+    components
+        .max_by(|a, b| a.abs().total_cmp(&b.abs()))
+        .expect("there are three")
 }
 
 /// A [`Ray`] in any precision.

@@ -7,7 +7,7 @@
 use super::frame::LocalRay;
 use super::query::{Found, Keep, Query};
 use super::resolve::Which;
-use super::{Hit, Tracer, with_usual_length};
+use super::{Hit, Tracer};
 use crate::math::Ray;
 
 /// A batch that suits most rays: a second traversal is needed for few, and
@@ -17,8 +17,8 @@ pub const DEFAULT_BATCH: usize = 32;
 /// The hits of [`Tracer::all_hits`].
 pub struct AllHits<'a> {
     tracer: &'a Tracer,
-    /// The ray in use, and the factors that turn its `t` back.
-    ray: Option<(Ray, [f64; 2])>,
+    /// The ray in use, and the factor that turns its `t` back.
+    ray: Option<(Ray, f64)>,
     batch: usize,
     /// Those of the last traversal that have not been handed out.
     known: std::vec::IntoIter<Found>,
@@ -31,7 +31,7 @@ impl<'a> AllHits<'a> {
     pub(super) fn new(tracer: &'a Tracer, ray: &Ray, batch: usize) -> Self {
         Self {
             tracer,
-            ray: with_usual_length(ray),
+            ray: tracer.in_use(ray),
             batch: batch.max(1),
             known: Vec::new().into_iter(),
             last: None,
@@ -64,12 +64,12 @@ impl Iterator for AllHits<'_> {
             self.search()?;
         }
         let found = self.known.next()?;
-        let (ray, factors) = self.ray?;
+        let (ray, factor) = self.ray?;
         let root = self.tracer.root.as_ref()?;
         let which = Which::This(found.met);
         Some(
             self.tracer
-                .resolved(root, &ray, factors, &found.place, which),
+                .resolved(root, &ray, factor, &found.place, which),
         )
     }
 }

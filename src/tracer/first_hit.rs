@@ -45,11 +45,11 @@ impl FirstHit {
         &self.nearest.place.path
     }
 
-    /// A hit of the ray in use, with the factors that turn its `t` back.
+    /// A hit of the ray in use, with the factor that turns its `t` back.
     #[inline]
-    pub(super) fn new(nearest: Nearest, [unit, lift]: [f64; 2]) -> Self {
+    pub(super) fn new(nearest: Nearest, factor: f64) -> Self {
         Self {
-            t: nearest.t * unit * lift,
+            t: nearest.t * factor,
             nearest,
         }
     }

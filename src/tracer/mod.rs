@@ -42,6 +42,7 @@ use crate::embree::{Device, DeviceOptions, MaxIsa};
 use crate::math::{Bounds, Ray, power_of_two, power_of_two_below};
 use crate::scene::Scene;
 use build::Plan;
+use glam::DVec3;
 use prototype::{Prototype, Workshop};
 use query::{Keep, Place, Query};
 use resolve::Which;
@@ -59,6 +60,9 @@ pub struct Tracer {
     /// Whether the installed Embree takes packets.
     traces_packets: bool,
     counted: Counted,
+    /// The middle of the scene, and how far from it a ray may start.
+    centre: DVec3,
+    farthest: f64,
 }
 
 impl Tracer {
@@ -90,8 +94,12 @@ impl Tracer {
                 prototype.build()?;
             }
         }
+        let root = prototypes.first().cloned().flatten();
+        let bounds = root.as_ref().map_or(Bounds::EMPTY, |root| root.bounds);
         Ok(Self {
-            root: prototypes.first().cloned().flatten(),
+            root,
+            centre: bounds.centre(),
+            farthest: GREATEST_DISTANCE * (bounds.upper - bounds.lower).max_element(),
             prototypes,
             traces_packets: device.packet_width().is_some(),
             device,
@@ -105,8 +113,8 @@ impl Tracer {
     /// The first point of a surface that the ray meets. Of several at the same
     /// `t`, that of the least instance path, then of the least primitive.
     ///
-    /// `None` if there is none, or if the ray is not valid
-    /// ([`Ray::is_valid`]).
+    /// `None` if there is none, if the ray is not valid ([`Ray::is_valid`]), or if it
+    /// starts farther than 2^100 times the size of the scene from the scene's middle.
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
         let first = self.first_hit(ray)?;
@@ -133,9 +141,9 @@ impl Tracer {
     #[must_use]
     pub fn hit(&self, ray: &Ray, first: &FirstHit) -> Hit {
         let root = self.root.as_ref().expect("a hit is in a scene with a root");
-        let (ray, factors) = with_usual_length(ray).expect("a ray that hits is valid");
+        let (ray, factor) = self.in_use(ray).expect("a ray that hits is valid");
         let which = Which::FirstAt(first.nearest.t);
-        self.resolved(root, &ray, factors, &first.nearest.place, which)
+        self.resolved(root, &ray, factor, &first.nearest.place, which)
     }
 
     /// As [`Tracer::closest`], without Embree: every placement and every solid
@@ -167,7 +175,7 @@ impl Tracer {
 
     /// [`Tracer::occluded`], and what it cost.
     fn occluded_and_callbacks(&self, ray: &Ray) -> (bool, u32) {
-        let (Some(root), Some((ray, _))) = (&self.root, with_usual_length(ray)) else {
+        let (Some(root), Some((ray, _))) = (&self.root, self.in_use(ray)) else {
             return (false, 0);
         };
         let mut query = Query::first(&ray);
@@ -208,18 +216,28 @@ impl Tracer {
         &self.scene
     }
 
+    /// The ray in use, and the factor that turns its `t` back; `None` for a ray that
+    /// is not valid or starts too far away.
+    #[inline]
+    fn in_use(&self, ray: &Ray) -> Option<(Ray, f64)> {
+        let distance = (ray.origin - self.centre).abs().max_element();
+        (distance <= self.farthest)
+            .then(|| with_usual_length(ray))
+            .flatten()
+    }
+
     fn answer(
         &self,
         ray: &Ray,
         trace: impl FnOnce(&Prototype, &LocalRay, &mut Query),
     ) -> (Option<FirstHit>, u32) {
-        let (Some(root), Some((ray, factors))) = (&self.root, with_usual_length(ray)) else {
+        let (Some(root), Some((ray, factor))) = (&self.root, self.in_use(ray)) else {
             return (None, 0);
         };
         let mut query = Query::first(&ray);
         trace(root, &LocalRay::new(&ray), &mut query);
         let first = match query.keep {
-            Keep::First(nearest) => nearest.map(|nearest| FirstHit::new(nearest, factors)),
+            Keep::First(nearest) => nearest.map(|nearest| FirstHit::new(nearest, factor)),
             Keep::Next(_) | Keep::Holding(_) => None,
         };
         (first, query.callbacks)
@@ -230,52 +248,60 @@ impl Tracer {
         &self,
         root: &Arc<Prototype>,
         ray: &Ray,
-        [unit, lift]: [f64; 2],
+        factor: f64,
         place: &Place,
         which: Which,
     ) -> Hit {
         let mut hit = resolve::resolve(&self.scene, root, ray, place, which);
-        hit.t = hit.t * unit * lift;
+        hit.t *= factor;
         hit
     }
 }
+
+/// How far from the middle of a scene a ray may start, in sizes of the scene's box:
+/// 2^100. From there f64 tells apart only points 2^47 scenes apart on a ray, and the
+/// double-double step that brings the ray near (`frame`) has 2^-6 of the scene left.
+const GREATEST_DISTANCE: f64 = power_of_two(100);
 
 /// Directions whose largest component is within these need no scaling: with
 /// [`crate::scene::GREATEST_STRETCH`] they stay within what the solvers can square.
 const USUAL_LENGTHS: std::ops::Range<f64> = power_of_two(-32)..power_of_two(32);
 
-/// The ray with a direction of a size that the solvers can square, and the two
-/// factors that turn its `t` back; `None` for a ray that is not valid.
+/// The ray with a direction of a size that the solvers can square, and the factor
+/// that turns its `t` back; `None` for a ray that is not valid.
 ///
-/// The scaling is by powers of two, so it is exact (but for components and
-/// limits 2^-900 times smaller than the rest).
+/// The factor is a power of two, so the scaling is exact (but for components of the
+/// direction 2^-1000 times smaller than the largest).
 #[inline]
-fn with_usual_length(ray: &Ray) -> Option<(Ray, [f64; 2])> {
+fn with_usual_length(ray: &Ray) -> Option<(Ray, f64)> {
     if !ray.is_valid() {
         return None;
     }
     let length = ray.direction.abs().max_element();
     if USUAL_LENGTHS.contains(&length) {
-        return Some((*ray, [1.0; 2]));
+        return Some((*ray, 1.0));
     }
     Some(rescaled(ray, length))
 }
 
+/// A limit of `t` that leaves the range of f64 is rounded inward, so that a `t` within
+/// the scaled limits is within the stated ones when it is turned back: rounding to
+/// nearest never reorders numbers.
 #[cold]
-fn rescaled(ray: &Ray, length: f64) -> (Ray, [f64; 2]) {
-    // A denormal length is lifted first: the inverse of its power of two would
-    // overflow.
-    let lift = if length < f64::MIN_POSITIVE {
-        power_of_two(600)
-    } else {
-        1.0
-    };
-    let unit = 1.0 / power_of_two_below(length * lift);
+fn rescaled(ray: &Ray, length: f64) -> (Ray, f64) {
+    let factor = 1.0 / power_of_two_below(length);
+    let (mut t_min, mut t_max) = (ray.t_min / factor, ray.t_max / factor);
+    if t_min * factor < ray.t_min {
+        t_min = t_min.next_up();
+    }
+    if t_max * factor > ray.t_max {
+        t_max = t_max.next_down();
+    }
     let rescaled = Ray {
         origin: ray.origin,
-        direction: ray.direction * lift * unit,
-        t_min: ray.t_min / lift / unit,
-        t_max: ray.t_max / lift / unit,
+        direction: ray.direction * factor,
+        t_min,
+        t_max,
     };
-    (rescaled, [unit, lift])
+    (rescaled, factor)
 }

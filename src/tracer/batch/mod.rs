@@ -81,7 +81,7 @@ impl Tracer {
     ) {
         let (mut habit, mut usual) = (Habit::default(), Usual::new());
         let mut answer = |rays: &[Ray], answers: &mut Vec<T>| match &self.root {
-            Some(root) if self.are_packet(rays, &mut habit) && usual.fill(rays) => {
+            Some(root) if self.are_packet(rays, &mut habit) && usual.fill(self, rays) => {
                 together(root, &mut usual, answers);
                 habit.traced_packet(&usual);
             }
