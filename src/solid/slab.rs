@@ -6,6 +6,11 @@
 //! and the point is inside the slab iff `0 <= y <= height`. Both ends of the
 //! overlap are judged by `y` at the wall's roots: wall and discs are chosen
 //! from the same numbers, so that no ray slips between them at a rim.
+//!
+//! Where the line is so nearly across the axis that `t * slope` rounds away between
+//! the roots, `y` does not say where it comes through a plane: an error of an ulp of
+//! the height is one of an ulp over the slope in `t`, which may be any number. So the
+//! `t` of a disc is held between the roots of the wall. It is there without rounding.
 
 use super::chord::{Chord, ChordEnd, Meeting};
 use super::{Caps, Crossing, Part};
@@ -199,12 +204,14 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
             let part = if on_rim { discs.far_part() } else { Part::Side };
             (height <= slab.height, ChordEnd { t, part, on_rim })
         } else {
+            let leave = self.wall.leave();
+            let at_disc = slab.at(discs.near);
             let end = ChordEnd {
-                t: slab.at(discs.near),
+                t: at_most(if at_disc < t { t } else { at_disc }, leave),
                 part: discs.near_part(),
                 on_rim: height == S::ZERO,
             };
-            (slab.beyond_near(discs, self.wall.leave()) >= S::ZERO, end)
+            (slab.beyond_near(discs, leave) >= S::ZERO, end)
         }
     }
 
@@ -224,17 +231,24 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
             ChordEnd { t, part, on_rim }
         } else {
             ChordEnd {
-                t: slab.at(discs.far),
+                t: at_most(slab.at(discs.far), t),
                 part: discs.far_part(),
                 on_rim: height == slab.height,
             }
         };
-        // At an edge the two may come out in the wrong order by a rounding.
+        // At an edge the two may come out in the wrong order by a rounding, and of a line
+        // almost across the axis by any amount.
         ChordEnd {
             t: if end.t < enter { enter } else { end.t },
             ..end
         }
     }
+}
+
+/// The lesser number.
+#[inline(always)]
+fn at_most<S: Real>(t: S, greatest: S) -> S {
+    if t > greatest { greatest } else { t }
 }
 
 impl<S: Real> Slab<S> {
