@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
+use cyltrace::render::followed;
 use cyltrace::scene::SceneFile;
 
 use super::target::is_standard_stream;
@@ -104,6 +105,7 @@ fn is_same_file(a: &Path, b: &Path, _: &fs::Metadata, _: &fs::Metadata) -> bool 
 /// The name that a file which does not exist would get, whatever the way to
 /// its directory.
 fn new_name(path: &Path) -> Option<PathBuf> {
+    let path = followed(path).ok()?;
     let directory = match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),

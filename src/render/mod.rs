@@ -12,6 +12,7 @@ mod output;
 mod sampler;
 mod srgb;
 mod tiles;
+mod unfinished;
 
 use std::sync::atomic::AtomicBool;
 
@@ -21,10 +22,11 @@ pub use crate::scene::GREATEST_PIXELS;
 pub use film::Film;
 pub use integrator::RayCounts;
 pub use lights::{Lights, SunLight};
-pub use new_file::{FileError, NewFile};
+pub use new_file::{FileError, NewFile, followed};
 pub use output::{Format, Output, OutputError, png_bytes};
 pub use sampler::PixelSampler;
 pub use srgb::encode as srgb_encode;
+pub use unfinished::{UnfinishedGuard, remove_unfinished};
 
 use crate::scene::{self, AimedCamera, Integrator, Scene, ViewVolume};
 use crate::tracer::Tracer;

@@ -9,7 +9,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
+use super::unfinished::UnfinishedFile;
 
 /// Why a file cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -60,13 +60,16 @@ pub enum FileError {
 /// reached, nothing of it stays.
 #[derive(Debug)]
 pub struct NewFile {
+    /// The file as asked for, which errors name.
     path: PathBuf,
+    /// The same without symbolic links.
+    target: PathBuf,
     writer: BufWriter<Sink>,
 }
 
 #[derive(Debug)]
 enum Sink {
-    Temporary(NamedTempFile),
+    Temporary(UnfinishedFile),
     Device(File),
 }
 
@@ -78,7 +81,11 @@ impl NewFile {
     /// When the directory does not exist, `path` is a directory, or a file
     /// there may not be written to.
     pub fn check(path: &Path) -> Result<(), FileError> {
-        let directory = directory_of(path);
+        let target = followed(path).map_err(|source| FileError::System {
+            path: path.into(),
+            source,
+        })?;
+        let directory = directory_of(&target);
         if !directory.is_dir() {
             return Err(FileError::NoDirectory {
                 path: path.into(),
@@ -99,7 +106,7 @@ impl NewFile {
     }
 
     /// Opens a temporary file beside `path`. A symbolic link stays one: the
-    /// file that it names is the one to be replaced.
+    /// file that it names is replaced, or created where there is none.
     ///
     /// # Errors
     /// Those of [`NewFile::check`], or when the directory cannot be written
@@ -112,29 +119,28 @@ impl NewFile {
         };
         let existing = fs::metadata(path).ok();
         let is_device = existing.as_ref().is_some_and(|file| !file.is_file());
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.into());
+        let target = followed(path).map_err(system)?;
         let sink = if is_device {
             Sink::Device(File::create(&target).map_err(system)?)
         } else {
             let directory = directory_of(&target);
             // The system's own text would name the temporary file.
-            let temporary = temporary_in(directory).map_err(|error| FileError::Directory {
-                path: path.into(),
-                directory: directory.into(),
-                reason: error.kind(),
-            })?;
+            let mut temporary =
+                UnfinishedFile::create_in(directory).map_err(|error| FileError::Directory {
+                    path: path.into(),
+                    directory: directory.into(),
+                    reason: error.kind(),
+                })?;
             if let Some(existing) = existing {
                 let permissions = existing.permissions();
-                temporary
-                    .as_file()
-                    .set_permissions(permissions)
-                    .map_err(system)?;
+                let file = temporary.file();
+                file.set_permissions(permissions).map_err(system)?;
             }
             Sink::Temporary(temporary)
         };
-        let path = target;
         Ok(Self {
-            path,
+            path: path.into(),
+            target,
             writer: BufWriter::with_capacity(1 << 16, sink),
         })
     }
@@ -151,10 +157,14 @@ impl NewFile {
     /// # Errors
     /// When writing or renaming fails.
     pub fn finish(self) -> Result<(), FileError> {
-        let Self { path, writer } = self;
+        let Self {
+            path,
+            target,
+            writer,
+        } = self;
         let sink = writer.into_inner().map_err(io::IntoInnerError::into_error);
         let renamed = match sink {
-            Ok(Sink::Temporary(file)) => file.persist(&path).map(|_| ()).map_err(|e| e.error),
+            Ok(Sink::Temporary(file)) => file.persist(&target),
             Ok(Sink::Device(_)) => Ok(()),
             Err(error) => Err(error),
         };
@@ -178,29 +188,49 @@ impl Seek for NewFile {
     }
 }
 
+impl Sink {
+    fn file(&mut self) -> &mut File {
+        match self {
+            Self::Temporary(file) => file.file(),
+            Self::Device(file) => file,
+        }
+    }
+}
+
 impl Write for Sink {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self {
-            Self::Temporary(file) => file.write(bytes),
-            Self::Device(file) => file.write(bytes),
-        }
+        self.file().write(bytes)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match self {
-            Self::Temporary(file) => file.flush(),
-            Self::Device(file) => file.flush(),
-        }
+        self.file().flush()
     }
 }
 
 impl Seek for Sink {
     fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
-        match self {
-            Self::Temporary(file) => file.seek(position),
-            Self::Device(file) => file.seek(position),
-        }
+        self.file().seek(position)
     }
+}
+
+/// The path that symbolic links lead to, whether a file exists there or not.
+///
+/// # Errors
+/// When a link cannot be read, or links lead in a circle.
+pub fn followed(path: &Path) -> io::Result<PathBuf> {
+    /// As many as Linux follows.
+    const MOST_LINKS: usize = 40;
+    if let Ok(existing) = fs::canonicalize(path) {
+        return Ok(existing);
+    }
+    let mut path = path.to_path_buf();
+    for _ in 0..MOST_LINKS {
+        if !path.is_symlink() {
+            return Ok(path);
+        }
+        path = directory_of(&path).join(fs::read_link(&path)?);
+    }
+    Err(io::Error::other("its symbolic links lead in a circle"))
 }
 
 /// The directory that a file lies in: `.` for a bare name.
@@ -209,19 +239,6 @@ fn directory_of(path: &Path) -> &Path {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
     }
-}
-
-fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".cyltrace-");
-    // Temporary files are private by default; this one is to be as readable
-    // as the user's umask lets any file be.
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(directory)
 }
 
 #[cfg(test)]
@@ -331,6 +348,32 @@ mod tests {
             .expect("written");
         let null = fs::metadata("/dev/null").expect("there");
         assert!(null.file_type().is_char_device());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn new_file_through_a_dangling_link_creates_what_the_link_names() {
+        use std::os::unix::fs::symlink;
+        let directory = tempfile::tempdir().expect("directory");
+        let within = |name: &str| directory.path().join(name);
+        fs::create_dir(within("elsewhere")).expect("created");
+        symlink("elsewhere/target", within("inner")).expect("linked");
+        symlink("inner", within("outer")).expect("linked");
+        let mut file = NewFile::create(&within("outer")).expect("created");
+        file.write_all(b"new").expect("written");
+        file.finish().expect("finished");
+        assert!(within("outer").is_symlink() && within("inner").is_symlink());
+        let written = fs::read(within("elsewhere/target")).expect("read");
+        assert_eq!(written, b"new");
+
+        symlink("missing/target", within("lost")).expect("linked");
+        let message = NewFile::create(&within("lost"))
+            .expect_err("lost")
+            .to_string();
+        assert!(message.contains("no directory"), "{message}");
+        symlink("circle", within("circle")).expect("linked");
+        let error = NewFile::create(&within("circle")).expect_err("circular");
+        assert!(format!("{error:?}").contains("circle"), "{error:?}");
     }
 
     #[test]
