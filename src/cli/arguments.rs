@@ -1,13 +1,16 @@
 //! The arguments, as clap reads them.
 
-use std::num::{NonZeroU32, NonZeroUsize};
+use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cyltrace::cases::{AnyFamily, Family, Inputs};
 use cyltrace::check::{Class, Replay};
 use cyltrace::embree::MaxIsa;
-use cyltrace::scene::{Film, Integrator};
+use cyltrace::scene::{
+    Film, GREATEST_CASES, GREATEST_PIXELS, GREATEST_RAYS, GREATEST_SAMPLES, GREATEST_THREADS,
+    Integrator,
+};
 use cyltrace::solid::tessellation::{GREATEST_SEGMENTS, LEAST_SEGMENTS};
 
 mod bench;
@@ -47,7 +50,7 @@ pub struct Common {
     #[arg(long, short)]
     pub quiet: bool,
     /// Use N threads [default: as many as the machine has]
-    #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = count_up_to::<NonZeroUsize>(GREATEST_THREADS as u64), allow_negative_numbers = true)]
     pub threads: Option<NonZeroUsize>,
     /// Hold Embree to an instruction set: sse2, sse4.2, avx, avx2 or avx512
     #[arg(long, value_name = "NAME")]
@@ -80,7 +83,7 @@ pub struct RenderArguments {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<Film>,
     /// Samples a pixel; powers of two are best [default: the scene's, else 4]
-    #[arg(long, value_name = "N", value_parser = parse_spp, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = count_up_to::<NonZeroU32>(GREATEST_SAMPLES.into()), allow_negative_numbers = true)]
     pub spp: Option<NonZeroU32>,
     /// What the picture shows [default: the scene's, else sun]
     #[arg(long, value_name = "NAME", value_enum)]
@@ -188,7 +191,7 @@ pub struct StressArguments {
     #[arg(long, value_name = "NAME")]
     pub family: Vec<AnyFamily>,
     /// Cases of each family and kind of inputs
-    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..=GREATEST_CASES))]
     pub cases: u64,
     /// Chooses the cases
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -308,19 +311,17 @@ pub fn integrator_name(integrator: Integrator) -> &'static str {
     }
 }
 
-/// Most threads: more than any machine has, few enough to start.
-const GREATEST_THREADS: usize = 1024;
-
-fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
-    let threads = text.parse().ok();
-    threads
-        .filter(|threads: &NonZeroUsize| threads.get() <= GREATEST_THREADS)
-        .ok_or_else(|| format!("it must be a whole number from 1 to {GREATEST_THREADS}"))
-}
-
-fn parse_spp(text: &str) -> Result<NonZeroU32, String> {
-    let spp = text.parse();
-    spp.map_err(|_| format!("it must be a whole number from 1 to {}", u32::MAX))
+/// Reads a whole number from 1 to `greatest`.
+fn count_up_to<N: TryFrom<NonZeroU64>>(
+    greatest: u64,
+) -> impl Fn(&str) -> Result<N, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let count = text.parse().ok();
+        count
+            .filter(|count: &NonZeroU64| count.get() <= greatest)
+            .and_then(|count| N::try_from(count).ok())
+            .ok_or_else(|| format!("it must be a whole number from 1 to {greatest}"))
+    }
 }
 
 fn parse_seed(text: &str) -> Result<u64, String> {
@@ -340,9 +341,6 @@ fn parse_rays(text: &str) -> Result<Rays, String> {
     }
 }
 
-/// Most rays of a class.
-const GREATEST_RAYS: u64 = 1_000_000_000;
-
 /// A number that is not negative.
 fn parse_length(text: &str) -> Result<f64, String> {
     let length = text.parse();
@@ -356,12 +354,15 @@ fn parse_size(text: &str) -> Result<Film, String> {
     let size = text.split_once(['x', 'X']).and_then(|(width, height)| {
         let width: NonZeroU32 = width.parse().ok()?;
         let height: NonZeroU32 = height.parse().ok()?;
-        Some(Film {
+        let pixels = u64::from(width.get()) * u64::from(height.get());
+        (pixels <= GREATEST_PIXELS).then_some(Film {
             width: width.get(),
             height: height.get(),
         })
     });
-    size.ok_or_else(|| "it must be two whole numbers above 0, such as 1280x720".to_owned())
+    size.ok_or_else(|| {
+        format!("it must be two whole numbers above 0, such as 1280x720, and at most {GREATEST_PIXELS} pixels")
+    })
 }
 
 fn parse_segments(text: &str) -> Result<u32, String> {

@@ -36,7 +36,6 @@ fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
     json::check(common)?;
     check_names(&arguments.formulation)?;
-    interrupt::install()?;
     if let Some(directory) = &arguments.report {
         make_directory(directory)?;
     }

@@ -17,9 +17,10 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
     files.check()?;
     json::check(common)?;
     let start = Instant::now();
-    let file = scene::read(&arguments.scene)?;
+    let limit = Limit::of(&arguments.memory);
+    let file = scene::read(&arguments.scene, limit)?;
     files.check_with(&file)?;
-    let scene = scene::load(common, file, Need::Records, Limit::of(&arguments.memory))?;
+    let scene = scene::load(common, file, Need::Records, limit)?;
     let load = start.elapsed().as_secs_f64();
     let census = scene::workers(common)?.install(|| scene.census());
     let estimate = MemoryEstimate::of(
@@ -80,16 +81,20 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
     );
     text += &format!(
         "placements: {} stored, {} instances, {} levels deep\n",
-        census.placements, census.instances, census.depth
+        census.placements,
+        text::count(census.instances),
+        census.depth
     );
     text += &format!(
         "cylinders: {} unique, {} instanced\n",
-        census.cylinders_unique, census.cylinders_instanced
+        census.cylinders_unique,
+        text::count(census.cylinders_instanced)
     );
     if census.other_solids_unique > 0 {
         text += &format!(
             "other solids: {} unique, {} instanced\n",
-            census.other_solids_unique, census.other_solids_instanced
+            census.other_solids_unique,
+            text::count(census.other_solids_instanced)
         );
     }
     text += &text::skipped_rows(scene.skipped_rows);

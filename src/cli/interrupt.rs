@@ -1,13 +1,28 @@
-//! Ctrl-C.
+//! Signals that end the program: Ctrl-C (SIGINT), SIGTERM and SIGHUP.
 //!
-//! Work that owns a temporary file ends in order, so that the file is
-//! removed; before it starts there is nothing to tidy up, and the program just
-//! ends.
+//! The first signal ends the program at once unless a command is writing. Then the
+//! command has [`GRACE`] to end by itself, so that a table on standard output ends
+//! with a whole row. A command that does not end in time, because it waits for input
+//! or is inside a single long query, is ended by the thread that waits here, which
+//! removes temporary files. A second signal does not wait.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::fs;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
+use std::thread;
+use std::time::Duration;
 
-/// The command was stopped by the user.
+use anyhow::Context;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+use signal_hook::iterator::Signals;
+
+use super::ending::end_now;
+
+/// How long a command may take to end by itself: the batches between which it looks
+/// at the flag take some milliseconds each, and all is to be over within a second.
+const GRACE: Duration = Duration::from_millis(500);
+
+/// A signal ended the command.
 #[derive(Debug, thiserror::Error)]
 pub enum Interrupted {
     /// Before anything was written, or only to a temporary file.
@@ -18,38 +33,87 @@ pub enum Interrupted {
     PartWritten,
 }
 
-/// Set when work in order has to end.
+/// What is said of a command that did not end by itself.
+const ENDED: &str = "interrupted; outputs that were not finished are as they were before, a stream written so far is incomplete";
+
+/// Set when a command that is writing has to end.
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
-/// Whether there is work to end in order. The handler holds the lock while it
-/// ends the program, so that no such work starts meanwhile.
-static ORDERLY: Mutex<bool> = Mutex::new(false);
+/// Whether a command is writing.
+static ORDERLY: AtomicBool = AtomicBool::new(false);
 
-/// Handles Ctrl-C (and the signals that ask a program to end) from now on.
+/// The signal that came first; 0 when none has come.
+static SIGNAL: AtomicI32 = AtomicI32::new(0);
+
+/// Handles signals from now on.
 pub fn install() -> anyhow::Result<()> {
-    ctrlc::set_handler(|| {
-        let orderly = ORDERLY.lock().unwrap_or_else(PoisonError::into_inner);
-        if !*orderly {
-            super::print::print_error(&Interrupted::NothingWritten);
-            std::process::exit(i32::from(super::INTERRUPTED));
+    // A handler of any kind turns the signal for a file beyond the size limit, which
+    // would end the program, into an error of the write.
+    signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))
+        .context("cannot handle the signal SIGXFSZ")?;
+    let mut ending = vec![SIGINT, SIGTERM];
+    if !is_ignored(SIGHUP) {
+        ending.push(SIGHUP);
+    }
+    let mut signals = Signals::new(ending).context("cannot handle signals")?;
+    let wait = move || {
+        for signal in signals.forever() {
+            received(signal);
         }
-        REQUESTED.store(true, Ordering::Relaxed);
-    })?;
+    };
+    let waiting = thread::Builder::new().name("signals".to_owned());
+    waiting
+        .spawn(wait)
+        .context("cannot start a thread that waits for signals")?;
     Ok(())
 }
 
 /// From now on the program looks at the flag that this gives, and ends in
 /// order when it is set.
 pub fn end_in_order() -> &'static AtomicBool {
-    *ORDERLY.lock().unwrap_or_else(PoisonError::into_inner) = true;
+    ORDERLY.store(true, Ordering::SeqCst);
     &REQUESTED
 }
 
-/// An error when the user asked to stop.
+/// An error when a signal came.
 pub fn check() -> Result<(), Interrupted> {
     if REQUESTED.load(Ordering::Relaxed) {
         Err(Interrupted::NothingWritten)
     } else {
         Ok(())
     }
+}
+
+/// What shells report for a program that the signal ended.
+pub fn exit_code() -> u8 {
+    let signal = SIGNAL.load(Ordering::SeqCst);
+    u8::try_from(128 + signal).unwrap_or(u8::MAX)
+}
+
+/// Acts on a signal, in the thread that waits for signals.
+fn received(signal: i32) {
+    let is_first = SIGNAL
+        .compare_exchange(0, signal, Ordering::SeqCst, Ordering::SeqCst)
+        .is_ok();
+    REQUESTED.store(true, Ordering::SeqCst);
+    if !ORDERLY.load(Ordering::SeqCst) {
+        end_now(&Interrupted::NothingWritten.to_string(), exit_code());
+    }
+    let grace = || {
+        thread::sleep(GRACE);
+        end_now(ENDED, exit_code());
+    };
+    // Where no thread can be started there is no grace, as for a second signal.
+    if !is_first || thread::Builder::new().spawn(grace).is_err() {
+        end_now(ENDED, exit_code());
+    }
+}
+
+/// Whether the program was started with the signal ignored, as `nohup` does with
+/// SIGHUP. Where the system has no such file, it was not.
+fn is_ignored(signal: i32) -> bool {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    ignored.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }

@@ -30,9 +30,13 @@ pub fn write(common: &Common, figures: &Value) -> anyhow::Result<()> {
 }
 
 /// A count; one beyond u64, which JSON readers round anyway, is given as a
-/// float.
+/// float, and one beyond u128, where counting stops, as null.
 pub fn count(count: u128) -> Value {
-    u64::try_from(count).map_or_else(|_| json!(count as f64), |count| json!(count))
+    match u64::try_from(count) {
+        Ok(count) => json!(count),
+        Err(_) if count == u128::MAX => Value::Null,
+        Err(_) => json!(count as f64),
+    }
 }
 
 /// The memory a traced scene took.

@@ -12,6 +12,7 @@ use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{Contents, OtherSolids, PlacedCount};
 use cyltrace::tracer::{Layout, MemoryEstimate};
 
+use super::allocator::AllocationLimit;
 use super::memory::{kibibytes_of, parse_size, readable};
 
 /// Most lines about what takes the memory.
@@ -83,15 +84,26 @@ impl Limit {
         }
     }
 
-    /// What the system can give without swapping, where it says so as Linux
-    /// does.
+    /// What the system can give without swapping and within `ulimit -v`, where it
+    /// says so as Linux does.
     pub fn available() -> Self {
-        let told = fs::read_to_string("/proc/meminfo").ok();
+        let meminfo = fs::read_to_string("/proc/meminfo").ok();
+        let free = meminfo.and_then(|text| kibibytes_of(&text, "MemAvailable:"));
         Self {
-            bytes: told.and_then(|told| kibibytes_of(&told, "MemAvailable:")),
+            bytes: [free, address_space_left()].into_iter().flatten().min(),
             is_stated: false,
             layout: Layout::default(),
         }
+    }
+
+    /// Ends the program when reading the scene, and what it names, allocates more.
+    pub fn while_reading(self, path: &Path) -> AllocationLimit {
+        let refusal = format!(
+            "{}: reading the scene takes more memory than it may: {}",
+            path.display(),
+            self.allowed(self.bytes.unwrap_or(u64::MAX))
+        );
+        AllocationLimit::new(self.bytes.unwrap_or(u64::MAX), refusal)
     }
 
     /// Refuses a scene that needs more.
@@ -110,18 +122,34 @@ impl Limit {
         let Some(allowed) = self.bytes.filter(|&allowed| needed > allowed) else {
             return Ok(());
         };
-        let allowed = readable(allowed);
-        let allowed = match self.is_stated {
-            true => format!("--max-memory allows {allowed}"),
-            false => format!("the system has {allowed} available; --max-memory SIZE allows more"),
-        };
         Err(anyhow!(
-            "{}: the scene needs up to {} of memory, {allowed}\n{}",
+            "{}: the scene needs up to {} of memory, {}\n{}",
             path.display(),
             readable(needed),
+            self.allowed(allowed),
             takers(contents, &estimate, need, needed)
         ))
     }
+
+    /// Where the limit comes from.
+    fn allowed(self, bytes: u64) -> String {
+        let bytes = readable(bytes);
+        match self.is_stated {
+            true => format!("--max-memory allows {bytes}"),
+            false => format!("the system has {bytes} available; --max-memory SIZE allows more"),
+        }
+    }
+}
+
+/// What `ulimit -v` leaves of the address space; `None` where it is unlimited.
+fn address_space_left() -> Option<u64> {
+    let limits = fs::read_to_string("/proc/self/limits").ok()?;
+    let limit = limits
+        .lines()
+        .find_map(|line| line.strip_prefix("Max address space"))?;
+    let limit: u64 = limit.split_whitespace().next()?.parse().ok()?;
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    Some(limit.saturating_sub(kibibytes_of(&status, "VmSize:")?))
 }
 
 /// What takes at least a hundredth of the memory, the most first.

@@ -1,11 +1,13 @@
 //! The command line: arguments, progress bars, messages and exit codes.
 //!
 //! Exit codes: 0 good; 1 a check failed (commands that check); 2 the command
-//! could not run; 130 it was interrupted.
+//! could not run; 128 and the signal's number when a signal ended it.
 
+mod allocator;
 mod arguments;
 mod bench;
 mod check;
+mod ending;
 mod hit_table;
 mod info;
 mod interrupt;
@@ -28,6 +30,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
+pub use allocator::LimitedAllocator;
 use arguments::{Arguments, Command};
 use interrupt::Interrupted;
 use print::{StandardOutputError, print, print_error};
@@ -41,16 +44,13 @@ const CHECK_FAILED: u8 = 1;
 /// The command could not run.
 const COULD_NOT_RUN: u8 = 2;
 
-/// What shells report for a program that Ctrl-C ended.
-const INTERRUPTED: u8 = 130;
-
 /// Runs the command that the program's arguments name.
 pub fn run() -> ExitCode {
-    match arguments().and_then(|arguments| arguments.map_or(Ok(GOOD), |a| run_command(&a))) {
+    match interrupt::install().and_then(|()| run_arguments()) {
         Ok(code) => ExitCode::from(code),
         Err(error) if error.is::<Interrupted>() => {
             print_error(&error);
-            ExitCode::from(INTERRUPTED)
+            ExitCode::from(interrupt::exit_code())
         }
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
@@ -58,6 +58,11 @@ pub fn run() -> ExitCode {
             ExitCode::from(COULD_NOT_RUN)
         }
     }
+}
+
+/// Runs what the program's arguments ask for.
+fn run_arguments() -> anyhow::Result<u8> {
+    arguments()?.map_or(Ok(GOOD), |arguments| run_command(&arguments))
 }
 
 /// The arguments; `None` when they asked for help or for the version, which

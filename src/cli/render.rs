@@ -27,17 +27,12 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     files.check()?;
     Output::check(&arguments.output)?;
     json::check(common)?;
-    interrupt::install()?;
 
     let start = Instant::now();
-    let file = scene::read(&arguments.scene)?;
+    let limit = Limit::of(&arguments.memory);
+    let file = scene::read(&arguments.scene, limit)?;
     files.check_with(&file)?;
-    let scene = Arc::new(scene::load(
-        common,
-        file,
-        Need::Build,
-        Limit::of(&arguments.memory),
-    )?);
+    let scene = Arc::new(scene::load(common, file, Need::Build, limit)?);
     let mut settings = Settings::of(&scene);
     settings.seed = arguments.seed;
     if let Some(size) = arguments.size {

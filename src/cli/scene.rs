@@ -12,8 +12,10 @@ use super::arguments::Common;
 use super::limit::{Limit, Need};
 use super::progress;
 
-/// Reads a scene file, but not yet the files that it names.
-pub fn read(path: &Path) -> anyhow::Result<SceneFile> {
+/// Reads a scene file, but not yet the files that it names, within the memory that
+/// `limit` allows.
+pub fn read(path: &Path, limit: Limit) -> anyhow::Result<SceneFile> {
+    let _limit = limit.while_reading(path);
     // The error's text is the whole message; its source would repeat a part.
     SceneFile::read(path).map_err(|error| anyhow!("{error}"))
 }
@@ -23,12 +25,14 @@ pub fn read(path: &Path) -> anyhow::Result<SceneFile> {
 pub fn load(common: &Common, file: SceneFile, need: Need, limit: Limit) -> anyhow::Result<Scene> {
     let workers = workers(common)?;
     let spinner = progress::spinner(common, "loading the scene");
+    let reading = limit.while_reading(file.path());
     let scene = limit
         .check(file.path(), &file.contents(), need, common.max_isa)
         .and_then(|()| {
             let scene = workers.install(|| file.load());
             scene.map_err(|error| anyhow!("{error}"))
         });
+    drop(reading);
     spinner.finish_and_clear();
     scene
 }
@@ -46,7 +50,8 @@ pub fn build_with(common: &Common, scene: &Arc<Scene>, options: Options) -> anyh
         max_isa: common.max_isa,
         ..options
     };
-    let tracer = Tracer::new(Arc::clone(scene), &options);
+    // Within the pool: rayon's own would panic where its threads cannot be started.
+    let tracer = workers(common)?.install(|| Tracer::new(Arc::clone(scene), &options));
     spinner.finish_and_clear();
     Ok(tracer?)
 }

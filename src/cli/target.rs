@@ -1,7 +1,7 @@
 //! Where a table goes: standard output, or a file that is whole or absent.
 
 use std::io::{self, BufWriter, Stdout, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use cyltrace::render::{FileError, NewFile};
@@ -11,7 +11,7 @@ use super::print::StandardOutputError;
 /// Standard output, or a new file.
 pub enum Target {
     StandardOutput(BufWriter<Stdout>),
-    File(NewFile),
+    File(NewFile, PathBuf),
 }
 
 impl Target {
@@ -28,14 +28,14 @@ impl Target {
         if is_standard_stream(path) {
             return Ok(Self::StandardOutput(BufWriter::new(io::stdout())));
         }
-        NewFile::create(path).map(Self::File)
+        Ok(Self::File(NewFile::create(path)?, path.into()))
     }
 
     /// Whether what has been written so far can be seen before the end.
     pub fn shows_parts(&self) -> bool {
         match self {
             Self::StandardOutput(_) => true,
-            Self::File(file) => !file.is_replacing(),
+            Self::File(file, _) => !file.is_replacing(),
         }
     }
 
@@ -45,7 +45,7 @@ impl Target {
             Self::StandardOutput(mut writer) => {
                 Ok(writer.flush().map_err(|e| StandardOutputError::of(&e))?)
             }
-            Self::File(file) => Ok(file.finish()?),
+            Self::File(file, _) => Ok(file.finish()?),
         }
     }
 }
@@ -56,7 +56,7 @@ impl Write for Target {
             Self::StandardOutput(writer) => writer
                 .write(bytes)
                 .map_err(|error| StandardOutputError::of(&error)),
-            Self::File(file) => file.write(bytes),
+            Self::File(file, path) => file.write(bytes).map_err(|error| unwritten(path, error)),
         }
     }
 
@@ -65,9 +65,15 @@ impl Write for Target {
             Self::StandardOutput(writer) => writer
                 .flush()
                 .map_err(|error| StandardOutputError::of(&error)),
-            Self::File(file) => file.flush(),
+            Self::File(file, path) => file.flush().map_err(|error| unwritten(path, error)),
         }
     }
+}
+
+/// An error of the same kind that names the file as asked for, not the temporary one.
+fn unwritten(path: &Path, source: io::Error) -> io::Error {
+    let (kind, path) = (source.kind(), path.into());
+    io::Error::new(kind, FileError::System { path, source })
 }
 
 /// Writes a text file that is whole or absent.

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use cyltrace::mesh_file::{self, Format, MeshFileError, Plan};
 use cyltrace::solid::tessellation::Fit;
 use serde_json::json;
@@ -24,10 +24,9 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
     let format = Format::of(&arguments.output)?;
     Target::check(&arguments.output)?;
     json::check(common)?;
-    interrupt::install()?;
 
     let start = Instant::now();
-    let file = scene::read(&arguments.scene)?;
+    let file = scene::read(&arguments.scene, Limit::available())?;
     files.check_with(&file)?;
     let scene = scene::load(common, file, Need::Records, Limit::available())?;
     let load = start.elapsed().as_secs_f64();
@@ -67,7 +66,7 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
         Err(MeshFileError::Cancelled) => {
             return Err(interrupt::Interrupted::NothingWritten.into());
         }
-        other => other.with_context(|| format!("cannot write {:?}", arguments.output))?,
+        other => other?,
     }
     target.flush()?;
     target.finish()?;

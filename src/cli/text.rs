@@ -32,9 +32,15 @@ pub fn cylinders(statistics: &Statistics) -> String {
     if instances == 0 {
         return format!("cylinders: {unique}, no instances");
     }
+    if instances == u128::MAX {
+        return format!(
+            "cylinders: {unique} unique, instances: {}",
+            count(instances)
+        );
+    }
     format!(
         "cylinders: {unique} unique, {} with the {instances} instances",
-        statistics.cylinders_instanced
+        count(statistics.cylinders_instanced)
     )
 }
 
@@ -55,6 +61,14 @@ pub fn skipped_rows(rows: u64) -> String {
     match rows {
         0 => String::new(),
         _ => format!("skipped: degenerate rows of tables: {rows}\n"),
+    }
+}
+
+/// A count, as far as solids are counted: up to 2^128 - 2.
+pub fn count(count: u128) -> String {
+    match count {
+        u128::MAX => "more than can be counted".to_owned(),
+        count => count.to_string(),
     }
 }
 

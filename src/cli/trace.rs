@@ -164,12 +164,12 @@ impl<R: Row + Sync> Task<'_, R> {
         files.check()?;
         Target::check(&arguments.output)?;
         json::check(common)?;
-        interrupt::install()?;
         let workers = scene::workers(common)?;
         let threads = workers.current_num_threads();
 
         let start = Instant::now();
-        let file = scene::read(&arguments.scene)?;
+        let limit = Limit::of(&arguments.memory);
+        let file = scene::read(&arguments.scene, limit)?;
         files.check_with(&file)?;
         let read = start.elapsed();
 
@@ -186,12 +186,7 @@ impl<R: Row + Sync> Task<'_, R> {
         let check = start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let scene = Arc::new(scene::load(
-            common,
-            file,
-            Need::Build,
-            Limit::of(&arguments.memory),
-        )?);
+        let scene = Arc::new(scene::load(common, file, Need::Build, limit)?);
         let load = (read + start.elapsed()).as_secs_f64();
         let start = Instant::now();
         let tracer = scene::build_with(

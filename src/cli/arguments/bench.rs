@@ -5,8 +5,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use cyltrace::bench::traversal::SceneName;
+use cyltrace::scene::{GREATEST_CASES, GREATEST_ROUNDS, GREATEST_TIMED_RAYS};
 
-use super::Common;
+use super::{Common, count_up_to};
 use crate::cli::memory;
 
 /// Measure run times and errors
@@ -31,13 +32,13 @@ pub struct AccuracyArguments {
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
     /// Cases of each family; meshes and other rivals get at most 1000 of them
-    #[arg(long, value_name = "N", default_value = "5000")]
+    #[arg(long, value_name = "N", default_value = "5000", value_parser = count_up_to::<NonZeroU64>(GREATEST_CASES))]
     pub cases: NonZeroU64,
     /// Chooses the cases
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
     /// Samples of each time
-    #[arg(long, value_name = "N", default_value = "101")]
+    #[arg(long, value_name = "N", default_value = "101", value_parser = count_up_to::<NonZeroUsize>(GREATEST_ROUNDS))]
     pub rounds: NonZeroUsize,
     /// Measure this formulation or rival only, beside triple-product; may be
     /// given several times
@@ -68,10 +69,10 @@ pub struct TraversalArguments {
     #[arg(long, value_name = "DIR", default_value = "scenes")]
     pub scenes: PathBuf,
     /// Rays of each kind
-    #[arg(long, value_name = "N", default_value = "16384")]
+    #[arg(long, value_name = "N", default_value = "16384", value_parser = count_up_to::<NonZeroUsize>(GREATEST_TIMED_RAYS))]
     pub rays: NonZeroUsize,
     /// Samples of each time
-    #[arg(long, value_name = "N", default_value = "11")]
+    #[arg(long, value_name = "N", default_value = "11", value_parser = count_up_to::<NonZeroUsize>(GREATEST_ROUNDS))]
     pub rounds: NonZeroUsize,
     /// Chooses solids and rays
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -97,10 +98,10 @@ pub struct ScaleArguments {
     #[arg(long, value_name = "N", default_value = "10000000")]
     pub most: NonZeroUsize,
     /// Rays of each kind
-    #[arg(long, value_name = "N", default_value = "65536")]
+    #[arg(long, value_name = "N", default_value = "65536", value_parser = count_up_to::<NonZeroUsize>(GREATEST_TIMED_RAYS))]
     pub rays: NonZeroUsize,
     /// Samples of each time
-    #[arg(long, value_name = "N", default_value = "5")]
+    #[arg(long, value_name = "N", default_value = "5", value_parser = count_up_to::<NonZeroUsize>(GREATEST_ROUNDS))]
     pub rounds: NonZeroUsize,
     /// Chooses scenes and rays
     #[arg(long, value_name = "N", default_value_t = 0)]

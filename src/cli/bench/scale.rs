@@ -20,7 +20,6 @@ use crate::cli::{interrupt, json, progress, scene};
 pub fn run(arguments: &ScaleArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
     json::check(common)?;
-    interrupt::install()?;
     if let Some(directory) = &arguments.report {
         make_directory(directory)?;
     }

@@ -25,7 +25,7 @@ use super::memory::readable;
 use super::outputs::Files;
 use super::print::print;
 use super::target::{make_directory, write_text};
-use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
+use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene, text};
 use figures::figures;
 use told::Told;
 
@@ -80,9 +80,8 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         make_directory(directory)?;
         NewFile::check(page)?;
     }
-    interrupt::install()?;
     let workers = scene::workers(common)?;
-    let file = scene::read(&arguments.scene)?;
+    let file = scene::read(&arguments.scene, Limit::available())?;
     files.check_with(&file)?;
     let told = workers.install(|| Told::read(arguments))?;
     let loaded = Arc::new(scene::load(common, file, Need::Build, Limit::available())?);
@@ -272,7 +271,9 @@ fn sentence(arguments: &CheckArguments, tracer: &Tracer, found: &Found) -> Strin
     let statistics = tracer.statistics();
     format!(
         "{rays}; {} cylinders; Embree {} with {}.",
-        statistics.cylinders_instanced, statistics.embree_version, statistics.isa
+        text::count(statistics.cylinders_instanced),
+        statistics.embree_version,
+        statistics.isa
     )
 }
 

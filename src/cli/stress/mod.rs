@@ -32,7 +32,6 @@ pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
     if let Some(directory) = &arguments.report {
         make_directory(directory)?;
     }
-    interrupt::install()?;
     let workers = scene::workers(common)?;
     if let Some(family) = arguments.map {
         workers.install(|| map::run(arguments, family, &contenders))?;
