@@ -9,7 +9,8 @@
  *
  * Errors. A function that can fail answers CYLTRACE_ERROR or NULL and leaves a
  * message for cyltrace_last_error. A null pointer is refused with such a message
- * wherever nothing else is said; so is a panic within the library, which does not
+ * wherever nothing else is said, and so is an array that is not aligned, a count of
+ * elements that no memory has room for, and a setting beyond its limit; so is a panic within the library, which does not
  * cross this interface. (A panic in a callback of Embree's ends the process.)
  *
  * Threads. All functions may be called from any number of threads at once,
@@ -58,9 +59,11 @@ void cyltrace_scene_free(struct cyltrace_scene *scene);
 
 /*
  * The points origin + t * direction with t_min <= t <= t_max. The direction has
- * any length but zero, and t counts in that length; t_min may be negative, both
- * limits may be infinite. A ray that is not finite, has no direction or an empty
- * range is a miss.
+ * any length whose largest component is between 2^-500 and 2^500 in size, and t
+ * counts in that length; t_min may be negative, both limits may be infinite. A ray
+ * with another direction, with an origin that is not finite or has a component above
+ * 2^200 in size, or with an empty range is a miss; so is one that starts farther
+ * than 2^100 times the size of the scene from the scene's middle.
  */
 struct cyltrace_ray {
     double origin[3];
@@ -166,14 +169,14 @@ typedef void (*cyltrace_closest_function)(void *user,
 
 /* How much is checked. Zero or NULL in a field stands for its default. */
 struct cyltrace_check_settings {
-    uint64_t rays;            /* of each class; 100 000 */
+    uint64_t rays;            /* of each class, up to 10^9; 100 000 */
     uint64_t seed;            /* chooses the rays; 0 */
     uint64_t max_memory;      /* bytes that meshes may take; 4 GiB */
-    uint64_t most_listed;     /* violations that are listed; 20 */
+    uint64_t most_listed;     /* violations that are listed, up to 10^6; 20 */
     const uint32_t *segments; /* sides of the prisms, 3 to 4096; 16 and 64 */
-    size_t segment_count;     /* how many numbers of sides */
+    size_t segment_count;     /* how many numbers of sides, up to 64 */
     uint32_t classes;         /* CYLTRACE_CAMERA, ...; all */
-    uint32_t threads;         /* as many as the machine has */
+    uint32_t threads;         /* up to 1024; as many as the machine has */
 };
 
 /* What a check found. */

@@ -14,6 +14,7 @@ use super::types::{
 };
 use crate::check::{Class, Finding, Intersector, Settings, compare};
 use crate::math::Ray;
+use crate::scene::{GREATEST_RAYS, GREATEST_THREADS, MOST_LISTED_VIOLATIONS, MOST_SEGMENT_NUMBERS};
 use crate::tracer::workers;
 
 /// `cyltrace_closest_function`: writes the first hit of each of the rays.
@@ -118,6 +119,11 @@ unsafe fn read(given: &CyltraceCheckSettings) -> Result<(Settings, Option<NonZer
         seed: given.seed,
         ..Settings::default()
     };
+    at_most("rays", given.rays, GREATEST_RAYS)?;
+    at_most("threads", given.threads.into(), GREATEST_THREADS as u64)?;
+    at_most("most_listed", given.most_listed, MOST_LISTED_VIOLATIONS)?;
+    let numbers = given.segment_count as u64;
+    at_most("segment_count", numbers, MOST_SEGMENT_NUMBERS as u64)?;
     if given.rays != 0 {
         settings.rays = given.rays;
     }
@@ -128,6 +134,9 @@ unsafe fn read(given: &CyltraceCheckSettings) -> Result<(Settings, Option<NonZer
         settings.most_listed = usize::try_from(given.most_listed).unwrap_or(usize::MAX);
     }
     if !given.segments.is_null() && given.segment_count != 0 {
+        if !given.segments.is_aligned() {
+            return Err("cyltrace_check: segments is not aligned".to_owned());
+        }
         // SAFETY: invariant 1: not null, so that many numbers.
         let segments = unsafe { slice::from_raw_parts(given.segments, given.segment_count) };
         settings.segments = segments.to_vec();
@@ -145,6 +154,16 @@ unsafe fn read(given: &CyltraceCheckSettings) -> Result<(Settings, Option<NonZer
         settings.classes = wanted.map(|(_, class)| class).collect();
     }
     Ok((settings, NonZeroUsize::new(given.threads as usize)))
+}
+
+/// Refuses a setting that is too large.
+fn at_most(name: &str, value: u64, greatest: u64) -> Result<(), String> {
+    if value > greatest {
+        return Err(format!(
+            "cyltrace_check: {name} is {value}: it is at most {greatest}"
+        ));
+    }
+    Ok(())
 }
 
 /// The caller's intersector.

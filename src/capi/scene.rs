@@ -148,7 +148,9 @@ unsafe fn for_each_ray<A>(
                 "{function}: an array is null, and count is {count}"
             ));
         }
-        // SAFETY: invariant 1: not null, so `count` rays.
+        check_array::<CyltraceRay>(function, rays, count)?;
+        check_array::<A>(function, answers, count)?;
+        // SAFETY: invariant 1: neither null nor impossible, so `count` rays.
         let rays = unsafe { slice::from_raw_parts(rays, count) };
         for (number, ray) in rays.iter().enumerate() {
             let answer = answer(tracer, &Ray::from(ray));
@@ -159,6 +161,21 @@ unsafe fn for_each_ray<A>(
         Ok(())
     });
     done.map_or(CYLTRACE_ERROR, |()| CYLTRACE_OK)
+}
+
+/// Refuses an array that no program can have: one that is not aligned, or that takes
+/// more than half of the address space.
+fn check_array<T>(function: &str, array: *const T, count: usize) -> Result<(), String> {
+    if !array.is_aligned() {
+        return Err(format!("{function}: an array is not aligned"));
+    }
+    let greatest = isize::MAX as usize / size_of::<T>();
+    if count > greatest {
+        return Err(format!(
+            "{function}: count is {count}: an array has at most {greatest} elements"
+        ));
+    }
+    Ok(())
 }
 
 /// A file's name as the system has it.

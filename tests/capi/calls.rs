@@ -333,6 +333,116 @@ fn what_cannot_be_checked_is_refused_with_its_reason() {
 }
 
 #[test]
+fn settings_beyond_their_limits_are_refused() {
+    let loaded = Loaded::new("scenes/minimal.toml");
+    let segments = [8_u32; 65];
+    let misaligned = segments.as_ptr().cast::<u8>().wrapping_add(1).cast();
+    for (settings, reason) in [
+        (
+            CyltraceCheckSettings {
+                threads: 4_000_000_000,
+                ..SETTINGS
+            },
+            "threads is 4000000000: it is at most 1024",
+        ),
+        (
+            CyltraceCheckSettings {
+                rays: u64::MAX,
+                ..SETTINGS
+            },
+            "rays is 18446744073709551615: it is at most 1000000000",
+        ),
+        (
+            CyltraceCheckSettings {
+                most_listed: u64::MAX,
+                ..SETTINGS
+            },
+            "most_listed is 18446744073709551615: it is at most 1000000",
+        ),
+        (
+            CyltraceCheckSettings {
+                segments: segments.as_ptr(),
+                segment_count: 65,
+                ..SETTINGS
+            },
+            "segment_count is 65: it is at most 64",
+        ),
+        (
+            CyltraceCheckSettings {
+                segments: segments.as_ptr(),
+                segment_count: usize::MAX,
+                ..SETTINGS
+            },
+            "segment_count is 18446744073709551615: it is at most 64",
+        ),
+        (
+            CyltraceCheckSettings {
+                segments: misaligned,
+                segment_count: 1,
+                ..SETTINGS
+            },
+            "segments is not aligned",
+        ),
+    ] {
+        let (code, outcome, threads) = check(&loaded, &settings, None);
+        assert_eq!((code, threads), (CYLTRACE_ERROR, 0), "{reason}");
+        assert_eq!(last_error(), format!("cyltrace_check: {reason}"));
+        assert!(outcome.text.is_null() && outcome.json.is_null());
+    }
+}
+
+#[test]
+fn arrays_that_no_program_can_have_are_refused() {
+    let loaded = Loaded::new("scenes/minimal.toml");
+    let rays = [CyltraceRay::from(&Ray::new(glam::DVec3::ZERO, glam::DVec3::X)); 2];
+    let mut hits = [CyltraceHit::MISS; 2];
+    let mut occluded = [0_u8; 2];
+    let greatest = isize::MAX as usize;
+    // The first count of rays whose bytes are more than a slice may have.
+    let too_many = greatest / size_of::<CyltraceRay>() + 1;
+    let misaligned = rays.as_ptr().cast::<u8>().wrapping_add(4).cast();
+    for count in [usize::MAX, greatest, too_many] {
+        // SAFETY: refused by the count, before anything is read or written.
+        let codes = unsafe {
+            [
+                cyltrace_closest(loaded.0, rays.as_ptr(), count, hits.as_mut_ptr()),
+                cyltrace_occluded(loaded.0, rays.as_ptr(), count, occluded.as_mut_ptr()),
+            ]
+        };
+        assert_eq!(codes, [CYLTRACE_ERROR; 2], "{count}");
+        let reason = format!("cyltrace_occluded: count is {count}: an array has at most ");
+        assert!(last_error().starts_with(&reason), "{}", last_error());
+    }
+    // SAFETY: refused by the address, before anything is read or written.
+    let code = unsafe { cyltrace_closest(loaded.0, misaligned, 1, hits.as_mut_ptr()) };
+    assert_eq!(code, CYLTRACE_ERROR);
+    assert_eq!(last_error(), "cyltrace_closest: an array is not aligned");
+}
+
+#[test]
+fn rays_of_sizes_that_are_not_supported_are_misses() {
+    let loaded = Loaded::new("scenes/minimal.toml");
+    let ray = |origin: f64, direction: f64| CyltraceRay {
+        origin: [origin, 0.0, 0.5],
+        direction: [direction, 0.0, 0.0],
+        t_min: f64::NEG_INFINITY,
+        t_max: f64::INFINITY,
+    };
+    let rays = [
+        ray(1e61, 1.0),
+        ray(0.0, 1e-152),
+        ray(0.0, 1e152),
+        ray(0.0, f64::NAN),
+        ray(f64::INFINITY, 1.0),
+    ];
+    let mut hits = [CyltraceHit::MISS; 5];
+    // SAFETY: the arrays have five elements.
+    let code = unsafe { cyltrace_closest(loaded.0, rays.as_ptr(), 5, hits.as_mut_ptr()) };
+    assert_eq!(code, CYLTRACE_OK);
+    assert!(hits.iter().all(|hit| hit.is_hit == 0));
+}
+
+#[test]
 fn null_pointers_and_missing_files_are_refused() {
     let loaded = Loaded::new("scenes/minimal.toml");
     let ray = CyltraceRay::from(&Ray::new(glam::DVec3::ZERO, glam::DVec3::X));
