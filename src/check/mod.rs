@@ -37,7 +37,6 @@ mod telling;
 
 pub use compare::{Progress, compare, compare_with};
 pub use elsewhere::agreement::{Agreement, Disagreement, F32_TOLERANCE};
-pub use elsewhere::mesh_file::{MeshFile, MeshFileError, read_mesh};
 pub use elsewhere::user_hits::compare_hits;
 pub use elsewhere::user_mesh::{TracedMesh, TriangleHit, compare_mesh, rays_around};
 pub use finding::{Finding, Intersector, Place};

@@ -20,3 +20,19 @@ pub const GREATEST_STRETCH: f64 = power_of_two(64);
 /// Most pixels of a picture, 2^28 (16384 x 16384): its film takes 3 GiB, and
 /// twice that while tiles are put together.
 pub const GREATEST_PIXELS: u64 = 1 << 28;
+
+/// Most bytes of a mesh file, 2^32: some 30 million triangles of OBJ, 80 million of binary
+/// STL.
+pub const MOST_MESH_BYTES: u64 = 1 << 32;
+
+/// The greatest size of a mesh's coordinate, that of a cylinder's.
+pub const GREATEST_MESH_COORDINATE: f64 = crate::solid::Cylinder::GREATEST;
+
+/// Most bytes of the header of a PLY file, 2^20: headers in use have less than a thousand.
+pub const MOST_PLY_HEADER_BYTES: usize = 1 << 20;
+
+/// Most properties of all elements of a PLY file together.
+pub const MOST_PLY_PROPERTIES: usize = 1 << 12;
+
+/// Most corners of a face of a mesh, 2^20.
+pub const MOST_FACE_CORNERS: usize = 1 << 20;

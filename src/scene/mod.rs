@@ -55,7 +55,11 @@ pub use description::{
     Projection, Prototype, PrototypeIndex, RenderSettings, Scene, Sky, Sun,
 };
 pub use error::{SceneError, Statement};
-pub use limits::{GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_PIXELS, GREATEST_STRETCH};
+pub use limits::{
+    GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_MESH_COORDINATE, GREATEST_PIXELS,
+    GREATEST_STRETCH, MOST_FACE_CORNERS, MOST_MESH_BYTES, MOST_PLY_HEADER_BYTES,
+    MOST_PLY_PROPERTIES,
+};
 pub use load::load;
 pub use scene_file::SceneFile;
 pub use solid_lists::{CompositionRecord, Listed, SolidRecord, Solids};

@@ -3,7 +3,6 @@
 
 pub(in crate::check) mod agreement;
 mod depth;
-pub(in crate::check) mod mesh_file;
 mod nearness;
 mod surfaces;
 pub(in crate::check) mod user_hits;

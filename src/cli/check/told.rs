@@ -1,11 +1,12 @@
 //! Hits from elsewhere: of another program, or of a mesh.
 
-use anyhow::{anyhow, bail};
+use anyhow::bail;
 use cyltrace::check::{
-    Agreement, F32_TOLERANCE, MeshFile, Outcome, Progress, TracedMesh, compare_hits, compare_mesh,
-    rays_around, read_mesh,
+    Agreement, F32_TOLERANCE, Outcome, Progress, TracedMesh, compare_hits, compare_mesh,
+    rays_around,
 };
 use cyltrace::math::Ray;
+use cyltrace::mesh_file::{MeshFile, read_mesh_within};
 use cyltrace::tracer::Tracer;
 
 use super::hit_file::{ToldHit, read_hits};
@@ -31,7 +32,7 @@ impl Told {
     /// Reads what the arguments name; `None` when they name nothing.
     pub fn read(arguments: &CheckArguments) -> anyhow::Result<Option<Self>> {
         if let Some(path) = &arguments.mesh {
-            let file = read_mesh(path).map_err(|error| anyhow!("{error}"))?;
+            let file = read_mesh_within(path, arguments.max_memory)?;
             let Some(deviation) = arguments.deviation.or(file.deviation) else {
                 bail!(
                     "{}: no comment says its deviation, as those of `cyltrace tessellate` do: give --deviation X",
