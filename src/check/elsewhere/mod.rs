@@ -5,5 +5,7 @@ pub(in crate::check) mod agreement;
 mod depth;
 mod nearness;
 mod surfaces;
+pub(in crate::check) mod tolerance;
+mod triangle;
 pub(in crate::check) mod user_hits;
 pub(in crate::check) mod user_mesh;

@@ -72,9 +72,17 @@ fn agreement_figures(row: &Agreement) -> Value {
         "band_percent": percent(row.silhouette, row.rays),
         "max_dt_over_chord": null,
         "hits": row.hits,
-        "witnessed_percent": percent(row.rays - row.silhouette, row.rays),
-        "unwitnessed_percent": 0.0,
+        "witnessed_percent": percent(row.judged(), row.rays),
+        "unwitnessed_percent": percent(row.coarse, row.rays),
         "triangle_errors": null,
         "wrong_normals": null,
+        "judged": row.judged(),
+        "tolerance": row.max_allowance.max(row.fixed_allowance),
+        "least_radius": finite(row.least_radius),
     })
+}
+
+/// A number; `null` for what is infinite.
+fn finite(number: f64) -> Option<f64> {
+    number.is_finite().then_some(number)
 }

@@ -10,7 +10,7 @@ use cyltrace::mesh_file::{MeshFile, read_mesh_within};
 use cyltrace::tracer::Tracer;
 
 use super::hit_file::{ToldHit, read_hits};
-use super::{Found, MOST_LISTED, device_options};
+use super::{Found, MOST_LISTED};
 use crate::cli::arguments::{CheckArguments, Rays};
 use crate::cli::interrupt::Interrupted;
 use crate::cli::memory::readable;
@@ -108,7 +108,7 @@ impl Told {
                 compare_hits(tracer, rays, &told, tolerance, MOST_LISTED, progress)
             }
             Self::Mesh(rays, file, deviation) => {
-                let mesh = TracedMesh::new(&file.mesh, &device_options(arguments))?;
+                let mesh = TracedMesh::new(&file.mesh);
                 let made;
                 let (class, rays) = match (rays, &arguments.rays) {
                     (Some(rays), _) => ("given", rays),
@@ -119,7 +119,8 @@ impl Told {
                     (None, Rays::Table(_)) => unreachable!("a table of rays has been read"),
                 };
                 let rays = (class, rays.as_slice());
-                compare_mesh(tracer, &mesh, rays, *deviation, MOST_LISTED, progress)
+                let off = (*deviation, file.rounding);
+                compare_mesh(tracer, &mesh, rays, off, MOST_LISTED, progress)
             }
         };
         Ok(Found {
