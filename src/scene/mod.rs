@@ -47,6 +47,7 @@ mod values;
 mod view_volume;
 
 pub use aimed_camera::AimedCamera;
+pub use beam_lattice::beams_of_model;
 pub use census::Census;
 pub use contents::{Contents, OtherSolids, PlacedCount};
 pub use cylinder_list::{CylinderList, CylinderRecord32, Iter as CylinderIter, Records};
