@@ -129,6 +129,7 @@ fn report(
             "memory": json::memory(statistics),
             "skipped": skipped,
             "skipped_rows": skipped_rows,
+            "notes": tracer.scene().notes,
             "embree": statistics.embree_version,
             "isa": statistics.isa,
             "threads": threads,
@@ -167,5 +168,6 @@ fn report(
     for reason in &skipped {
         text += &format!("skipped: {reason}\n");
     }
+    text += &text::notes(&tracer.scene().notes);
     print(&text)
 }
