@@ -5,7 +5,7 @@ mod three_mf;
 
 use std::fs;
 
-use cyltrace::scene::{Composition, Prototype, Scene, SceneError, load};
+use cyltrace::scene::{Composition, Prototype, Scene, SceneError, beams_of_model, load};
 use cyltrace::solid::{AnySolid, Caps, Cylinder, Sphere};
 use glam::DVec3;
 use three_mf::{model, three_mf};
@@ -301,6 +301,13 @@ fn notes(keys: &str, model: &str) -> Vec<String> {
 
 const SMALL: &str = "radius=\"1\" minlength=\"0\" cap=\"butt\"";
 const BEAM: &str = "<b:beam v1=\"0\" v2=\"1\"/>";
+
+#[test]
+fn beams_of_a_model_are_counted_without_an_archive() {
+    let two = single(SMALL, &BEAM.repeat(2));
+    assert_eq!(beams_of_model(&two).expect("a model"), 2);
+    assert!(beams_of_model("<model/>").is_err());
+}
 
 #[test]
 fn good_lattices_have_no_notes() {

@@ -308,7 +308,7 @@ struct Met<'a> {
     solid: (Vec<u32>, u32),
     frame: Frame,
     found: Found<'a>,
-    /// How far its box reaches from the world's origin.
+    /// How far its box reaches from the world's origin, or those of its leaves.
     extent: f64,
     /// At most its least radius in the world.
     radius: f64,
@@ -323,14 +323,17 @@ impl<'a> Met<'a> {
             .iter()
             .fold(DAffine3::IDENTITY, |whole, &one| whole * *one);
         let frame = Frame::new(&whole);
-        let (bounds, radius) = match &found {
-            Found::Single(solid) => (solid.bounds(), least_radius([*solid])),
-            Found::Composed(solid) => (solid.bounds(), least_radius(solid.solids())),
+        let parts = match &found {
+            Found::Single(solid) => vec![*solid],
+            Found::Composed(solid) => solid.solids(),
         };
+        let extents = parts
+            .iter()
+            .map(|one| farthest(&one.bounds().transformed(&whole)));
         Self {
             solid: (hit.instance.clone(), hit.primitive),
-            extent: farthest(&bounds.transformed(&whole)),
-            radius: frame.least_length(radius),
+            extent: extents.fold(0.0, f64::max),
+            radius: frame.least_length(least_radius(parts)),
             frame,
             found,
             at: vec![hit.t],

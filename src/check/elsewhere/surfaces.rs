@@ -50,12 +50,16 @@ impl<'a> Surfaces<'a> {
         }
         let scene = self.scene;
         let prototype = &scene.prototypes[number];
-        let own = prototype.cylinders.iter();
-        let own = own.fold(prototype.solids.bounds(), |all, one| {
+        let cylinders = prototype.cylinders.iter();
+        let own = cylinders.fold(prototype.solids.bounds(), |all, one| {
             all.union(&one.cylinder().bounds())
         });
+        // The numbers of a composition are those of its leaves, which may reach farther.
         let composed = prototype.solids.compositions.iter();
-        let leaves = composed.flat_map(|record| record.solid.solids());
+        let leaves: Vec<AnySolid> = composed.flat_map(|record| record.solid.solids()).collect();
+        let own = leaves
+            .iter()
+            .fold(own, |all, leaf| all.union(&leaf.bounds()));
         let singles = prototype.singles().map(|(_, solid)| solid);
         let mut whole = (own, least_radius(singles.chain(leaves)));
         for placement in &prototype.placements {
@@ -83,24 +87,25 @@ impl<'a> Surfaces<'a> {
         allowance: &Allowance,
     ) -> bool {
         let prototype = &self.scene.prototypes[index.0 as usize];
-        let frame = Frame::new(world_from_here);
+        let frame = &Frame::new(world_from_here);
         // A little more than the allowance, for what is rounded on the way here.
         let distance = |bounds: &Bounds| {
             let placed = bounds.transformed(world_from_here);
             1.001 * allowance.of(farthest(&placed))
         };
+        // At least that of every solid: most are farther than even this.
+        let greatest = self.reached[index.0 as usize].map_or(0.0, |(whole, _)| distance(&whole));
         let is_near = |solid: AnySolid| {
-            let distance = distance(&solid.bounds());
-            let frame = &frame;
-            !PlacedSolid { solid, frame }.is_far(point, distance)
+            let placed = PlacedSolid { solid, frame };
+            !placed.is_far(point, greatest) && !placed.is_far(point, distance(&solid.bounds()))
+        };
+        let is_near_closed = |solid: AnySolid| {
+            let placed = PlacedSolid { solid, frame };
+            !placed.is_far_from_closed(point, greatest)
+                && !placed.is_far_from_closed(point, distance(&solid.bounds()))
         };
         let composed = prototype.solids.compositions.iter();
         let mut leaves = composed.flat_map(|record| record.solid.solids());
-        let is_near_closed = |solid: AnySolid| {
-            let distance = distance(&solid.bounds());
-            let frame = &frame;
-            !PlacedSolid { solid, frame }.is_far_from_closed(point, distance)
-        };
         prototype.singles().any(|(_, solid)| is_near(solid))
             || leaves.any(is_near_closed)
             || prototype.placements.iter().any(|placement| {

@@ -78,17 +78,9 @@ pub(super) fn farthest(bounds: &Bounds) -> f64 {
     }
 }
 
-/// The least radius of some solids: that of their thickest part, and of a cuboid half of its
-/// least width. It is infinite of none.
+/// The least radius of some solids; infinite of none.
 pub(super) fn least_radius(solids: impl IntoIterator<Item = AnySolid>) -> f64 {
-    let radii = solids.into_iter().map(|solid| match solid {
-        AnySolid::Cylinder(one) => one.radius(),
-        AnySolid::Cone(one) => one.radius0().max(one.radius1()),
-        AnySolid::RoundedCone(one) => one.radius0().max(one.radius1()),
-        AnySolid::Sphere(one) => one.radius(),
-        AnySolid::Cuboid(one) => one.half_widths().min_element(),
-        AnySolid::Disk(one) => one.radius(),
-    });
+    let radii = solids.into_iter().map(|solid| solid.radius());
     radii.fold(f64::INFINITY, f64::min)
 }
 
