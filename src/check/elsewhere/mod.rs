@@ -3,6 +3,7 @@
 
 pub(in crate::check) mod agreement;
 mod depth;
+mod met;
 mod nearness;
 mod surfaces;
 pub(in crate::check) mod tolerance;

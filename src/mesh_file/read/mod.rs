@@ -104,12 +104,7 @@ mod tests {
     fn files_that_are_too_long_are_refused_before_they_are_read() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("m.obj");
-        // A file of a terabyte that takes no room.
-        let file = File::create(&path).expect("a file");
-        if file.set_len(1 << 40).is_err() {
-            println!("skipped: no sparse files here");
-            return;
-        }
+        std::fs::write(&path, "v 0 0 0\n".repeat(200)).expect("a file");
         let message = read_mesh_within(&path, 1000).unwrap_err().to_string();
         assert!(message.contains("more than 1000 bytes"), "{message}");
     }
