@@ -9,7 +9,6 @@ use std::sync::Arc;
 use cyltrace::check::{
     Agreement, F32_TOLERANCE, TracedMesh, compare_hits, compare_mesh, rays_around,
 };
-use cyltrace::embree::DeviceOptions;
 use cyltrace::math::{Orientation, Ray};
 use cyltrace::scene::{MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, SolidRecord};
 use cyltrace::solid::tessellation::{Fit, Mesh, deviation_of, mesh_of};
@@ -203,9 +202,17 @@ fn meshes(scene: &Scene, segments: u32, fit: Fit) -> (Vec<Mesh>, f64) {
 fn verdict(tracer: &Tracer, meshes: &[Mesh], deviation: f64) -> Agreement {
     let mut whole = Mesh::default();
     meshes.iter().for_each(|one| whole.append(one));
-    let mesh = TracedMesh::new(&whole, &DeviceOptions::default()).expect("a mesh");
+    let mesh = TracedMesh::new(&whole);
     let rays = rays_around(tracer, 0, RAYS);
-    compare_mesh(tracer, &mesh, ("around", &rays), deviation, 3, &go_on).expect("an end")
+    compare_mesh(
+        tracer,
+        &mesh,
+        ("around", &rays),
+        (deviation, 0.0),
+        3,
+        &go_on,
+    )
+    .expect("an end")
 }
 
 #[test]

@@ -6,7 +6,6 @@ use std::path::Path;
 use std::sync::Arc;
 
 use cyltrace::check::{Agreement, TracedMesh, compare_hits, compare_mesh, rays_around};
-use cyltrace::embree::DeviceOptions;
 use cyltrace::scene::{Scene, load};
 use cyltrace::solid::tessellation::{Fit, Mesh, deviation_of, mesh_of};
 use cyltrace::tracer::{Options, Tracer};
@@ -37,10 +36,18 @@ fn meshes(scene: &Scene, segments: u32, fit: Fit) -> (Vec<Mesh>, f64) {
 fn verdict(tracer: &Tracer, meshes: &[Mesh], seed: u64, deviation: f64) -> Agreement {
     let mut whole = Mesh::default();
     meshes.iter().for_each(|one| whole.append(one));
-    let mesh = TracedMesh::new(&whole, &DeviceOptions::default()).expect("a mesh");
+    let mesh = TracedMesh::new(&whole);
     let rays = rays_around(tracer, seed, RAYS);
     let go_on = |_: u64, _: u64, _: &str| ControlFlow::Continue(());
-    compare_mesh(tracer, &mesh, ("around", &rays), deviation, 3, &go_on).expect("an end")
+    compare_mesh(
+        tracer,
+        &mesh,
+        ("around", &rays),
+        (deviation, 0.0),
+        3,
+        &go_on,
+    )
+    .expect("an end")
 }
 
 #[test]

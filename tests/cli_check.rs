@@ -139,6 +139,37 @@ fn check_json_has_the_promised_keys_and_the_scene_holds() {
     assert!(band(0) > 4.0 * band(1), "{convergence:?}");
 }
 
+/// Embree's f32 depends on the instruction set; what a verdict is made of does not.
+#[test]
+fn check_json_differs_by_instruction_set_in_named_fields_only() {
+    let folder = folder(1);
+    let figures = |isa: &str| -> Value {
+        let arguments = ["check", "scene.toml", "--rays", "2000", "--json", "-"];
+        let arguments = [&arguments[..], &["--max-isa", isa]].concat();
+        let (code, out, err) = cyltrace(folder.path(), &arguments);
+        assert_eq!(code, 0, "{err}{out}");
+        let mut figures: Value = serde_json::from_str(&out).expect("nothing but JSON");
+        let named = figures["isa_dependent"].as_array().expect("names").clone();
+        for name in ["isa", "check_s"] {
+            figures.as_object_mut().expect("an object").remove(name);
+        }
+        for rows in ["classes", "convergence"] {
+            for row in figures[rows].as_array_mut().expect("rows") {
+                for name in &named {
+                    let name = name.as_str().expect("a name");
+                    row.as_object_mut().expect("an object").remove(name);
+                }
+            }
+        }
+        figures
+    };
+    let least = figures("sse2");
+    assert!(least["classes"][0]["hits"].is_u64());
+    for isa in ["avx2", "avx512"] {
+        assert_eq!(least, figures(isa), "{isa}");
+    }
+}
+
 #[test]
 fn check_report_is_written_whole_and_needs_nothing_else() {
     let folder = folder(1);

@@ -5,7 +5,7 @@ mod three_mf;
 
 use std::fs;
 
-use cyltrace::scene::{Composition, Prototype, Scene, SceneError, load};
+use cyltrace::scene::{Composition, Prototype, Scene, SceneError, beams_of_model, load};
 use cyltrace::solid::{AnySolid, Caps, Cylinder, Sphere};
 use glam::DVec3;
 use three_mf::{model, three_mf};
@@ -284,4 +284,104 @@ fn lattices_of_prototypes_and_their_materials_are_read() {
         .map(|one| (one.primitive, one.material.0))
         .collect();
     assert_eq!(spheres, [(2, 1), (3, 0)]);
+}
+
+/// The notes on a model, without the paths before them.
+fn notes(keys: &str, model: &str) -> Vec<String> {
+    let scene = loaded(keys, model).unwrap_or_else(|error| panic!("{model}\n{error}"));
+    let notes = scene.notes.iter();
+    let notes = notes.map(|note| {
+        note.rsplit_once("3dmodel.model:")
+            .expect("a place")
+            .1
+            .to_owned()
+    });
+    notes.collect()
+}
+
+const SMALL: &str = "radius=\"1\" minlength=\"0\" cap=\"butt\"";
+const BEAM: &str = "<b:beam v1=\"0\" v2=\"1\"/>";
+
+#[test]
+fn beams_of_a_model_are_counted_without_an_archive() {
+    let two = single(SMALL, &BEAM.repeat(2));
+    assert_eq!(beams_of_model(&two).expect("a model"), 2);
+    assert!(beams_of_model("<model/>").is_err());
+}
+
+#[test]
+fn good_lattices_have_no_notes() {
+    assert_eq!(notes("", &single(SMALL, BEAM)), [""; 0]);
+    let solid = single(SMALL, BEAM).replace("id=\"1\"", "id=\"1\" type=\"solidsupport\"");
+    assert_eq!(notes("", &solid), [""; 0]);
+}
+
+#[test]
+fn what_the_specification_forbids_is_read_with_a_note() {
+    let of_support = single(SMALL, BEAM).replace("id=\"1\"", "id=\"1\" type=\"support\"");
+    let [note] = &notes("", &of_support)[..] else {
+        panic!("one note");
+    };
+    assert!(
+        note.starts_with("2: object 1: its type is \"support\", and only"),
+        "{note}"
+    );
+    assert_eq!(cylinders(&prototype("", &of_support)).len(), 1);
+
+    let not_required = single(SMALL, BEAM).replace("requiredextensions=\"b\"", "");
+    let [note] = &notes("", &not_required)[..] else {
+        panic!("one note");
+    };
+    assert!(note.starts_with("1: the model does not require"), "{note}");
+
+    let of_balls =
+        format!("{BEAM}</b:beams><b2:balls><b2:ball vindex=\"0\" r=\"3\"/></b2:balls><b:beams>");
+    let of_balls = single(SMALL, &of_balls);
+    let [note] = &notes("", &of_balls)[..] else {
+        panic!("one note");
+    };
+    assert!(note.contains("balls but no ballmode"), "{note}");
+    assert!(spheres(&prototype("", &of_balls)).is_empty());
+}
+
+#[test]
+fn objects_are_named_whose_triangles_are_left_out() {
+    let triangles = "<triangles><triangle v1=\"0\" v2=\"1\" v3=\"4\"/></triangles>";
+    let solid =
+        |id: u32, lattice: &str| object(id, lattice, BEAM).replace("<triangles/>", triangles);
+    let whole = solid(1, SMALL) + &solid(2, SMALL) + &object(3, SMALL, BEAM)
+        + &solid(4, &format!("{SMALL} clippingmode=\"inside\" clippingmesh=\"3\""))
+        // It is not built.
+        + &solid(5, SMALL);
+    let items = (1..=4)
+        .map(|id| format!("<item objectid=\"{id}\"/>"))
+        .collect::<String>();
+    let model = model(
+        "requiredextensions=\"b\"",
+        &format!("<resources>{whole}</resources>\n<build>{items}</build>"),
+    );
+    let found = notes("meshes = \"skip\"", &model);
+    let [left_out, clipped] = &found[..] else {
+        panic!("two notes: {found:?}");
+    };
+    assert!(
+        left_out.contains(": objects 1, 2, 4: its triangles are left out"),
+        "{left_out}"
+    );
+    assert!(
+        clipped.contains(": object 4: its lattice is clipped by a mesh"),
+        "{clipped}"
+    );
+}
+
+/// All balls of a lattice are united.
+#[test]
+fn the_greatest_of_several_balls_at_a_vertex_stays() {
+    let balls = "<b2:ball vindex=\"0\" r=\"3\"/><b2:ball vindex=\"0\" r=\"2\"/><b2:ball vindex=\"1\" r=\"0.5\"/>";
+    let beams = format!("{BEAM}</b:beams><b2:balls>{balls}</b2:balls><b:beams>");
+    for (mode, expected) in [("mixed", 0.5), ("all", 0.5)] {
+        let keys = format!("{SMALL} ballmode=\"{mode}\" ballradius=\"1\"");
+        let found = spheres(&prototype("", &single(&keys, &beams)));
+        assert_eq!(found, [(1, DVec3::ZERO, 3.0), (2, X4, expected)], "{mode}");
+    }
 }

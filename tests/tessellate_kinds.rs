@@ -6,9 +6,8 @@ mod support;
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 
-use cyltrace::check::read_mesh;
 use cyltrace::math::{Random, UNIT_ROUNDOFF};
-use cyltrace::mesh_file::{self, Format, Plan};
+use cyltrace::mesh_file::{self, Format, Plan, read_mesh};
 use cyltrace::scene::{Placement, PrototypeIndex, Scene};
 use cyltrace::solid::tessellation::{Fit, Mesh, deviation_of, mesh_size_of};
 use cyltrace::solid::{AnySolid, Caps, Location, Part};

@@ -36,8 +36,8 @@ mod target;
 mod telling;
 
 pub use compare::{Progress, compare, compare_with};
-pub use elsewhere::agreement::{Agreement, Disagreement, F32_TOLERANCE};
-pub use elsewhere::mesh_file::{MeshFile, MeshFileError, read_mesh};
+pub use elsewhere::agreement::{Agreement, Disagreement};
+pub use elsewhere::tolerance::F32_TOLERANCE;
 pub use elsewhere::user_hits::compare_hits;
 pub use elsewhere::user_mesh::{TracedMesh, TriangleHit, compare_mesh, rays_around};
 pub use finding::{Finding, Intersector, Place};
@@ -49,5 +49,5 @@ pub use telling::pictures::{Pictures, PicturesError, pictures};
 pub use telling::plan::{Plan, plan};
 pub use telling::report::{
     PageContent, TABLE_HEADINGS, TABLE_NAMES, disagreement_text, page, percent, table_rows,
-    verdict, violation_text,
+    tolerance_text, verdict, violation_text,
 };

@@ -244,7 +244,7 @@ pub struct CheckArguments {
     /// 16 / 2^24, which suits f32]
     #[arg(long, value_name = "X", value_parser = parse_length, requires = "hits")]
     pub tolerance: Option<f64>,
-    /// Compare this mesh of the scene: .obj or .ply
+    /// Compare this mesh of the scene: .obj, .ply or .stl
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
     /// What --mesh may be off, in scene units [default: what the file's comment

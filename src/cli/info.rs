@@ -59,6 +59,7 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
                 "instanced": json::count(census.other_solids_instanced),
             },
             "skipped_rows": scene.skipped_rows,
+            "notes": scene.notes,
             "bounds": { "lower": lower.to_array(), "upper": upper.to_array() },
             "memory_estimate": {
                 "records_bytes": estimate.records_bytes,
@@ -98,6 +99,7 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
         );
     }
     text += &text::skipped_rows(scene.skipped_rows);
+    text += &text::notes(&scene.notes);
     text += &format!("bounds: {} to {}\n", text::point(lower), text::point(upper));
     text += &format!(
         "memory, estimated: {} of records, {} in Embree, {} at most while it builds\n",

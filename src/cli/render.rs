@@ -124,6 +124,7 @@ fn report(
             "memory": json::memory(statistics),
             "skipped": skipped,
             "skipped_rows": skipped_rows,
+            "notes": tracer.scene().notes,
             "embree": statistics.embree_version,
             "isa": statistics.isa,
             "threads": threads,
@@ -162,5 +163,6 @@ fn report(
     for reason in &skipped {
         text += &format!("skipped: {reason}\n");
     }
+    text += &text::notes(&tracer.scene().notes);
     print(&text)
 }

@@ -86,12 +86,14 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
             "vertices": json::count(plan.vertices()),
             "triangles": json::count(plan.triangles()),
             "skipped_rows": scene.skipped_rows,
+            "notes": scene.notes,
         }),
     )?;
     if !common.prints() {
         return Ok(());
     }
     let mut text = text::skipped_rows(scene.skipped_rows);
+    text += &text::notes(&scene.notes);
     text += &format!("time: load {load:.2} s, write {write:.2} s\n");
     print(&text)
 }

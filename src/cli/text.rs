@@ -72,6 +72,11 @@ pub fn count(count: u128) -> String {
     }
 }
 
+/// A line for each note on the files of a scene.
+pub fn notes(notes: &[String]) -> String {
+    notes.iter().map(|note| format!("note: {note}\n")).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

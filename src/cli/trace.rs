@@ -308,6 +308,7 @@ impl Traced {
             "memory": json::memory(statistics),
             "skipped": statistics.skipped,
             "skipped_rows": skipped_rows,
+            "notes": self.tracer.scene().notes,
             "embree": statistics.embree_version,
             "isa": statistics.isa,
             "threads": self.threads,
@@ -321,6 +322,7 @@ impl Traced {
         }
         let mut text = format!("{}: {came_to}\n", arguments.output.display());
         text += &text::skipped_rows(skipped_rows);
+        text += &text::notes(&self.tracer.scene().notes);
         text += &format!(
             "time: check {:.2} s, load {:.2} s, build {:.2} s, trace {:.2} s on {} threads ({:.2} million {} a second, tables included)\n",
             self.check,

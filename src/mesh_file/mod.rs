@@ -4,10 +4,12 @@
 //! world space: `plan` counts them and derives how far the mesh may be from the true
 //! surface, `walk` visits them, `obj` and `ply` write them. Nothing but the
 //! mesh of the solid at hand is in memory, so a file may be as large as a disk.
+//! `read` reads a mesh of any program.
 
 mod obj;
 mod plan;
 mod ply;
+mod read;
 mod walk;
 
 use std::io::{self, Write};
@@ -15,6 +17,10 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 pub use plan::Plan;
+pub use read::{
+    MeshError, MeshFile, MeshPlace, MeshReadError, parse_obj, parse_ply, parse_stl, read_mesh,
+    read_mesh_within,
+};
 
 use crate::scene::Scene;
 use crate::solid::tessellation::{GREATEST_SEGMENTS, LEAST_SEGMENTS};

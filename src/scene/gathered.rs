@@ -29,6 +29,8 @@ pub(super) struct Gathered {
     pub skipped: u64,
     /// At least the size of every coordinate of a point of the solids.
     pub reach: f64,
+    /// What a user may want to know of the files.
+    pub notes: Vec<String>,
 }
 
 /// What the solids of an entry have in common.
@@ -166,6 +168,13 @@ impl Gathered {
     fn reach_to(&mut self, bounds: &Bounds) {
         let corner = bounds.lower.abs().max(bounds.upper.abs());
         self.reach = self.reach.max(corner.max_element());
+    }
+
+    /// Adds a note, once.
+    pub fn note(&mut self, note: &str) {
+        if !self.notes.iter().any(|known| known == note) {
+            self.notes.push(note.to_owned());
+        }
     }
 
     /// Leaves a row out; it keeps its primitive number.

@@ -52,3 +52,35 @@ pub const GREATEST_TIMED_RAYS: u64 = 10_000_000;
 
 /// Most samples of a time that `bench` takes.
 pub const GREATEST_ROUNDS: u64 = 100_000;
+/// Most bytes of a mesh file, 2^32: some 30 million triangles of OBJ, 80 million of binary
+/// STL.
+pub const MOST_MESH_BYTES: u64 = 1 << 32;
+
+/// The greatest size of a mesh's coordinate, that of a cylinder's.
+pub const GREATEST_MESH_COORDINATE: f64 = crate::solid::Cylinder::GREATEST;
+
+/// Most bytes of the header of a PLY file, 2^20: headers in use have less than a thousand.
+pub const MOST_PLY_HEADER_BYTES: usize = 1 << 20;
+
+/// Most properties of all elements of a PLY file together.
+pub const MOST_PLY_PROPERTIES: usize = 1 << 12;
+
+/// Most corners of a face of a mesh, 2^20.
+pub const MOST_FACE_CORNERS: usize = 1 << 20;
+
+/// Most bytes of a part of a 3MF file, unpacked, 2^30: some 16 million beams.
+pub(super) const MOST_PART_BYTES: u64 = 1 << 30;
+
+/// Most elements and texts of a part of a 3MF file, 2^26, of which each takes some 100 bytes
+/// while it is read.
+pub(super) const MOST_XML_NODES: u32 = 1 << 26;
+
+/// Most attributes of an element of a 3MF file. Its format knows at most 12 for one.
+pub(super) const MOST_ATTRIBUTES: usize = 256;
+
+/// Most prefixes of namespaces that a part of a 3MF file declares.
+pub(super) const MOST_NAMESPACES: usize = 256;
+
+/// Most places of the objects of a 3MF file, 2^20: components of components may otherwise be
+/// as many as a file states.
+pub(super) const MOST_PLACES: usize = 1 << 20;

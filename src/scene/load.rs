@@ -72,6 +72,7 @@ pub(super) fn lower(source: &Source, document: Document) -> Result<Scene, SceneE
         sky: lights.sky,
         background: lights.background,
         skipped_rows: bodies.iter().map(|body| body.skipped).sum(),
+        notes: bodies.iter().flat_map(|body| body.notes.clone()).collect(),
         prototypes: bodies.into_iter().map(|body| body.prototype).collect(),
         materials: materials.list,
     })
@@ -123,6 +124,7 @@ struct Lowered {
     edges: Vec<Edge>,
     reach: f64,
     skipped: u64,
+    notes: Vec<String>,
 }
 
 impl Lowered {
@@ -177,6 +179,7 @@ impl Loader<'_> {
             edges: placements.edges,
             reach: solids.reach,
             skipped: solids.skipped,
+            notes: solids.notes,
         })
     }
 

@@ -48,6 +48,7 @@ mod values;
 mod view_volume;
 
 pub use aimed_camera::AimedCamera;
+pub use beam_lattice::beams_of_model;
 pub use census::Census;
 pub use contents::{Contents, OtherSolids, PlacedCount};
 pub use cylinder_list::{CylinderList, CylinderRecord32, Iter as CylinderIter, Records};
@@ -56,11 +57,7 @@ pub use description::{
     Projection, Prototype, PrototypeIndex, RenderSettings, Scene, Sky, Sun,
 };
 pub use error::{SceneError, Statement};
-pub use limits::{
-    GREATEST_CASES, GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_PIXELS, GREATEST_RAYS,
-    GREATEST_ROUNDS, GREATEST_SAMPLES, GREATEST_SCENE_BYTES, GREATEST_STRETCH, GREATEST_THREADS,
-    GREATEST_TIMED_RAYS, MOST_LISTED_VIOLATIONS, MOST_SEGMENT_NUMBERS,
-};
+pub use limits::*;
 pub use load::load;
 pub use scene_file::SceneFile;
 pub use solid_lists::{CompositionRecord, Listed, SolidRecord, Solids};

@@ -54,6 +54,19 @@ impl AnySolid {
         }
     }
 
+    /// The radius of its thickest part; of a cuboid half of its least width.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        match self {
+            Self::Cylinder(one) => one.radius(),
+            Self::Cone(one) => one.radius0().max(one.radius1()),
+            Self::RoundedCone(one) => one.radius0().max(one.radius1()),
+            Self::Sphere(one) => one.radius(),
+            Self::Cuboid(one) => one.half_widths().min_element(),
+            Self::Disk(one) => one.radius(),
+        }
+    }
+
     /// Its own centre, about which it is turned: the middle of the axis, where it
     /// has one, rounded.
     #[must_use]

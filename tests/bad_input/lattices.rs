@@ -93,6 +93,19 @@ fn archives() -> Vec<Case> {
             bytes
         }),
         Case::new(
+            "lattice_that_states_two_gigabytes",
+            SCENE,
+            &["scene.toml:2:8", "\"3D/3dmodel.model\" is larger than 1073741824 bytes"],
+        )
+        .with_bytes("lattice.3mf", {
+            let mut bytes = three_mf(&model("", BUILD));
+            // The last part's entry in the directory at the end has its length at byte 24.
+            let entry = bytes.windows(4).rposition(|window| window == b"PK\x01\x02");
+            let length = entry.expect("a directory") + 24;
+            bytes[length..length + 4].copy_from_slice(&(1_u32 << 31).to_le_bytes());
+            bytes
+        }),
+        Case::new(
             "lattice_without_relationships",
             SCENE,
             &["scene.toml:2:8", "the archive holds no \"_rels/.rels\""],
@@ -229,6 +242,67 @@ fn models() -> Vec<Case> {
             &["3dmodel.model:4", "the id \"1\" stands twice"],
         ),
         built(
+            "objects_of_the_same_number",
+            &format!("{good}\n{}", good.replace("id=\"1\"", "id=\"01\"")),
+            BUILD,
+            &["3dmodel.model:4", "the id \"01\" stands twice"],
+        ),
+        built(
+            "object_of_an_id_in_words",
+            &good.replace("id=\"1\"", "id=\"one\""),
+            BUILD,
+            &["3dmodel.model:2", "id of <object> is \"one\"", "whole number from 1"],
+        ),
+        built(
+            "object_of_an_unknown_type",
+            &good.replace("id=\"1\"", "id=\"1\" type=\"lattice\""),
+            BUILD,
+            &["3dmodel.model:2", "\"lattice\" is not a value of type", "\"solidsupport\""],
+        ),
+        built(
+            "item_of_an_object_of_type_other",
+            &good.replace("id=\"1\"", "id=\"1\" type=\"other\""),
+            BUILD,
+            &["3dmodel.model:4", "type \"other\"", "write type=\"model\""],
+        ),
+        built(
+            "lattice_of_no_namespace_of_lattices",
+            &good.replace("b:beamlattice", "beamlattice"),
+            BUILD,
+            &["3dmodel.model:3", "<beamlattice> is in the namespace", "beamlattice/2017/02"],
+        ),
+        built(
+            "beams_of_no_namespace_of_lattices",
+            &good.replace("b:beam ", "beam "),
+            BUILD,
+            &["3dmodel.model:3", "<beam> is in the namespace"],
+        ),
+        built(
+            "two_lattices_in_a_mesh",
+            &object(&format!(
+                "<b:beamlattice radius=\"1\" minlength=\"0\">{BEAMS}</b:beamlattice>\n<b:beamlattice radius=\"1\" minlength=\"0\"/>"
+            )),
+            BUILD,
+            &["3dmodel.model:4", "one <beamlattice> at most"],
+        ),
+        // Quadratic before: 42 seconds.
+        of_model(
+            "model_of_80_000_attributes",
+            &model(
+                &(0..80_000).map(|number| format!("a{number}=\"\" ")).collect::<String>(),
+                &resources,
+            ),
+            &["3dmodel.model:1", "more than 256 attributes"],
+        ),
+        of_model(
+            "model_of_80_000_namespaces",
+            &model("", &{
+                let open = (0..80_000).map(|n| format!("<a xmlns:p{n}=\"u{n}\">")).collect::<String>();
+                open + &"</a>".repeat(80_000)
+            }),
+            &["3dmodel.model:2", "more than 256 prefixes"],
+        ),
+        built(
             "lattice_beside_triangles",
             &elsewhere,
             BUILD,
@@ -275,6 +349,15 @@ fn lattices() -> Vec<Case> {
             &["3dmodel.model:3", "clipped by a mesh", "meshes = \"skip\""],
         ),
         lattice(
+            "lattice_that_is_clipped_in_an_unknown_way",
+            "radius=\"1\" minlength=\"0\" clippingmode=\"Inside\"",
+            BEAMS,
+            &[
+                "3dmodel.model:3",
+                "\"Inside\" is not a value of clippingmode",
+            ],
+        ),
+        lattice(
             "lattice_without_beams",
             GOOD,
             "<b:beams/>",
@@ -312,7 +395,11 @@ fn lattices() -> Vec<Case> {
         beam(
             "beam_of_a_second_radius_alone",
             "v1=\"0\" v2=\"1\" r2=\"1\"",
-            &["3dmodel.model:4", "an r2 but no r1"],
+            &[
+                "3dmodel.model:4",
+                "an r2 but no r1",
+                "write r1=\"1\" r2=\"1\"",
+            ],
         ),
         beam(
             "beam_of_no_radius",

@@ -2,6 +2,7 @@
 //! little does not.
 
 mod bites;
+mod extremes;
 mod scenes;
 mod solids;
 #[path = "../support/mod.rs"]

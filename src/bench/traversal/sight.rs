@@ -46,19 +46,6 @@ impl Ball {
     }
 }
 
-/// The radius of a solid: the greater one where it tapers, the least half width of a
-/// cuboid.
-pub fn radius_of(solid: &AnySolid) -> f64 {
-    match solid {
-        AnySolid::Cylinder(one) => one.radius(),
-        AnySolid::Cone(one) => one.radius0().max(one.radius1()),
-        AnySolid::RoundedCone(one) => one.radius0().max(one.radius1()),
-        AnySolid::Sphere(one) => one.radius(),
-        AnySolid::Cuboid(one) => one.half_widths().min_element(),
-        AnySolid::Disk(one) => one.radius(),
-    }
-}
-
 /// A ray in one space, with what the tests of it need.
 pub struct Sight {
     origin: DVec3,
@@ -104,7 +91,7 @@ impl Sight {
         let axis = (p1 - p0).normalize();
         let x = self.origin - p0;
         let across = axis.cross(self.heading);
-        let radius = radius_of(solid);
+        let radius = solid.radius();
         let reach = radius + SLACK * (x.length() + radius);
         // The sine's own rounding is below the slack as well. A rounded cone whose
         // centres are one point has no axis, but NaN here.

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use super::flat::{Flat, Placed};
 use super::rays::{Kind, Rays, TILE};
 use super::representation::{Representative, SolidId};
-use super::sight::{Ball, SLACK, Sight, radius_of};
+use super::sight::{Ball, SLACK, Sight};
 use crate::bench::statistics::p99;
 use crate::bench::truth::{Errors, TrueT};
 use crate::math::{ChildFromParent, Ray};
@@ -28,7 +28,7 @@ use crate::solid::AnySolid;
 /// The first hit of a ray.
 struct First {
     t: TrueT,
-    /// The radius of the solid where it stands ([`radius_of`]), by the mean scale
+    /// The radius of the solid where it stands ([`AnySolid::radius`]), by the mean scale
     /// of its placement.
     radius: f64,
     /// Those that are first.
@@ -146,7 +146,7 @@ impl<'a> Witness<'a> {
                 _ => {
                     let found = First {
                         t: TrueT::of(&hit),
-                        radius: radius_of(&solid) * scale(placed),
+                        radius: solid.radius() * scale(placed),
                         solids: vec![id],
                     };
                     *first = Some((hit, found));

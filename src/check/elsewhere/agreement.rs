@@ -20,8 +20,9 @@
 //!   ray, within `δ` of its plane, stays farther than `δ` from the rim.
 //!
 //! The told `t` itself is given `δ/|d|` on the way through. `nearness` bounds
-//! depths and distances in placed solids. A solid thinner than `δ` is never passed
-//! through, so the allowance is to be below the radius of what the scene holds.
+//! depths and distances in placed solids. Every solid has a `δ` of its own, which
+//! `tolerance` derives. A solid thinner than `δ` is never passed through: a ray whose
+//! exact hit is on one is *coarse*, and a comparison with such a ray fails.
 //!
 //! A solid that is composed of others is passed through alike, by a lower bound of the
 //! depth; what is farther than `δ` from all of their surfaces is as far from its own. That
@@ -35,28 +36,15 @@
 //! or another solid and neither proven right nor wrong: it is counted, as the
 //! *silhouette band*.
 
-use glam::{DAffine3, DVec3};
-
-use super::nearness::{Frame, PlacedComposition, PlacedSolid};
+use super::met::{Found, Met, find};
 use super::surfaces::Surfaces;
+use super::tolerance::{Allowance, Tolerance, way};
 use crate::check::Witness;
 use crate::math::Ray;
 use crate::oracle::{ExactAffine, placed_hits_of_any};
-use crate::scene::{PrototypeIndex, Scene};
-use crate::solid::{AnySolid, Composition};
+use crate::report::figure;
+use crate::scene::Scene;
 use crate::tracer::{DEFAULT_BATCH, Hit, Tracer};
-
-/// The unit roundoff of f32.
-pub(in crate::check) const UNIT_ROUNDOFF_32: f64 = 1.0 / (1 << 24) as f64;
-
-/// What a ray's displacement and a surface's come to in an f32 renderer, in
-/// units of 2^-24 of the distances: the origin 1, the direction 1, end points
-/// and radius 2, a placement's matrix 4, the ray taken through it 4, and the
-/// solver's last sum and product 4.
-const F32_ROUNDINGS: f64 = 16.0;
-
-/// The relative tolerance that suits a renderer in f32: 16 · 2^-24.
-pub const F32_TOLERANCE: f64 = F32_ROUNDINGS * UNIT_ROUNDOFF_32;
 
 /// Hits of one ray whose solids are looked at.
 const MOST_HITS: usize = 256;
@@ -68,6 +56,8 @@ pub struct Agreement {
     pub class: &'static str,
     /// Where the hits come from.
     pub witness: Witness,
+    /// What the answers may be off.
+    tolerance: Tolerance,
     /// Rays compared.
     pub rays: u64,
     /// Rays that hit by the exact answer.
@@ -77,6 +67,15 @@ pub struct Agreement {
     pub silhouette: u64,
     /// Rays whose answer is proven wrong.
     pub disagreements: u64,
+    /// Rays whose exact hit is on a solid with a radius that is not greater than the allowance there, so
+    /// that no answer could be proven wrong.
+    pub coarse: u64,
+    /// The greatest allowance of any ray, as a length.
+    pub max_allowance: f64,
+    /// The part of all allowances that does not depend on the ray: a mesh's deviation.
+    pub fixed_allowance: f64,
+    /// The least radius of the scene's solids; infinite where there are none.
+    pub least_radius: f64,
     /// The greatest distance, along a ray, of a hit that agrees from the exact
     /// one, in units of the allowance.
     pub max_offset: f64,
@@ -113,14 +112,24 @@ pub(in crate::check) enum Verdict {
 
 impl Agreement {
     /// Nothing compared yet.
-    pub(in crate::check) fn new(class: &'static str, witness: Witness) -> Self {
+    pub(super) fn new(
+        class: &'static str,
+        witness: Witness,
+        tolerance: Tolerance,
+        surfaces: &Surfaces,
+    ) -> Self {
         Self {
             class,
             witness,
+            tolerance,
             rays: 0,
             hits: 0,
             silhouette: 0,
             disagreements: 0,
+            coarse: 0,
+            max_allowance: 0.0,
+            fixed_allowance: tolerance.fixed,
+            least_radius: surfaces.least_radius(),
             max_offset: 0.0,
             listed: Vec::new(),
         }
@@ -134,13 +143,26 @@ impl Agreement {
         ray: &Ray,
         told: Option<f64>,
         most_listed: usize,
-        allowance: impl FnOnce(Option<f64>) -> f64,
     ) {
         let exact = tracer.closest(ray);
-        let allowance = allowance(exact.as_ref().map(|hit| hit.t));
+        let exact_t = exact.as_ref().map(|hit| hit.t);
         self.rays += 1;
         self.hits += u64::from(exact.is_some());
-        match judge((tracer, surfaces), ray, told, exact.as_ref(), allowance) {
+        let Some(way) = way(ray, told, exact_t, surfaces.greatest_coordinate()) else {
+            // Both miss.
+            return;
+        };
+        let allowance = self.tolerance.along(ray, way);
+        let first = exact.as_ref().map(|hit| Met::new(tracer.scene(), hit));
+        let near = match &first {
+            Some(first) => allowance.of(first.extent),
+            None => allowance.of(way.min(surfaces.greatest_coordinate())),
+        };
+        self.max_allowance = self.max_allowance.max(near);
+        if first.is_some_and(|first| !(near < first.radius)) {
+            self.coarse += 1;
+        }
+        match judge((tracer, surfaces), ray, told, exact.as_ref(), &allowance) {
             Verdict::Agrees(offset) => self.max_offset = self.max_offset.max(offset),
             Verdict::Silhouette => self.silhouette += 1,
             Verdict::Disagrees => {
@@ -150,13 +172,46 @@ impl Agreement {
                         index,
                         ray: *ray,
                         told,
-                        exact: exact.as_ref().map(|hit| hit.t),
+                        exact: exact_t,
                         oracle: exact.and_then(|hit| oracle_t(tracer.scene(), ray, &hit)),
-                        allowance,
+                        allowance: near,
                     });
                 }
             }
         }
+    }
+
+    /// Rays whose answer is proven right or wrong. A coarse ray may be in the band as well.
+    #[must_use]
+    pub fn judged(&self) -> u64 {
+        self.rays.saturating_sub(self.silhouette + self.coarse)
+    }
+
+    /// Why the comparison proves too little, where it does.
+    #[must_use]
+    pub fn shortfall(&self) -> Option<String> {
+        if self.rays == 0 {
+            return Some(String::from("there is no ray to compare"));
+        }
+        if self.fixed_allowance >= self.least_radius || self.coarse > 0 {
+            return Some(format!(
+                "the tolerance reaches the radius of a solid, which no answer could then be proven wrong about: it is {} at most, the least radius is {}, and {} of {} rays hit such a solid",
+                figure(self.max_allowance.max(self.fixed_allowance)),
+                figure(self.least_radius),
+                self.coarse,
+                self.rays
+            ));
+        }
+        (2 * self.judged() < self.rays).then(|| {
+            let (judged, rays) = (self.judged(), self.rays);
+            format!("only {judged} of {rays} answers could be judged, which is less than half")
+        })
+    }
+
+    /// Whether no answer is wrong, and enough are judged to say so.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.disagreements == 0 && self.shortfall().is_none()
     }
 
     /// Adds what was found for the rays that follow.
@@ -165,31 +220,12 @@ impl Agreement {
         self.hits += other.hits;
         self.silhouette += other.silhouette;
         self.disagreements += other.disagreements;
+        self.coarse += other.coarse;
+        self.max_allowance = self.max_allowance.max(other.max_allowance);
         self.max_offset = self.max_offset.max(other.max_offset);
         self.listed.extend(other.listed);
         self.listed.truncate(most_listed);
     }
-}
-
-/// The allowance for a renderer of relative accuracy `tolerance`: that part of
-/// all the distances that its arithmetic sees, which are the ray's origin, the
-/// way to the hit, and the scene's greatest coordinate. A miss has come past
-/// the scene.
-pub(in crate::check) fn allowance(tolerance: f64, ray: &Ray, t: Option<f64>, greatest: f64) -> f64 {
-    let origin = ray.origin.length();
-    let way = t.map_or(origin + 2.0 * greatest, |t| {
-        t.abs() * ray.direction.length()
-    });
-    tolerance * (origin + way + greatest)
-}
-
-/// The length of the farthest corner of the box around a scene.
-pub(in crate::check) fn greatest_coordinate(tracer: &Tracer) -> f64 {
-    let bounds = tracer.bounds();
-    if bounds.is_empty() {
-        return 0.0;
-    }
-    bounds.lower.abs().max(bounds.upper.abs()).length()
 }
 
 /// Whether an answer is right within an allowance: see the head of this file.
@@ -198,9 +234,9 @@ fn judge(
     ray: &Ray,
     told: Option<f64>,
     exact: Option<&Hit>,
-    allowance: f64,
+    allowance: &Allowance,
 ) -> Verdict {
-    let along = allowance / ray.direction.length();
+    let speed = ray.direction.length();
     let offset = match (told, exact) {
         (None, None) => return Verdict::Agrees(0.0),
         (Some(told), Some(exact)) => (told - exact.t).abs(),
@@ -210,33 +246,50 @@ fn judge(
     if offset == 0.0 {
         return Verdict::Agrees(0.0);
     }
-    if offset <= along {
-        return Verdict::Agrees(offset / along);
+    // Of a direction whose length leaves f64, a difference in `t` is no distance.
+    if !speed.is_normal() {
+        return Verdict::Disagrees;
     }
     let mut met: Vec<Met> = Vec::new();
     for hit in tracer.all_hits(ray, DEFAULT_BATCH).take(MOST_HITS) {
-        let solid = (hit.instance, hit.primitive);
-        match met.iter_mut().find(|met| met.solid == solid) {
+        match met.iter_mut().find(|met| met.is_of(&hit)) {
             Some(known) => known.at.push(hit.t),
-            None => met.push(Met::new(tracer.scene(), solid, hit.t)),
+            None => met.push(Met::new(tracer.scene(), &hit)),
         }
     }
-    let (start, end) = (ray.t_min + along, told.unwrap_or(ray.t_max) - along);
-    if met
-        .iter()
-        .any(|met| met.is_crossed(ray, (start, end), allowance))
-    {
+    // The first that is met is the solid of the exact hit.
+    let own = met.first();
+    let own_distance = own.map_or(0.0, |own| allowance.of(own.extent));
+    let along = own_distance / speed;
+    if offset <= along {
+        return Verdict::Agrees(offset / along);
+    }
+    let is_passed = |met: &Met| {
+        let distance = allowance.of(met.extent);
+        let along = distance / speed;
+        let (start, end) = (ray.t_min + along, told.unwrap_or(ray.t_max) - along);
+        met.is_crossed(ray, (start, end), distance)
+    };
+    if met.iter().any(is_passed) {
         return Verdict::Disagrees;
     }
     let Some(told) = told else {
         return Verdict::Silhouette;
     };
     let point = ray.at(told);
-    if !(ray.t_min - along..=ray.t_max + along).contains(&told) {
+    let beyond = match own {
+        Some(_) => along,
+        None => allowance.of(surfaces.greatest_coordinate()) / speed,
+    };
+    if !(ray.t_min - beyond..=ray.t_max + beyond).contains(&told) {
         return Verdict::Disagrees;
     }
-    // The first that is met is the solid of the exact hit.
-    if met.first().is_some_and(|own| own.is_near(point, allowance)) {
+    // Beyond all surfaces; also if it is so far that it is no number.
+    let greatest = surfaces.greatest_coordinate();
+    if !(point.length() <= 1.001 * (greatest + allowance.of(greatest))) {
+        return Verdict::Disagrees;
+    }
+    if own.is_some_and(|own| own.is_near(point, own_distance)) {
         return Verdict::Agrees(offset / along);
     }
     if surfaces.may_be_near(point, allowance) {
@@ -244,80 +297,6 @@ fn judge(
     } else {
         Verdict::Disagrees
     }
-}
-
-/// A solid that a ray meets.
-struct Met<'a> {
-    /// The placements from the root to it, and its number.
-    solid: (Vec<u32>, u32),
-    frame: Frame,
-    found: Found<'a>,
-    /// Where the ray meets it, rising.
-    at: Vec<f64>,
-}
-
-impl<'a> Met<'a> {
-    fn new(scene: &'a Scene, solid: (Vec<u32>, u32), t: f64) -> Self {
-        let (placements, found) = find(scene, &solid.0, solid.1);
-        let whole = placements
-            .iter()
-            .fold(DAffine3::IDENTITY, |whole, &one| whole * *one);
-        Self {
-            solid,
-            frame: Frame::new(&whole),
-            found,
-            at: vec![t],
-        }
-    }
-
-    /// Whether the ray is proven to pass through its surface between two `t`.
-    fn is_crossed(&self, ray: &Ray, (start, end): (f64, f64), distance: f64) -> bool {
-        let frame = &self.frame;
-        match self.found {
-            Found::Single(solid) => {
-                PlacedSolid { solid, frame }.is_crossed(ray, (start, end), distance)
-            }
-            Found::Composed(solid) => {
-                let placed = PlacedComposition { solid, frame };
-                placed.is_crossed(ray, (start, end), distance, &self.at)
-            }
-        }
-    }
-
-    /// Whether a point is proven to be near its surface.
-    fn is_near(&self, point: DVec3, distance: f64) -> bool {
-        let frame = &self.frame;
-        match self.found {
-            Found::Single(solid) => PlacedSolid { solid, frame }.is_near(point, distance),
-            // Near one of the surfaces that it is made of, there may be nothing of it.
-            Found::Composed(_) => false,
-        }
-    }
-}
-
-/// A solid of a scene.
-enum Found<'a> {
-    Single(AnySolid),
-    Composed(&'a Composition),
-}
-
-/// The placements of a solid, outermost first, and itself.
-fn find<'a>(scene: &'a Scene, instance: &[u32], primitive: u32) -> (Vec<&'a DAffine3>, Found<'a>) {
-    let mut prototype = &scene.prototypes[PrototypeIndex::ROOT.0 as usize];
-    let mut placements = Vec::new();
-    for &number in instance {
-        let placement = &prototype.placements[number as usize];
-        placements.push(&placement.parent_from_child);
-        prototype = &scene.prototypes[placement.of.0 as usize];
-    }
-    let composed = || {
-        let composed = &prototype.solids.compositions;
-        let position = composed.binary_search_by_key(&primitive, |record| record.primitive);
-        let position = position.expect("the hit's solid is in the scene");
-        Found::Composed(&composed[position].solid)
-    };
-    let found = prototype.single(primitive).map(Found::Single);
-    (placements, found.unwrap_or_else(composed))
 }
 
 /// The exact `t` of the first hit with the solid of a hit, by the oracle; `None` when

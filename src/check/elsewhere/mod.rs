@@ -3,8 +3,10 @@
 
 pub(in crate::check) mod agreement;
 mod depth;
-pub(in crate::check) mod mesh_file;
+mod met;
 mod nearness;
 mod surfaces;
+pub(in crate::check) mod tolerance;
+mod triangle;
 pub(in crate::check) mod user_hits;
 pub(in crate::check) mod user_mesh;

@@ -61,6 +61,11 @@ impl Frame {
         self.squeeze * length + ROUNDING * self.squeeze * self.stretch * size
     }
 
+    /// At most what a length there is in the world.
+    pub fn least_length(&self, length: f64) -> f64 {
+        length / self.squeeze
+    }
+
     /// The ray there, where it is between `start` and `end` and not farther from the
     /// middle of a solid than twice its `reach` about that: it is outside beyond.
     fn way(&self, ray: &Ray, (start, end): (f64, f64), (middle, reach): (DVec3, f64)) -> Way {

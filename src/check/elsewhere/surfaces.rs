@@ -7,6 +7,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::nearness::{Frame, PlacedSolid, ROUNDING};
+use super::tolerance::{Allowance, farthest, least_radius};
 use crate::math::Bounds;
 use crate::scene::{PrototypeIndex, Scene};
 use crate::solid::AnySolid;
@@ -14,50 +15,68 @@ use crate::solid::AnySolid;
 /// All surfaces of a scene.
 pub(super) struct Surfaces<'a> {
     scene: &'a Scene,
-    /// The box of each prototype, as far as the root holds it.
-    boxes: Vec<Option<Bounds>>,
+    /// The box and the least radius of each prototype that the root contains.
+    reached: Vec<Option<(Bounds, f64)>>,
 }
 
 impl<'a> Surfaces<'a> {
     pub fn new(scene: &'a Scene) -> Self {
         let mut surfaces = Self {
             scene,
-            boxes: vec![None; scene.prototypes.len()],
+            reached: vec![None; scene.prototypes.len()],
         };
-        surfaces.find_box(PrototypeIndex::ROOT);
+        surfaces.reach(PrototypeIndex::ROOT);
         surfaces
     }
 
-    fn find_box(&mut self, index: PrototypeIndex) -> Bounds {
+    /// At most the least radius of a solid in the world; infinite where there are none.
+    pub fn least_radius(&self) -> f64 {
+        self.root().1
+    }
+
+    /// The distance of the farthest corner of the scene's box from the origin.
+    pub fn greatest_coordinate(&self) -> f64 {
+        farthest(&self.root().0)
+    }
+
+    fn root(&self) -> (Bounds, f64) {
+        self.reached[PrototypeIndex::ROOT.0 as usize].unwrap_or((Bounds::EMPTY, f64::INFINITY))
+    }
+
+    fn reach(&mut self, index: PrototypeIndex) -> (Bounds, f64) {
         let number = index.0 as usize;
-        if let Some(known) = self.boxes[number] {
+        if let Some(known) = self.reached[number] {
             return known;
         }
         let scene = self.scene;
         let prototype = &scene.prototypes[number];
-        let own = prototype.cylinders.iter();
-        let own = own.fold(prototype.solids.bounds(), |all, one| {
+        let cylinders = prototype.cylinders.iter();
+        let own = cylinders.fold(prototype.solids.bounds(), |all, one| {
             all.union(&one.cylinder().bounds())
         });
-        let whole = prototype.placements.iter().fold(own, |all, placement| {
-            let child = self.find_box(placement.of);
-            if child.is_empty() {
-                return all;
+        // The numbers of a composition are those of its leaves, which may reach farther.
+        let composed = prototype.solids.compositions.iter();
+        let leaves: Vec<AnySolid> = composed.flat_map(|record| record.solid.solids()).collect();
+        let own = leaves
+            .iter()
+            .fold(own, |all, leaf| all.union(&leaf.bounds()));
+        let singles = prototype.singles().map(|(_, solid)| solid);
+        let mut whole = (own, least_radius(singles.chain(leaves)));
+        for placement in &prototype.placements {
+            let (child, radius) = self.reach(placement.of);
+            if !child.is_empty() {
+                let map = &placement.parent_from_child;
+                let radius = Frame::new(map).least_length(radius);
+                whole = (whole.0.union(&child.transformed(map)), whole.1.min(radius));
             }
-            all.union(&child.transformed(&placement.parent_from_child))
-        });
-        self.boxes[number] = Some(whole);
+        }
+        self.reached[number] = Some(whole);
         whole
     }
 
-    /// Whether some surface may be within `distance` of a point.
-    pub fn may_be_near(&self, point: DVec3, distance: f64) -> bool {
-        self.may_be_near_in(
-            PrototypeIndex::ROOT,
-            &DAffine3::IDENTITY,
-            point,
-            1.001 * distance,
-        )
+    /// Whether some surface may be within the allowance, for its solid, of a point.
+    pub fn may_be_near(&self, point: DVec3, allowance: &Allowance) -> bool {
+        self.may_be_near_in(PrototypeIndex::ROOT, &DAffine3::IDENTITY, point, allowance)
     }
 
     fn may_be_near_in(
@@ -65,36 +84,40 @@ impl<'a> Surfaces<'a> {
         index: PrototypeIndex,
         world_from_here: &DAffine3,
         point: DVec3,
-        distance: f64,
+        allowance: &Allowance,
     ) -> bool {
         let prototype = &self.scene.prototypes[index.0 as usize];
-        let frame = Frame::new(world_from_here);
-        let placed = |solid: AnySolid| PlacedSolid {
-            solid,
-            frame: &frame,
+        let frame = &Frame::new(world_from_here);
+        // A little more than the allowance, for what is rounded on the way here.
+        let distance = |bounds: &Bounds| {
+            let placed = bounds.transformed(world_from_here);
+            1.001 * allowance.of(farthest(&placed))
         };
-        let is_near = prototype
-            .singles()
-            .any(|(_, solid)| !placed(solid).is_far(point, distance))
-            || prototype
-                .solids
-                .compositions
-                .iter()
-                .flat_map(|record| record.solid.solids())
-                .any(|leaf| !placed(leaf).is_far_from_closed(point, distance));
-        is_near
+        // At least that of every solid: most are farther than even this.
+        let greatest = self.reached[index.0 as usize].map_or(0.0, |(whole, _)| distance(&whole));
+        let is_near = |solid: AnySolid| {
+            let placed = PlacedSolid { solid, frame };
+            !placed.is_far(point, greatest) && !placed.is_far(point, distance(&solid.bounds()))
+        };
+        let is_near_closed = |solid: AnySolid| {
+            let placed = PlacedSolid { solid, frame };
+            !placed.is_far_from_closed(point, greatest)
+                && !placed.is_far_from_closed(point, distance(&solid.bounds()))
+        };
+        let composed = prototype.solids.compositions.iter();
+        let mut leaves = composed.flat_map(|record| record.solid.solids());
+        prototype.singles().any(|(_, solid)| is_near(solid))
+            || leaves.any(is_near_closed)
             || prototype.placements.iter().any(|placement| {
                 let world_from_child = *world_from_here * placement.parent_from_child;
-                let Some(bounds) = self.boxes[placement.of.0 as usize] else {
+                let Some((bounds, _)) = self.reached[placement.of.0 as usize] else {
                     return false;
                 };
-                let reach = distance + ROUNDING * point.length();
+                let placed = bounds.transformed(&world_from_child);
+                let reach = 1.001 * allowance.of(farthest(&placed)) + ROUNDING * point.length();
                 !bounds.is_empty()
-                    && bounds
-                        .transformed(&world_from_child)
-                        .grown(reach)
-                        .meets(&Bounds::at(point))
-                    && self.may_be_near_in(placement.of, &world_from_child, point, distance)
+                    && placed.grown(reach).meets(&Bounds::at(point))
+                    && self.may_be_near_in(placement.of, &world_from_child, point, allowance)
             })
     }
 }

@@ -4,8 +4,9 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
-use super::agreement::{Agreement, allowance, greatest_coordinate};
+use super::agreement::Agreement;
 use super::surfaces::Surfaces;
+use super::tolerance::Tolerance;
 use crate::check::{Progress, Witness};
 use crate::math::Ray;
 use crate::tracer::Tracer;
@@ -16,9 +17,9 @@ const BLOCK: u64 = 512;
 /// Compares the answers `told` for `rays` with the exact ones, in the rayon pool
 /// that this is called in. `None` when `progress` asked to stop.
 ///
-/// `tolerance` is relative to the distances of a ray's origin from the scene's,
-/// of the hit from the ray's origin, and of the scene's farthest corner from its
-/// origin, added up; [`crate::check::F32_TOLERANCE`] suits a renderer in f32.
+/// `tolerance` is relative to the distances of a ray's origin from the scene's, of the hit
+/// from the ray's origin, and of the farthest corner of the solid's box from the scene's origin,
+/// added up; [`crate::check::F32_TOLERANCE`] suits a renderer in f32.
 ///
 /// # Panics
 /// When there is not one answer a ray.
@@ -32,17 +33,20 @@ pub fn compare_hits(
     progress: &Progress,
 ) -> Option<Agreement> {
     assert_eq!(rays.len(), told.len(), "one answer a ray");
-    let greatest = greatest_coordinate(tracer);
+    let tolerance = Tolerance {
+        fixed: 0.0,
+        of_way: tolerance,
+        of_extent: tolerance,
+    };
     let surfaces = Surfaces::new(tracer.scene());
     in_blocks(
-        Agreement::new("given", Witness::UserHits),
+        Agreement::new("given", Witness::UserHits, tolerance, &surfaces),
         rays.len() as u64,
         most_listed,
         progress,
         |agreement, index| {
             let (ray, told) = (&rays[index as usize], told[index as usize]);
-            let near = |t| allowance(tolerance, ray, t, greatest);
-            agreement.add((tracer, &surfaces), index, ray, told, most_listed, near);
+            agreement.add((tracer, &surfaces), index, ray, told, most_listed);
         },
     )
 }

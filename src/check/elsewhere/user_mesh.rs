@@ -1,32 +1,54 @@
-//! A mesh of the scene that somebody made, traced by Embree, against the exact
-//! hits.
+//! A mesh of the scene that somebody made, traced in f64, against the exact hits.
 //!
-//! The mesh is moved to the middle of its box and scaled by a power of two to
-//! about unit size before it is rounded to f32; a ray starts where it enters the
-//! sphere around the box, at unit speed. So what f32 rounds is small against the
-//! mesh wherever it lies: with the mesh's radius `R`, 1 unit of 2^-24 for a
-//! vertex, 2 for the ray's origin, 2 for its direction over a way of 2 R, and
-//! Embree's own edge and distance tests, which see numbers up to 2 R, some 8:
-//! 16 R · 2^-24 are allowed beside the mesh's own deviation.
+//! The triangles are in a tree of boxes of ours, and not in Embree's: in f32 a vertex is as
+//! coarse as the farthest one of the mesh makes it, so that a single far vertex would make
+//! every hit uncertain. In f64 a hit is off by some 2^-50 of the distances from the
+//! ray's origin to the triangle, whatever else is in the file. So what a correct
+//! mesh may be off is its deviation, and what its format rounds of the coordinates of the
+//! solid in question.
+//!
+//! Boxes are split at the median of their triangles' middles along the longest side, so that
+//! the depth of the tree is the logarithm of their number whatever the triangles are.
 
 use glam::DVec3;
+use rayon::join;
 
-use super::agreement::{Agreement, F32_TOLERANCE};
+use super::agreement::Agreement;
+use super::nearness::ROUNDING;
 use super::surfaces::Surfaces;
+use super::tolerance::Tolerance;
+use super::triangle::ShearedRay;
 use super::user_hits::in_blocks;
 use crate::check::{Progress, Witness};
-use crate::embree::{self, Device, DeviceOptions, Ray32, SceneBuilder};
-use crate::math::{Bounds, Random, Ray, power_of_two_below};
+use crate::math::{Bounds, Random, Ray};
 use crate::solid::tessellation::Mesh;
 use crate::tracer::Tracer;
 
-/// A mesh that Embree traces.
+/// Most triangles of a leaf.
+const LEAF: usize = 4;
+/// Least triangles that are worth a thread of their own.
+const WORTH_A_THREAD: usize = 4096;
+/// What the planes of a box may be off along a ray, as a share: three roundings.
+const BOX_ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// A mesh that rays are traced through.
 pub struct TracedMesh {
-    scene: embree::Scene<()>,
-    centre: DVec3,
-    /// The scene's lengths times this are the mesh's.
-    scale: f64,
-    radius: f64,
+    vertices: Vec<DVec3>,
+    /// In the order of the leaves, with their numbers in the file.
+    triangles: Vec<([u32; 3], u32)>,
+    root: Node,
+}
+
+/// A box of the tree, with what is in it.
+struct Node {
+    bounds: Bounds,
+    content: Content,
+}
+
+enum Content {
+    /// Those triangles from the first number up to the second.
+    Leaf(usize, usize),
+    Inner(Box<[Node; 2]>),
 }
 
 /// Where a ray meets a mesh.
@@ -42,98 +64,153 @@ pub struct TriangleHit {
 }
 
 impl TracedMesh {
-    /// Builds the mesh; it must not be empty.
+    /// The tree of a mesh, built in the rayon pool that this is called in.
     ///
-    /// # Errors
-    /// When Embree refuses.
-    pub fn new(mesh: &Mesh, options: &DeviceOptions) -> Result<Self, embree::Error> {
-        let bounds = mesh.vertices.iter().fold(Bounds::EMPTY, |bounds, &point| {
-            bounds.union(&Bounds::at(point))
-        });
-        let centre = bounds.centre();
-        let radius = (0.5 * bounds.extent().length()).max(f64::MIN_POSITIVE);
-        let scale = 1.0 / power_of_two_below(radius);
-        let vertices: Vec<[f32; 3]> = mesh
-            .vertices
-            .iter()
-            .map(|&point| ((point - centre) * scale).as_vec3().to_array())
-            .collect();
-        let device = Device::new(options)?;
-        let mut builder = SceneBuilder::new(&device)?;
-        builder.attach_triangles(&vertices, &mesh.triangles)?;
-        Ok(Self {
-            scene: builder.commit()?,
-            centre,
-            scale,
-            radius,
-        })
+    /// # Panics
+    /// When a triangle names a vertex that is not there.
+    #[must_use]
+    pub fn new(mesh: &Mesh) -> Self {
+        let vertices = mesh.vertices.clone();
+        let mut triangles: Vec<_> = mesh.triangles.iter().copied().zip(0..).collect();
+        let root = node(&vertices, &mut triangles, 0);
+        Self {
+            vertices,
+            triangles,
+            root,
+        }
     }
 
-    /// The first hit of a ray.
+    /// The first hit of a ray, of those at the same `t` that of the first triangle.
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
-        let speed = ray.direction.length();
-        let heading = ray.direction / speed;
-        let from_centre = ray.origin - self.centre;
-        let nearest = -from_centre.dot(heading);
-        // Rounded boxes and rays stay within a sphere that is this much larger.
-        let reach = 1.001 * self.radius;
-        let start = (nearest - reach).max(ray.t_min * speed);
-        let end = (nearest + reach).min(ray.t_max * speed);
-        if !(start <= end) {
-            return None;
+        let ray = ShearedRay::new(ray)?;
+        let mut best: Option<(f64, u32, [u32; 3])> = None;
+        let mut waiting = vec![&self.root];
+        while let Some(node) = waiting.pop() {
+            let end = best.map_or(ray.range.1, |(t, _, _)| t);
+            let Some(_) = entry(&node.bounds, &ray, end) else {
+                continue;
+            };
+            match &node.content {
+                Content::Leaf(from, to) => {
+                    for &(corners, number) in &self.triangles[*from..*to] {
+                        let points = corners.map(|corner| self.vertices[corner as usize]);
+                        let Some(t) = ray.meets(points) else {
+                            continue;
+                        };
+                        let is_in_range = ray.range.0 <= t && t <= ray.range.1;
+                        let is_first = best.is_none_or(|(least, first, _)| {
+                            t < least || (t == least && number < first)
+                        });
+                        if is_in_range && is_first {
+                            best = Some((t, number, corners));
+                        }
+                    }
+                }
+                Content::Inner(children) => {
+                    let [one, other] = &**children;
+                    let entries = [one, other].map(|child| entry(&child.bounds, &ray, end));
+                    // The nearer one is popped first.
+                    match entries[0] <= entries[1] {
+                        true => waiting.extend([other, one]),
+                        false => waiting.extend([one, other]),
+                    }
+                }
+            }
         }
-        // Scaled to a tiny mesh, what passes far away is beyond f32.
-        let beside = from_centre + heading * nearest;
-        if !(beside.length() <= reach) {
-            return None;
-        }
-        let origin = (from_centre + heading * start) * self.scale;
-        let ray32 = Ray32 {
-            origin: origin.as_vec3().to_array(),
-            direction: heading.as_vec3().to_array(),
-            t_near: 0.0,
-            t_far: ((end - start) * self.scale) as f32,
-        };
-        let hit = self.scene.closest_native(&ray32, &mut ())?;
+        let (t, triangle, corners) = best?;
+        let [a, b, c] = corners.map(|corner| self.vertices[corner as usize]);
         Some(TriangleHit {
-            t: (start + f64::from(hit.t) / self.scale) / speed,
-            normal: DVec3::from_array(hit.normal.map(f64::from)).normalize_or_zero(),
-            triangle: hit.primitive,
+            t: ray.t(t),
+            normal: (b - a).cross(c - a).normalize_or_zero(),
+            triangle,
         })
-    }
-
-    /// What rounding to f32 may displace, as a length in the scene.
-    fn rounding(&self) -> f64 {
-        F32_TOLERANCE * self.radius
     }
 }
 
-/// Compares what Embree finds with a mesh with the exact hits, within
-/// `deviation` (scene units), on the rays of a class of that name, in the rayon pool that this is called in. `None`
-/// when `progress` asked to stop.
+/// Where a ray enters a box before `end`.
+fn entry(bounds: &Bounds, ray: &ShearedRay, end: f64) -> Option<f64> {
+    let (mut near, mut far) = (ray.range.0, end);
+    for axis in 0..3 {
+        let (lower, upper) = (bounds.lower[axis], bounds.upper[axis]);
+        let inverse = 1.0 / ray.direction[axis];
+        if inverse.is_infinite() {
+            // Along the planes.
+            if !(lower..=upper).contains(&ray.origin[axis]) {
+                return None;
+            }
+            continue;
+        }
+        let one = (lower - ray.origin[axis]) * inverse;
+        let other = (upper - ray.origin[axis]) * inverse;
+        let (enters, leaves) = (one.min(other), one.max(other));
+        near = near.max(enters - BOX_ROUNDING * enters.abs());
+        far = far.min(leaves + BOX_ROUNDING * leaves.abs());
+    }
+    (near <= far).then_some(near)
+}
+
+fn node(vertices: &[DVec3], triangles: &mut [([u32; 3], u32)], first: usize) -> Node {
+    let of = |corners: [u32; 3]| {
+        let points = corners.map(|corner| Bounds::at(vertices[corner as usize]));
+        points[0].union(&points[1]).union(&points[2])
+    };
+    let middle = |corners: [u32; 3]| of(corners).centre();
+    let (mut bounds, mut middles) = (Bounds::EMPTY, Bounds::EMPTY);
+    for &(corners, _) in &*triangles {
+        bounds = bounds.union(&of(corners));
+        middles = middles.union(&Bounds::at(middle(corners)));
+    }
+    let count = triangles.len();
+    if count <= LEAF {
+        let content = Content::Leaf(first, first + count);
+        return Node { bounds, content };
+    }
+    let axis = middles.extent().max_position();
+    let order = |one: &([u32; 3], u32), other: &([u32; 3], u32)| {
+        let along = [one.0, other.0].map(|corners| middle(corners)[axis]);
+        along[0].total_cmp(&along[1]).then(one.1.cmp(&other.1))
+    };
+    triangles.select_nth_unstable_by(count / 2, order);
+    let (left, right) = triangles.split_at_mut(count / 2);
+    let right_first = first + left.len();
+    let mut build_left = || node(vertices, left, first);
+    let mut build_right = || node(vertices, right, right_first);
+    let (one, other) = match count >= WORTH_A_THREAD {
+        true => join(build_left, build_right),
+        false => (build_left(), build_right()),
+    };
+    let content = Content::Inner(Box::new([one, other]));
+    Node { bounds, content }
+}
+
+/// Compares what rays meet of a mesh with the exact hits, on the rays of a class of that name,
+/// in the rayon pool that this is called in. The mesh may be `deviation` off (scene units), and
+/// by the share `rounding` of the coordinates of a solid. `None` when `progress` asked to stop.
 #[must_use]
 pub fn compare_mesh(
     tracer: &Tracer,
     mesh: &TracedMesh,
     (class, rays): (&'static str, &[Ray]),
-    deviation: f64,
+    (deviation, rounding): (f64, f64),
     most_listed: usize,
     progress: &Progress,
 ) -> Option<Agreement> {
-    let allowance = deviation + mesh.rounding();
+    let tolerance = Tolerance {
+        fixed: deviation,
+        of_way: ROUNDING,
+        of_extent: rounding,
+    };
     let surfaces = Surfaces::new(tracer.scene());
     in_blocks(
-        Agreement::new(class, Witness::UserMesh),
+        Agreement::new(class, Witness::UserMesh, tolerance, &surfaces),
         rays.len() as u64,
         most_listed,
         progress,
         |agreement, index| {
             let ray = &rays[index as usize];
             let told = mesh.closest(ray).map(|hit| hit.t);
-            agreement.add((tracer, &surfaces), index, ray, told, most_listed, |_| {
-                allowance
-            });
+            agreement.add((tracer, &surfaces), index, ray, told, most_listed);
         },
     )
 }

@@ -14,7 +14,7 @@
 
 use std::sync::Arc;
 
-use crate::math::{Bounds, Random};
+use crate::math::{Bounds, Random, power_of_two};
 use crate::scene::{PrototypeIndex, Scene};
 use crate::solid::{AnySolid, Composition};
 
@@ -31,6 +31,12 @@ const WINDOWS: u64 = 8;
 /// the widest is far below the solid in its middle, where all solids left share
 /// a point.
 const MOST_HALVINGS: u32 = 40;
+
+/// The least half width of a window, as a share of its farthest coordinate. The origins of
+/// rays are on a grid of at most 2^-49 of it (`mesh_frame`), which so divides a window into 64
+/// steps or more: what is aimed at the window hits it. A solid so far out that this is wider
+/// than [`WIDEST`] is beyond f32 in any window, and its row says that it has no witness.
+const LEAST_REACH: f64 = power_of_two(-44);
 
 /// What the meshes of a window may take.
 #[derive(Clone, Copy, Debug)]
@@ -270,11 +276,14 @@ impl<'a> Tree<'a> {
     /// that are as wide as [`WIDEST`] allows or half, a quarter, ... of it.
     fn window_about(&self, centre: Bounds, half_width: f64, budget: Budget) -> Option<Window> {
         let mut reach = WIDEST / 2.0 * half_width;
+        let least = LEAST_REACH * centre.lower.abs().max_element();
         for _ in 0..MOST_HALVINGS {
-            // So far out that `reach` is lost, the box still has an extent.
-            let bounds = centre.grown(reach).rounded_outward();
+            let bounds = centre.grown(reach.max(least)).rounded_outward();
             if let Some(window) = self.window_of(Some(bounds), budget) {
                 return Some(window);
+            }
+            if reach <= least {
+                return None;
             }
             reach /= 2.0;
         }

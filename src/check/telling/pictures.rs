@@ -19,7 +19,6 @@ use glam::{DAffine3, DVec2, DVec3};
 use rayon::prelude::*;
 
 use crate::check::elsewhere::user_mesh::{TracedMesh, TriangleHit};
-use crate::embree::{self, DeviceOptions};
 use crate::math::Ray;
 use crate::render::{png_bytes, srgb_encode};
 use crate::scene::{AimedCamera, Film, Placement, PrototypeIndex, Scene};
@@ -64,9 +63,6 @@ pub struct Pictures {
 /// Why there are no pictures.
 #[derive(Debug, thiserror::Error)]
 pub enum PicturesError {
-    /// Embree refused.
-    #[error(transparent)]
-    Embree(#[from] embree::Error),
     /// The encoder refused.
     #[error("cannot encode a picture: {0}")]
     Encoding(String),
@@ -87,13 +83,12 @@ struct Placed {
 /// called in.
 ///
 /// # Errors
-/// When Embree or the encoder refuses.
+/// When the encoder refuses.
 pub fn pictures(
     tracer: &Tracer,
     segments: u32,
     film: Film,
     max_memory: u64,
-    options: &DeviceOptions,
 ) -> Result<Option<Pictures>, PicturesError> {
     let camera = AimedCamera::new(&tracer.scene().camera, &tracer.bounds(), film);
     let pixels: Vec<(Ray, Vec<Hit>)> = (0..film.width * film.height)
@@ -122,7 +117,7 @@ pub fn pictures(
         solid_of.extend(prism.triangles.iter().map(|_| *solid));
         mesh.append(&prism);
     }
-    let traced = TracedMesh::new(&mesh, options)?;
+    let traced = TracedMesh::new(&mesh);
     let shown: Vec<Shown> = pixels
         .par_iter()
         .map(|(ray, hits)| {

@@ -58,9 +58,9 @@ pub fn table_rows(outcome: &Outcome, agreements: &[Agreement]) -> Vec<Vec<String
             row.rays.to_string(),
             row.hits.to_string(),
             row.disagreements.to_string(),
-            figure(percent(row.rays - row.silhouette, row.rays)),
+            figure(percent(row.judged(), row.rays)),
             figure(percent(row.silhouette, row.rays)),
-            figure(0.0),
+            figure(percent(row.coarse, row.rays)),
             dash(),
             dash(),
             dash(),
@@ -82,6 +82,18 @@ pub fn percent(part: u64, whole: u64) -> f64 {
 
 fn dash() -> String {
     String::from("–")
+}
+
+/// What answers from elsewhere could be off, and how many were judged.
+#[must_use]
+pub fn tolerance_text(row: &Agreement) -> String {
+    format!(
+        "tolerance: at most {}, the least radius is {}; {} of {} answers judged\n",
+        figure(row.max_allowance.max(row.fixed_allowance)),
+        figure(row.least_radius),
+        row.judged(),
+        row.rays
+    )
 }
 
 /// A violation in two lines, the second with the word that replays it.
@@ -164,6 +176,9 @@ pub fn page(content: &PageContent) -> String {
     page.paragraph(&verdict(outcome, agreements));
     page.heading("Agreement");
     agreement_table(&mut page, &table_rows(outcome, agreements));
+    for told in *agreements {
+        page.note(&tolerance_text(told));
+    }
     page.note(if agreements.is_empty() {
         READING
     } else {
@@ -209,7 +224,7 @@ fn agreement_table(page: &mut Page, rows: &[Vec<String>]) {
 const READING: &str = "Witnessed: the meshes bound the answer on both sides. Band: the ray meets a circumscribed prism before any certain hit, so that a hit and a miss are both allowed. Unwitnessed: no bound at all. Embree's errors: Embree's triangle test contradicted the answer, and exact arithmetic on the same triangles cleared it; for cone curves, their contradictions that the exact oracle cleared. dt / chord: the greatest way from the answer to the inscribed prism in units of the chord error; far above 4 where a solid is so far or so tiny that f32 moves the prism's corners by more than that.";
 
 /// How to read the table of hits from elsewhere.
-const READING_TOLD: &str = "Violations: answers that no displacement by the allowed distance explains. Witnessed: answers that agree. Band: the rest, near a silhouette or an edge or at a low angle, where answers may differ.";
+const READING_TOLD: &str = "Violations: answers that no displacement by the allowed distance explains. Witnessed: answers that agree, or that are wrong. Band: the rest, near a silhouette or an edge or at a low angle, where answers may differ. Unwitnessed: answers about a solid that is thinner than the tolerance.";
 
 /// The outcome in a sentence.
 #[must_use]
@@ -220,8 +235,12 @@ pub fn verdict(outcome: &Outcome, agreements: &[Agreement]) -> String {
             .map(|agreement| agreement.disagreements)
             .sum::<u64>();
     let unwitnessed = outcome.rows.iter().filter(|row| row.is_unwitnessed());
+    let shortfall = agreements.iter().find_map(Agreement::shortfall);
     match (wrong, unwitnessed.count()) {
-        (0, 0) => String::from("holds: no answer is wrong"),
+        (0, 0) => shortfall.map_or_else(
+            || String::from("holds: no answer is wrong"),
+            |shortfall| format!("fails: {shortfall}"),
+        ),
         (0, rows) => format!("fails: {rows} rows have no witness for more than half of their rays"),
         (1, _) => String::from("fails: 1 answer is wrong"),
         (wrong, _) => format!("fails: {wrong} answers are wrong"),
@@ -238,7 +257,7 @@ fn show(page: &mut Page, pictures: &Pictures) {
         (&pictures.analytic, "The solids, traced analytically"),
         (
             &pictures.mesh,
-            "The inscribed prisms, traced by Embree as triangles",
+            "The inscribed prisms, traced as triangles",
         ),
         (
             &pictures.distance,
@@ -250,7 +269,7 @@ fn show(page: &mut Page, pictures: &Pictures) {
         ),
     ]);
     page.note(&format!(
-        "{} prisms; both are met in {both} pixels, the solid alone in {solid}, the mesh alone in {mesh}. The mesh's vertices are rounded to f32.",
+        "{} prisms; both are met in {both} pixels, the solid alone in {solid}, the mesh alone in {mesh}.",
         pictures.prisms
     ));
     if pictures.composed > 0 {

@@ -47,7 +47,7 @@ struct Found {
 impl Found {
     /// Whether nothing is wrong and the witnesses say enough.
     fn holds(&self) -> bool {
-        let told_hold = self.agreements.iter().all(|one| one.disagreements == 0);
+        let told_hold = self.agreements.iter().all(Agreement::holds);
         self.outcome.holds() && told_hold
     }
 }
@@ -141,7 +141,6 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
                     PICTURE_SEGMENTS,
                     picture_film(loaded.film),
                     arguments.max_memory,
-                    &device_options(arguments),
                 )
             })?
         };
@@ -292,6 +291,9 @@ fn summary(found: &Found, told: Option<&Told>) -> String {
         table.push(row);
     }
     text += &table.to_string();
+    for row in agreements {
+        text += &check::tolerance_text(row);
+    }
     for row in &outcome.convergence {
         text += &format!(
             "{} sides: {} % of rays in the silhouette band, 99 % of hits within {} r of the prism\n",

@@ -1,23 +1,24 @@
 //! Hits from elsewhere: of another program, or of a mesh.
 
-use anyhow::{anyhow, bail};
+use anyhow::bail;
 use cyltrace::check::{
-    Agreement, F32_TOLERANCE, MeshFile, Outcome, Progress, TracedMesh, compare_hits, compare_mesh,
-    rays_around, read_mesh,
+    Agreement, F32_TOLERANCE, Outcome, Progress, TracedMesh, compare_hits, compare_mesh,
+    rays_around,
 };
 use cyltrace::math::Ray;
+use cyltrace::mesh_file::{MeshFile, read_mesh_within};
 use cyltrace::tracer::Tracer;
 
 use super::hit_file::{ToldHit, read_hits};
-use super::{Found, MOST_LISTED, device_options};
+use super::{Found, MOST_LISTED};
 use crate::cli::arguments::{CheckArguments, Rays};
 use crate::cli::interrupt::Interrupted;
 use crate::cli::memory::readable;
 use crate::cli::trace::for_each_batch;
 
-/// Bytes that a triangle takes with its vertices and Embree's tree, on the safe
-/// side.
-const TRIANGLE_BYTES: u64 = 200;
+/// Bytes that a triangle takes with its vertices and in the tree, on the safe side: in STL
+/// each has three vertices of its own, which are stored twice.
+const TRIANGLE_BYTES: u64 = 250;
 
 /// What is compared.
 pub enum Told {
@@ -31,7 +32,7 @@ impl Told {
     /// Reads what the arguments name; `None` when they name nothing.
     pub fn read(arguments: &CheckArguments) -> anyhow::Result<Option<Self>> {
         if let Some(path) = &arguments.mesh {
-            let file = read_mesh(path).map_err(|error| anyhow!("{error}"))?;
+            let file = read_mesh_within(path, arguments.max_memory)?;
             let Some(deviation) = arguments.deviation.or(file.deviation) else {
                 bail!(
                     "{}: no comment says its deviation, as those of `cyltrace tessellate` do: give --deviation X",
@@ -107,7 +108,7 @@ impl Told {
                 compare_hits(tracer, rays, &told, tolerance, MOST_LISTED, progress)
             }
             Self::Mesh(rays, file, deviation) => {
-                let mesh = TracedMesh::new(&file.mesh, &device_options(arguments))?;
+                let mesh = TracedMesh::new(&file.mesh);
                 let made;
                 let (class, rays) = match (rays, &arguments.rays) {
                     (Some(rays), _) => ("given", rays),
@@ -118,7 +119,8 @@ impl Told {
                     (None, Rays::Table(_)) => unreachable!("a table of rays has been read"),
                 };
                 let rays = (class, rays.as_slice());
-                compare_mesh(tracer, &mesh, rays, *deviation, MOST_LISTED, progress)
+                let off = (*deviation, file.rounding);
+                compare_mesh(tracer, &mesh, rays, off, MOST_LISTED, progress)
             }
         };
         Ok(Found {

@@ -66,6 +66,12 @@ impl<'a, 'input> Element<'a, 'input> {
         Self { path, node }
     }
 
+    /// Its file and line, for notes.
+    pub fn place_text(&self) -> String {
+        let line = self.node.document().text_pos_at(self.place()).row;
+        format!("{}:{line}", self.path.display())
+    }
+
     /// Where it begins, in bytes.
     pub fn place(&self) -> usize {
         self.node.range().start
@@ -106,6 +112,21 @@ impl<'a, 'input> Element<'a, 'input> {
     /// beam lattices.
     fn is_of_lattice(&self, name: &str) -> bool {
         self.node.has_tag_name((BEAM_LATTICE, name)) || self.node.has_tag_name((BALLS, name))
+    }
+
+    /// Refuses an element in it of one of some names that is in no namespace of a beam
+    /// lattice: what it states would be missing without a word.
+    pub fn refuse_foreign(&self, names: &[&str]) -> Result<(), SceneError> {
+        let mut children = self.children();
+        let foreign = children
+            .find(|child| names.contains(&child.name()) && !child.is_of_lattice(child.name()));
+        foreign.map_or(Ok(()), |child| {
+            let name = child.name();
+            let namespace = quoted(child.node.tag_name().namespace().unwrap_or_default());
+            Err(child.error(format!(
+                "<{name}> is in the namespace {namespace}: that of beam lattices is {BEAM_LATTICE}"
+            )))
+        })
     }
 
     /// The elements in it.
@@ -162,6 +183,20 @@ impl<'a, 'input> Element<'a, 'input> {
     /// An attribute that must be there.
     pub fn required(&self, name: &str) -> Result<&'a str, SceneError> {
         self.attribute(name).ok_or_else(|| self.missing(name))
+    }
+
+    /// The number of a resource, which must be stated.
+    pub fn id(&self, name: &str) -> Result<u32, SceneError> {
+        let text = self.required(name)?;
+        let id = text.parse().ok();
+        id.filter(|id| (1..1 << 31).contains(id)).ok_or_else(|| {
+            let element = self.name();
+            self.error(format!(
+                "{name} of <{element}> is {}: it must be a whole number from 1 to {}",
+                quoted(text),
+                (1_u32 << 31) - 1
+            ))
+        })
     }
 
     /// The finite number that a text of this element is.

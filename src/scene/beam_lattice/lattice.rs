@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::element::Element;
+use super::notes::ObjectNotes;
 use crate::scene::error::SceneError;
 
 /// How a beam ends.
@@ -17,6 +18,9 @@ pub(super) enum Cap {
     /// Flat.
     Butt,
 }
+
+/// How a mesh clips a lattice.
+const CLIPPING: [(&str, ()); 3] = [("none", ()), ("inside", ()), ("outside", ())];
 
 const CAPS: [(&str, Cap); 3] = [
     ("sphere", Cap::Sphere),
@@ -81,11 +85,18 @@ enum BallMode {
 }
 
 impl Lattice {
-    /// The lattice of a `<mesh>`, where there is one. `with_meshes` says whether
-    /// triangles are an error.
-    pub fn new(mesh: &Element, skips_meshes: bool) -> Result<Option<Self>, SceneError> {
-        let refused = |what: &Element, message: &str| match skips_meshes {
-            true => Ok(()),
+    /// The lattice of a `<mesh>`, where there is one. `skips_meshes` says that triangles are
+    /// left out; they are an error otherwise.
+    pub fn new(
+        mesh: &Element,
+        skips_meshes: bool,
+        notes: &mut ObjectNotes,
+    ) -> Result<Option<Self>, SceneError> {
+        let mut refused = |what: &Element, message: &str, note: &str| match skips_meshes {
+            true => {
+                notes.add(note);
+                Ok(())
+            }
             false => Err(what.error_with_help(
                 message,
                 "cyltrace traces no triangles; meshes = \"skip\" in the scene file leaves them out",
@@ -94,23 +105,40 @@ impl Lattice {
         if let Some(triangles) = mesh.first("triangles")
             && triangles.first("triangle").is_some()
         {
-            refused(&triangles, "this object has triangles")?;
+            refused(
+                &triangles,
+                "this object has triangles",
+                "its triangles are left out, which are a part of what the file builds",
+            )?;
         }
-        let Some(keys) = mesh.all_of_lattice("beamlattice").next() else {
+        mesh.refuse_foreign(&["beamlattice"])?;
+        let mut lattices = mesh.all_of_lattice("beamlattice");
+        let Some(keys) = lattices.next() else {
             return Ok(None);
         };
+        if let Some(second) = lattices.next() {
+            return Err(
+                second.error("a mesh has one <beamlattice> at most: put its beams into the first")
+            );
+        }
+        keys.refuse_foreign(&["beams", "balls"])?;
         // The drafts called it `clipping`, and their files are still about.
         let clipping = keys.attribute("clippingmode");
         let clipping = clipping.or_else(|| keys.attribute("clipping"));
         if clipping.is_some_and(|mode| mode != "none") {
-            refused(&keys, "this lattice is clipped by a mesh")?;
+            keys.choose("clippingmode", &CLIPPING)?;
+            refused(
+                &keys,
+                "this lattice is clipped by a mesh",
+                "its lattice is clipped by a mesh, which is left out: all of the lattice is read",
+            )?;
         }
         let vertices = mesh.first("vertices");
         let vertices = vertices.iter().flat_map(|vertices| vertices.all("vertex"));
         let vertices = vertices.map(|vertex| vertex.point());
         let vertices = vertices.collect::<Result<Vec<_>, _>>()?;
         let beams = beams(&keys, &vertices)?;
-        let balls = balls(&keys, vertices.len(), &beams)?;
+        let balls = balls(&keys, vertices.len(), &beams, notes)?;
         Ok(Some(Self {
             vertices,
             beams,
@@ -124,6 +152,9 @@ fn beams(keys: &Element, vertices: &[DVec3]) -> Result<Vec<Beam>, SceneError> {
     let least = keys.required_length("minlength")?;
     let cap = keys.choose("cap", &CAPS)?.unwrap_or(Cap::Sphere);
     let lists = keys.all_of_lattice("beams");
+    for list in keys.all_of_lattice("beams") {
+        list.refuse_foreign(&["beam"])?;
+    }
     let beams = lists.flat_map(|list| list.all_of_lattice("beam"));
     let beam = |element: Element| {
         let vertex = |name| element.vertex(name, vertices.len());
@@ -139,8 +170,13 @@ fn beams(keys: &Element, vertices: &[DVec3]) -> Result<Vec<Beam>, SceneError> {
             (Some(r1), Some(r2)) => [r1, r2],
             (Some(r1), None) => [r1; 2],
             (None, None) => [radius; 2],
-            (None, Some(_)) => {
-                return Err(element.error("<beam> has an r2 but no r1: state both, or r1, or none"));
+            (None, Some(r2)) => {
+                return Err(element.error_with_help(
+                    "<beam> has an r2 but no r1: state both, or r1, or none",
+                    &format!(
+                        "programs that read it nevertheless take the lattice's radius for r1: write r1=\"{radius}\" r2=\"{r2}\" for that"
+                    ),
+                ));
             }
         };
         let cap = |name| Ok(element.choose(name, &CAPS)?.unwrap_or(cap));
@@ -159,6 +195,7 @@ fn balls(
     keys: &Element,
     vertices: usize,
     beams: &[Beam],
+    notes: &mut ObjectNotes,
 ) -> Result<BTreeMap<usize, f64>, SceneError> {
     const MODES: [(&str, BallMode); 3] = [
         ("none", BallMode::None),
@@ -167,7 +204,11 @@ fn balls(
     ];
     let mode = keys.choose("ballmode", &MODES)?.unwrap_or(BallMode::None);
     let mut balls = BTreeMap::new();
+    let mut lists = keys.all_of_lattice("balls").peekable();
     if mode == BallMode::None {
+        if lists.peek().is_some() {
+            notes.add("it states balls but no ballmode, which means that there are none: write ballmode=\"mixed\" and a ballradius for those that are stated");
+        }
         return Ok(balls);
     }
     let Some(radius) = keys.length("ballradius")? else {
@@ -182,7 +223,7 @@ fn balls(
         let ends = (0..vertices).filter(|&vertex| ends[vertex]);
         balls.extend(ends.map(|vertex| (vertex, radius)));
     }
-    let lists = keys.all_of_lattice("balls");
+    let mut stated = BTreeMap::new();
     for element in lists.flat_map(|list| list.all_of_lattice("ball")) {
         let vertex = element.vertex("vindex", vertices)?;
         if !ends[vertex] {
@@ -194,7 +235,10 @@ fn balls(
         if radius == 0.0 {
             return Err(element.error("the ball has the radius 0: it must be positive"));
         }
-        balls.insert(vertex, radius);
+        // The balls of a lattice are united: of two at a vertex the greater one stays.
+        let greatest = stated.entry(vertex).or_insert(radius);
+        *greatest = radius.max(*greatest);
     }
+    balls.extend(stated);
     Ok(balls)
 }

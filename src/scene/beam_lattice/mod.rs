@@ -1,6 +1,7 @@
 //! Beam lattices in 3MF: `package` finds the model in the archive, `model` the
 //! objects that it builds, `lattice` the beams and balls of one, `element` reads
-//! XML, `counted` says how many solids there will be. Here they become solids.
+//! XML, `limits` refuses what would take too long, `notes` collects what a user should know,
+//! `counted` says how many solids there will be. Here they become solids.
 //!
 //! **What a beam is.** The specification (3MF Beam Lattice Extension, 2.1.1) makes it
 //! a frustum, united at either end with what the end's cap is: nothing for `butt`, the
@@ -21,7 +22,9 @@
 mod counted;
 mod element;
 mod lattice;
+mod limits;
 mod model;
+mod notes;
 mod package;
 
 use std::collections::BTreeMap;
@@ -63,6 +66,9 @@ pub(super) fn add_beam_lattice(
     let document = package::parsed(&part)?;
     let root = Element::root(&part.path, &document);
     let model = Model::new(&root, keys.skips_meshes)?;
+    for note in &model.notes {
+        solids.note(note);
+    }
     let units = keys
         .unit
         .map_or((1.0, 1.0), |unit| lowest(model.unit, unit));
@@ -81,6 +87,23 @@ pub(super) fn add_beam_lattice(
         }
     }
     Ok(())
+}
+
+/// The number of beams that the model part of a 3MF file builds: what is read of it, without
+/// the archive around it.
+///
+/// # Errors
+/// As those of [`super::load`] for the file.
+pub fn beams_of_model(text: &str) -> Result<u64, SceneError> {
+    let part = package::Part {
+        path: "model".into(),
+        text: text.to_owned(),
+    };
+    let document = package::parsed(&part)?;
+    let model = Model::new(&Element::root(&part.path, &document), true)?;
+    let beams = model.placed.iter();
+    let beams = beams.map(|placed| (placed.lattice.beams.len() * placed.places.len()) as u64);
+    Ok(beams.sum())
 }
 
 /// Two whole numbers without their common factors.

@@ -5,7 +5,9 @@ use std::collections::HashMap;
 
 use super::element::{BALLS, BEAM_LATTICE, CORE, Element, PRODUCTION, Similarity};
 use super::lattice::Lattice;
+use super::notes::Notes;
 use crate::scene::error::SceneError;
+use crate::scene::limits::MOST_PLACES;
 use crate::scene::names::quoted;
 
 /// Extensions without which a file may not be read, and which are: of materials
@@ -17,6 +19,24 @@ const EXTENSIONS: [&str; 4] = [
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
 ];
 
+/// What an object is for, and whether it may have a beam lattice.
+const TYPES: [(&str, Type); 5] = [
+    ("model", Type::WithLattice),
+    ("solidsupport", Type::WithLattice),
+    ("support", Type::WithoutLattice),
+    ("surface", Type::WithoutLattice),
+    ("other", Type::Other),
+];
+
+/// See [`TYPES`].
+#[derive(Clone, Copy, PartialEq)]
+enum Type {
+    WithLattice,
+    WithoutLattice,
+    /// It may not be built by itself either.
+    Other,
+}
+
 /// The units of lengths, and how many micrometers each is.
 pub(in crate::scene) const UNITS: [(&str, f64); 6] = [
     ("micron", 1.0),
@@ -26,10 +46,6 @@ pub(in crate::scene) const UNITS: [(&str, f64); 6] = [
     ("foot", 304_800.0),
     ("meter", 1e6),
 ];
-
-/// Most places of objects. Components of components may otherwise be as many as a
-/// file wants.
-const MOST_PLACES: usize = 1 << 20;
 
 /// An object with a lattice, and where it is.
 pub(super) struct Placed {
@@ -43,6 +59,8 @@ pub(super) struct Model {
     pub unit: f64,
     /// In the order of the objects in the file.
     pub placed: Vec<Placed>,
+    /// What is left out, and what other programs may read differently.
+    pub notes: Vec<String>,
 }
 
 impl Model {
@@ -55,21 +73,53 @@ impl Model {
         let unit = model.choose("unit", &UNITS)?.unwrap_or(1e3);
         let objects = Objects::new(model)?;
         let mut placed = Vec::new();
+        let mut notes = Notes::default();
         for (object, places) in objects.list.iter().zip(objects.places(model)?) {
             if places.is_empty() {
                 continue;
             }
             if let Some(mesh) = object.first("mesh")
-                && let Some(lattice) = Lattice::new(&mesh, skips_meshes)?
+                && let Some(lattice) = Lattice::new(&mesh, skips_meshes, &mut notes.of(object))?
             {
+                check_type(object, &mut notes)?;
                 placed.push(Placed { lattice, places });
             }
         }
         if placed.iter().all(|placed| placed.lattice.beams.is_empty()) {
             return Err(model.error("the file builds no object with beams"));
         }
-        Ok(Self { unit, placed })
+        if !requires(model, BEAM_LATTICE) {
+            notes.add(
+                model,
+                "the model does not require the extension for beam lattices, so that other programs may leave them out: write its prefix into requiredextensions",
+            );
+        }
+        let notes = notes.into_lines();
+        Ok(Self {
+            unit,
+            placed,
+            notes,
+        })
     }
+}
+
+/// Notes a lattice in an object that may not have one.
+fn check_type(object: &Element, notes: &mut Notes) -> Result<(), SceneError> {
+    let is_for = object.choose("type", &TYPES)?.unwrap_or(Type::WithLattice);
+    if is_for != Type::WithLattice {
+        let word = quoted(object.attribute("type").unwrap_or_default());
+        notes.of(object).add(&format!(
+            "its type is {word}, and only objects of type \"model\" or \"solidsupport\" may have a beam lattice: it is read, where other programs may leave it out"
+        ));
+    }
+    Ok(())
+}
+
+/// Whether a model says that it may not be read without an extension.
+fn requires(model: &Element, extension: &str) -> bool {
+    let required = model.attribute("requiredextensions").unwrap_or_default();
+    let mut required = required.split_whitespace();
+    required.any(|prefix| model.namespace(prefix) == Some(extension))
 }
 
 /// That nothing is required that is not understood here.
@@ -91,7 +141,8 @@ fn check_extensions(model: &Element) -> Result<(), SceneError> {
 /// The objects of a file, by their places in it.
 struct Objects<'a, 'input> {
     list: Vec<Element<'a, 'input>>,
-    index: HashMap<&'a str, usize>,
+    /// By their ids.
+    index: HashMap<u32, usize>,
 }
 
 impl<'a, 'input> Objects<'a, 'input> {
@@ -100,8 +151,9 @@ impl<'a, 'input> Objects<'a, 'input> {
         let list: Vec<_> = resources.flat_map(|list| list.all("object")).collect();
         let mut index = HashMap::with_capacity(list.len());
         for (place, object) in list.iter().enumerate() {
-            let id = object.required("id")?;
+            let id = object.id("id")?;
             if index.insert(id, place).is_some() {
+                let id = object.required("id")?;
                 return Err(object.error(format!("the id {} stands twice", quoted(id))));
             }
         }
@@ -115,12 +167,11 @@ impl<'a, 'input> Objects<'a, 'input> {
                 "the object is in another part of the archive: only what is in the first part is read",
             ));
         }
-        let id = element.required("objectid")?;
-        let place = self.index.get(id).copied();
+        let place = self.index.get(&element.id("objectid")?).copied();
         place.filter(|&place| place < end).ok_or_else(|| {
+            let id = quoted(element.attribute("objectid").unwrap_or_default());
             element.error(format!(
-                "there is no object {} before this: objectid must be the id of one",
-                quoted(id)
+                "there is no object {id} before this: objectid must be the id of one"
             ))
         })
     }
@@ -142,6 +193,12 @@ impl<'a, 'input> Objects<'a, 'input> {
         let items = model.all("build").flat_map(|build| build.all("item"));
         for item in items {
             let of = self.named(&item, self.list.len())?;
+            if self.list[of].attribute("type") == Some("other") {
+                return Err(item.error_with_help(
+                    "the object is of type \"other\", which is no item of the <build>",
+                    "write type=\"model\" at the object, or build it as a component of one",
+                ));
+            }
             add(&mut places[of], vec![item.transform()?], &item)?;
         }
         for place in (0..self.list.len()).rev() {

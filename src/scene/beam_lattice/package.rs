@@ -5,22 +5,20 @@ use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::PathBuf;
 
-use roxmltree::Document;
+use roxmltree::{Document, ParsingOptions};
 use toml::Spanned;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
+use super::limits;
 use crate::scene::error::SceneError;
+use crate::scene::limits::{MOST_PART_BYTES, MOST_XML_NODES};
 use crate::scene::names::quoted;
 use crate::scene::source::Source;
 
 const RELATIONSHIPS: &str = "_rels/.rels";
 /// The type of the relationship that names the model.
 const MODEL: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
-
-/// Most bytes of a part, some 16 million beams. A small archive may claim to hold
-/// anything.
-const MOST_BYTES: u64 = 1 << 30;
 
 /// A part of the archive.
 pub(super) struct Part {
@@ -52,12 +50,25 @@ pub(super) fn model_part(source: &Source, file: &Spanned<String>) -> Result<Part
 
 /// The elements of a part.
 pub(super) fn parsed(part: &Part) -> Result<Document<'_>, SceneError> {
-    Document::parse(&part.text).map_err(|error| SceneError::Row {
+    let error = |line: u64, message| SceneError::Row {
         path: part.path.clone(),
-        line: u64::from(error.pos().row),
+        line,
         column: None,
-        message: format!("this is no XML: {error}"),
+        message,
         help: None,
+    };
+    limits::check(&part.text).map_err(|(at, message)| {
+        let before = &part.text.as_bytes()[..at];
+        let line = before.iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;
+        error(line, message)
+    })?;
+    let options = ParsingOptions {
+        nodes_limit: MOST_XML_NODES,
+        ..ParsingOptions::default()
+    };
+    Document::parse_with_options(&part.text, options).map_err(|wrong| {
+        let line = u64::from(wrong.pos().row);
+        error(line, format!("this is no XML: {wrong}"))
     })
 }
 
@@ -105,28 +116,44 @@ impl<'a> Package<'a> {
         self.source.error(self.file.span(), message)
     }
 
+    /// The name of a part as the archive has it: those of parts differ by more than case.
+    fn stored_name(&self, name: &str) -> String {
+        if self.archive.index_for_name(name).is_some() {
+            return name.to_owned();
+        }
+        let stored = self.archive.file_names().filter_map(Result::ok);
+        let mut same = stored.filter(|stored| stored.eq_ignore_ascii_case(name));
+        same.next().map_or_else(|| name.to_owned(), Into::into)
+    }
+
     /// The text of a part, without a byte order mark.
     fn read(&mut self, name: &str) -> Result<Part, SceneError> {
         let path = self.path.join(name);
         let mut bytes = Vec::new();
-        let read = self.archive.by_name(name).and_then(|part| {
-            let mut part = part.take(MOST_BYTES + 1);
-            Ok(part.read_to_end(&mut bytes)?)
+        let stored = self.stored_name(name);
+        // A part is refused by the length that the archive states, and if that is not true,
+        // once it has unpacked to more than the limit.
+        let read = self.archive.by_name(&stored).and_then(|part| {
+            let stated = part.size();
+            if stated <= MOST_PART_BYTES {
+                part.take(MOST_PART_BYTES + 1).read_to_end(&mut bytes)?;
+            }
+            Ok(stated.max(bytes.len() as u64))
         });
         match read {
-            Ok(_) => {}
+            Ok(length) if length <= MOST_PART_BYTES => {}
+            Ok(_) => {
+                return Err(self.error(format!(
+                    "{} is larger than {MOST_PART_BYTES} bytes, the most that is read",
+                    quoted(name)
+                )));
+            }
             Err(ZipError::FileNotFound) => {
                 return Err(self.error(format!("the archive holds no {}", quoted(name))));
             }
             Err(error) => {
                 return Err(self.error(format!("cannot read {}: {error}", quoted(name))));
             }
-        }
-        if bytes.len() as u64 > MOST_BYTES {
-            return Err(self.error(format!(
-                "{} is larger than {MOST_BYTES} bytes, the most that is read",
-                quoted(name)
-            )));
         }
         let utf16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
         let mut text = String::from_utf8(bytes).map_err(|error| {

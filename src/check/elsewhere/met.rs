@@ -1,0 +1,107 @@
+//! A solid that a ray meets: where it stands, how far it reaches, how thick it is.
+
+use glam::{DAffine3, DVec3};
+
+use super::nearness::{Frame, PlacedComposition, PlacedSolid};
+use super::tolerance::{farthest, least_radius};
+use crate::math::Ray;
+use crate::scene::{PrototypeIndex, Scene};
+use crate::solid::{AnySolid, Composition};
+use crate::tracer::Hit;
+
+/// A solid that a ray meets.
+pub(super) struct Met<'a> {
+    /// The placements from the root to it, and its number.
+    solid: (Vec<u32>, u32),
+    frame: Frame,
+    found: Found<'a>,
+    /// How far its box reaches from the world's origin, or those of its leaves.
+    pub extent: f64,
+    /// At most its least radius in the world.
+    pub radius: f64,
+    /// Where the ray meets it, rising.
+    pub at: Vec<f64>,
+}
+
+impl<'a> Met<'a> {
+    pub fn new(scene: &'a Scene, hit: &Hit) -> Self {
+        let (placements, found) = find(scene, &hit.instance, hit.primitive);
+        let whole = placements
+            .iter()
+            .fold(DAffine3::IDENTITY, |whole, &one| whole * *one);
+        let frame = Frame::new(&whole);
+        let parts = match &found {
+            Found::Single(solid) => vec![*solid],
+            Found::Composed(solid) => solid.solids(),
+        };
+        let extents = parts
+            .iter()
+            .map(|one| farthest(&one.bounds().transformed(&whole)));
+        Self {
+            solid: (hit.instance.clone(), hit.primitive),
+            extent: extents.fold(0.0, f64::max),
+            radius: frame.least_length(least_radius(parts)),
+            frame,
+            found,
+            at: vec![hit.t],
+        }
+    }
+
+    /// Whether it is the solid of a hit.
+    pub fn is_of(&self, hit: &Hit) -> bool {
+        self.solid.1 == hit.primitive && self.solid.0 == hit.instance
+    }
+
+    /// Whether the ray is proven to pass through its surface between two `t`.
+    pub fn is_crossed(&self, ray: &Ray, (start, end): (f64, f64), distance: f64) -> bool {
+        let frame = &self.frame;
+        match self.found {
+            Found::Single(solid) => {
+                PlacedSolid { solid, frame }.is_crossed(ray, (start, end), distance)
+            }
+            Found::Composed(solid) => {
+                let placed = PlacedComposition { solid, frame };
+                placed.is_crossed(ray, (start, end), distance, &self.at)
+            }
+        }
+    }
+
+    /// Whether a point is proven to be near its surface.
+    pub fn is_near(&self, point: DVec3, distance: f64) -> bool {
+        let frame = &self.frame;
+        match self.found {
+            Found::Single(solid) => PlacedSolid { solid, frame }.is_near(point, distance),
+            // Near one of the surfaces that it is made of, there may be nothing of it.
+            Found::Composed(_) => false,
+        }
+    }
+}
+
+/// A solid of a scene.
+pub(super) enum Found<'a> {
+    Single(AnySolid),
+    Composed(&'a Composition),
+}
+
+/// The placements of a solid, outermost first, and itself.
+pub(super) fn find<'a>(
+    scene: &'a Scene,
+    instance: &[u32],
+    primitive: u32,
+) -> (Vec<&'a DAffine3>, Found<'a>) {
+    let mut prototype = &scene.prototypes[PrototypeIndex::ROOT.0 as usize];
+    let mut placements = Vec::new();
+    for &number in instance {
+        let placement = &prototype.placements[number as usize];
+        placements.push(&placement.parent_from_child);
+        prototype = &scene.prototypes[placement.of.0 as usize];
+    }
+    let composed = || {
+        let composed = &prototype.solids.compositions;
+        let position = composed.binary_search_by_key(&primitive, |record| record.primitive);
+        let position = position.expect("the hit's solid is in the scene");
+        Found::Composed(&composed[position].solid)
+    };
+    let found = prototype.single(primitive).map(Found::Single);
+    (placements, found.unwrap_or_else(composed))
+}

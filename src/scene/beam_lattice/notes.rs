@@ -1,0 +1,87 @@
+//! What a user is told of a 3MF file that is read: what is left out, and what the
+//! specification forbids or other programs take differently.
+
+use super::element::Element;
+
+/// Objects that a note names; of more, it says how many.
+const MOST_NAMED: usize = 8;
+
+/// The notes on a file, each once with the objects that it is about.
+#[derive(Default)]
+pub(super) struct Notes {
+    list: Vec<Note>,
+}
+
+struct Note {
+    /// The file, and the line of the first element that it is about.
+    place: String,
+    text: String,
+    /// The ids of the objects that it is about; none where it is about the file.
+    objects: Vec<String>,
+}
+
+/// The notes on an object.
+pub(super) struct ObjectNotes<'n, 'a, 'input> {
+    notes: &'n mut Notes,
+    object: &'n Element<'a, 'input>,
+}
+
+impl Notes {
+    /// For notes on an object.
+    pub fn of<'n, 'a, 'input>(
+        &'n mut self,
+        object: &'n Element<'a, 'input>,
+    ) -> ObjectNotes<'n, 'a, 'input> {
+        let notes = self;
+        ObjectNotes { notes, object }
+    }
+
+    /// Adds a note on the file.
+    pub fn add(&mut self, element: &Element, text: &str) {
+        self.list.push(Note {
+            place: element.place_text(),
+            text: text.to_owned(),
+            objects: Vec::new(),
+        });
+    }
+
+    /// A line for each note.
+    pub fn into_lines(self) -> Vec<String> {
+        let lines = self.list.into_iter().map(|note| {
+            let Note {
+                place,
+                text,
+                objects,
+            } = note;
+            let named = objects.iter().take(MOST_NAMED).cloned();
+            let named = named.collect::<Vec<_>>().join(", ");
+            match objects.len() {
+                0 => format!("{place}: {text}"),
+                1 => format!("{place}: object {named}: {text}"),
+                2..=MOST_NAMED => format!("{place}: objects {named}: {text}"),
+                count => {
+                    let more = count - MOST_NAMED;
+                    format!("{place}: objects {named} and {more} more: {text}")
+                }
+            }
+        });
+        lines.collect()
+    }
+}
+
+impl ObjectNotes<'_, '_, '_> {
+    /// Adds a note on the object, once.
+    pub fn add(&mut self, text: &str) {
+        let id = self.object.attribute("id").unwrap_or_default().to_owned();
+        let list = &mut self.notes.list;
+        match list.iter_mut().find(|note| note.text == text) {
+            Some(note) if note.objects.contains(&id) => {}
+            Some(note) => note.objects.push(id),
+            None => list.push(Note {
+                place: self.object.place_text(),
+                text: text.to_owned(),
+                objects: vec![id],
+            }),
+        }
+    }
+}
