@@ -58,6 +58,7 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
                 "instanced": json::count(census.other_solids_instanced),
             },
             "skipped_rows": scene.skipped_rows,
+            "notes": scene.notes,
             "bounds": { "lower": lower.to_array(), "upper": upper.to_array() },
             "memory_estimate": {
                 "records_bytes": estimate.records_bytes,
@@ -93,6 +94,9 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
         );
     }
     text += &text::skipped_rows(scene.skipped_rows);
+    for note in &scene.notes {
+        text += &format!("note: {note}\n");
+    }
     text += &format!("bounds: {} to {}\n", text::point(lower), text::point(upper));
     text += &format!(
         "memory, estimated: {} of records, {} in Embree, {} at most while it builds\n",

@@ -52,6 +52,7 @@ impl Scene {
             sky: None,
             background: BACKGROUND,
             skipped_rows: 0,
+            notes: Vec::new(),
         }
     }
 }

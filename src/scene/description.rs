@@ -29,6 +29,8 @@ pub struct Scene {
     pub background: DVec3,
     /// Rows of tables left out because `degenerate = "skip"` was asked for.
     pub skipped_rows: u64,
+    /// What a user may want to know of the files, such as columns that nobody reads.
+    pub notes: Vec<String>,
 }
 
 impl Scene {
