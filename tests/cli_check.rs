@@ -262,14 +262,14 @@ fn bad_tables_of_hits_are_refused_with_file_and_line() {
     let folder = folder(2);
     for (text, expected) in [
         ("hit,t\n0,\n", "told.csv: there are 1 rows for 2 rays"),
-        ("hit\n0\n0\n", "column \"t\" is missing"),
+        ("hit\n0\n0\n", "told.csv:1: the table has no column \"t\""),
         (
             "hit,t\n0,\n2,1\n",
             "told.csv:3: column \"hit\": \"2\" must be 0 or 1",
         ),
         (
             "hit,t\n1,far\n0,\n",
-            "told.csv:2: column \"t\": \"far\" must be a finite number",
+            "told.csv:2: column \"t\": \"far\" is not a number",
         ),
         (
             "ray,hit,t\n0,0,\n0,0,\n",
@@ -277,7 +277,7 @@ fn bad_tables_of_hits_are_refused_with_file_and_line() {
         ),
         (
             "hit,t\n0,\n0\n",
-            "told.csv:3: the row has 1 cells where the header has 2",
+            "told.csv:3: the row has 1 cells, the header has 2",
         ),
     ] {
         fs::write(folder.path().join("told.csv"), text).unwrap();

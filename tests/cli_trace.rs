@@ -164,15 +164,11 @@ fn bad_ray_rows_refused_by_place_and_value_and_nothing_written() {
         ("# only a comment\n".into(), &["rays.csv", "no header"]),
         (
             "ox,oy,oz,dx,dy\n".into(),
-            &["rays.csv:1", "\"dz\" is missing"],
-        ),
-        (
-            format!("{header},colour\n"),
-            &["rays.csv:1", "\"colour\"", ranged],
+            &["rays.csv:1", "no column \"dz\""],
         ),
         (
             format!("\n{header},ox\n"),
-            &["rays.csv:2", "\"ox\" stands twice"],
+            &["rays.csv:2", "more than one column \"ox\""],
         ),
         (
             format!("{header}\n1,2,3,4,5,6\n1,2,3,4,x,6\n"),
@@ -180,7 +176,7 @@ fn bad_ray_rows_refused_by_place_and_value_and_nothing_written() {
         ),
         (
             format!("{header}\n# a\n\n1,2,,4,5,6\n"),
-            &["rays.csv:4", "\"oz\"", "\"\""],
+            &["rays.csv:4", "\"oz\"", "the cell is empty"],
         ),
         (
             format!("{header}\n1,nan,3,4,5,6\n"),
@@ -215,8 +211,8 @@ fn bad_ray_rows_refused_by_place_and_value_and_nothing_written() {
             &["rays.csv:2", "t_min", "2.0", "1.0"],
         ),
         (
-            format!("{header}\n{}\n", "9".repeat(1_000_000)),
-            &["rays.csv:2", "\"ox\"", "…"],
+            format!("{header}\n{},2,3,4,5,6\n", "9".repeat(1_000_000)),
+            &["rays.csv:2", "\"ox\"", "...", "1000000 bytes"],
         ),
     ] {
         let start: String = rays.chars().take(80).collect();

@@ -187,7 +187,7 @@ fn neurons_lattices_and_compositions_are_counted_before_loading_as_they_are() {
     let scene = Arc::new(file.load().expect("a scene"));
     assert_eq!(before, scene.contents());
 
-    // Of the lattice: two cylinders and a cone, three balls of different sizes at the ends
+    // Each neuron has a ball for its soma. Of the lattice: two cylinders and a cone, three balls of different sizes at the ends
     // of the first two beams, two halves; and in the second object a cylinder.
     let [prototype] = &scene.prototypes[..] else {
         panic!("one prototype");
@@ -197,7 +197,7 @@ fn neurons_lattices_and_compositions_are_counted_before_loading_as_they_are() {
     assert_eq!((solids.cones.len(), solids.rounded_cones.len()), (2 + 3, 2));
     assert_eq!(
         (solids.spheres.len(), solids.compositions.len()),
-        (1 + 3 * 3, 2 + 3 * 2)
+        (1 + 3 + 3 * 3, 2 + 3 * 2)
     );
 
     let estimate = MemoryEstimate::of(&before, Layout::Single, None);

@@ -216,7 +216,11 @@ fn set_operations_hold_every_closed_kind() {
 
 #[test]
 fn neurons_have_cylinders_or_cones_or_rounded_cones() {
-    let of = |keys: &str| root(&format!("[[swc]]\nfile = \"neuron.swc\"\n{keys}"));
+    let of = |keys: &str| {
+        root(&format!(
+            "[[swc]]\nfile = \"neuron.swc\"\nsoma = \"none\"\n{keys}"
+        ))
+    };
     let steps = of("degenerate = \"skip\"\ncaps = \"p0\"\n");
     let numbers: Vec<_> = steps.cylinders.iter().map(|one| one.primitive()).collect();
     assert_eq!(numbers, [0]);

@@ -8,8 +8,8 @@ use cyltrace::cases::{AnyFamily, Family, Inputs};
 use cyltrace::check::{Class, Replay};
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{
-    Film, GREATEST_CASES, GREATEST_PIXELS, GREATEST_RAYS, GREATEST_SAMPLES, GREATEST_THREADS,
-    Integrator,
+    Decimal, Delimiter, Film, GREATEST_CASES, GREATEST_PIXELS, GREATEST_RAYS, GREATEST_SAMPLES,
+    GREATEST_THREADS, Integrator, TableFormat,
 };
 use cyltrace::solid::tessellation::{GREATEST_SEGMENTS, LEAST_SEGMENTS};
 
@@ -112,6 +112,8 @@ pub struct TraceArguments {
     pub scene: PathBuf,
     #[command(flatten)]
     pub table: TraceTable,
+    #[command(flatten)]
+    pub format: FormatArguments,
     /// CSV of hits, one row a ray, in order; with --points of the solids that hold
     /// each point, one row a solid. `-` is standard output
     #[arg(long, short, value_name = "FILE")]
@@ -136,6 +138,33 @@ pub struct TraceTable {
     /// CSV with the columns x,y,z; `-` is standard input
     #[arg(long, value_name = "FILE")]
     pub points: Option<PathBuf>,
+}
+
+/// How the tables on the command line are written.
+#[derive(Args, Clone, Debug)]
+pub struct FormatArguments {
+    /// What separates the cells of tables: comma, semicolon, tab or blanks
+    /// [default: what their first lines show]
+    #[arg(long, value_name = "NAME")]
+    pub delimiter: Option<Delimiter>,
+    /// What precedes the decimals of numbers in tables: point or comma
+    /// [default: point]
+    #[arg(long, value_name = "NAME")]
+    pub decimal: Option<Decimal>,
+    /// The columns of rays or points by their numbers, from 0, in the order in which
+    /// the names are listed above: for a table without a header
+    #[arg(long, value_name = "N,N", value_delimiter = ',')]
+    pub columns: Vec<u64>,
+}
+
+impl FormatArguments {
+    /// What is stated.
+    pub fn format(&self) -> TableFormat {
+        TableFormat {
+            delimiter: self.delimiter,
+            decimal: self.decimal.unwrap_or_default(),
+        }
+    }
 }
 
 /// Say what a scene holds, without tracing it
@@ -240,6 +269,8 @@ pub struct CheckArguments {
     /// the columns hit and t, one row a ray
     #[arg(long, value_name = "FILE", conflicts_with = "mesh")]
     pub hits: Option<PathBuf>,
+    #[command(flatten)]
+    pub format: FormatArguments,
     /// What --hits may be off, relative to the distances of a ray [default:
     /// 16 / 2^24, which suits f32]
     #[arg(long, value_name = "X", value_parser = parse_length, requires = "hits")]

@@ -106,21 +106,25 @@ impl Limit {
         AllocationLimit::new(self.bytes.unwrap_or(u64::MAX), refusal)
     }
 
-    /// Refuses a scene that needs more.
+    /// Refuses a scene that needs more, to read its files or for what becomes of them;
+    /// else says how much is left, where there is a limit.
     pub fn check(
         self,
         path: &Path,
         contents: &[Contents],
+        reading_bytes: u64,
         need: Need,
         max_isa: Option<MaxIsa>,
-    ) -> anyhow::Result<()> {
+    ) -> anyhow::Result<Option<u64>> {
         let estimate = MemoryEstimate::of(contents, self.layout, max_isa);
         let needed = match need {
             Need::Records => estimate.records_bytes,
             Need::Build => estimate.peak_bytes(),
         };
-        let Some(allowed) = self.bytes.filter(|&allowed| needed > allowed) else {
-            return Ok(());
+        let needed = needed.max(estimate.records_bytes.saturating_add(reading_bytes));
+        let left = self.bytes.map(|allowed| allowed.checked_sub(needed));
+        let (Some(allowed), Some(None)) = (self.bytes, left) else {
+            return Ok(left.flatten());
         };
         Err(anyhow!(
             "{}: the scene needs up to {} of memory, {}\n{}",

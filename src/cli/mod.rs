@@ -14,7 +14,6 @@ mod interrupt;
 mod json;
 mod limit;
 mod memory;
-mod number_table;
 mod outputs;
 mod print;
 mod progress;

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::io::{self, Write};
 
+use super::arguments::Common;
+
 /// Standard output cannot be written to.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot write to standard output: {0}")]
@@ -23,6 +25,13 @@ pub fn print(text: &str) -> anyhow::Result<()> {
     written
         .and_then(|()| output.flush())
         .map_err(|error| StandardOutputError::of(&error).into())
+}
+
+/// Writes something worth knowing to standard error, unless the command is quiet.
+pub fn note(common: &Common, note: &str) {
+    if !common.quiet {
+        let _ = writeln!(io::stderr(), "note: {note}");
+    }
 }
 
 /// Writes a message to standard error, where it still has a reader.

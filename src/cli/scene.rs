@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::anyhow;
+use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{Scene, SceneFile};
 use cyltrace::tracer::{Options, Tracer};
 use rayon::ThreadPool;
@@ -26,15 +27,29 @@ pub fn load(common: &Common, file: SceneFile, need: Need, limit: Limit) -> anyho
     let workers = workers(common)?;
     let spinner = progress::spinner(common, "loading the scene");
     let reading = limit.while_reading(file.path());
-    let scene = limit
-        .check(file.path(), &file.contents(), need, common.max_isa)
-        .and_then(|()| {
-            let scene = workers.install(|| file.load());
-            scene.map_err(|error| anyhow!("{error}"))
-        });
+    let scene = within(file, &workers, need, limit, common.max_isa);
     drop(reading);
     spinner.finish_and_clear();
     scene
+}
+
+/// Loads within a limit: by what could be counted ahead, then by what has come, as
+/// through pipes.
+fn within(
+    file: SceneFile,
+    workers: &ThreadPool,
+    need: Need,
+    limit: Limit,
+    max_isa: Option<MaxIsa>,
+) -> anyhow::Result<Scene> {
+    let path = file.path().to_owned();
+    let reading = file.reading_bytes();
+    let left = limit.check(&path, &file.contents(), reading, need, max_isa)?;
+    let scene = workers.install(|| file.load_within(left));
+    let scene = scene.map_err(|error| anyhow!("{error}"))?;
+    let contents = workers.install(|| scene.contents());
+    limit.check(&path, &contents, 0, need, max_isa)?;
+    Ok(scene)
 }
 
 /// Makes ready what is traced.

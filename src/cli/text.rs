@@ -73,8 +73,9 @@ pub fn count(count: u128) -> String {
 }
 
 /// A line for each note on the files of a scene.
-pub fn notes(notes: &[String]) -> String {
-    notes.iter().map(|note| format!("note: {note}\n")).collect()
+pub fn notes<'n>(notes: impl IntoIterator<Item = &'n String>) -> String {
+    let notes = notes.into_iter();
+    notes.map(|note| format!("note: {note}\n")).collect()
 }
 
 #[cfg(test)]

@@ -8,19 +8,21 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
+use anyhow::anyhow;
 use cyltrace::math::Ray;
+use cyltrace::scene::{NumberRow, NumberTable, SceneError};
 use cyltrace::tracer::{DEFAULT_BATCH, Hit, Options, Tracer};
 use glam::DVec3;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use super::arguments::TraceArguments;
+use super::arguments::{FormatArguments, TraceArguments};
 use super::interrupt::Interrupted;
 use super::limit::{Limit, Need};
-use super::number_table::{Block, NumberTable, Row};
 use super::outputs::Files;
+use super::print::{self, print};
 use super::target::{Target, is_standard_stream};
-use super::{hit_table, interrupt, json, number_table, print, progress, scene, text};
+use super::{hit_table, interrupt, json, progress, scene, text};
 
 /// Blocks that a thread gets of each batch: enough to even out slow ones.
 const BLOCKS_PER_THREAD: usize = 4;
@@ -61,6 +63,8 @@ struct Traced {
     build: f64,
     trace: f64,
     threads: usize,
+    /// What is not read of the table.
+    note: Option<String>,
 }
 
 /// Traces what is asked for.
@@ -154,7 +158,7 @@ fn locate_points(arguments: &TraceArguments, path: &Path) -> anyhow::Result<()> 
     )
 }
 
-impl<R: Row + Sync> Task<'_, R> {
+impl<R: NumberRow + Sync> Task<'_, R> {
     /// Reads the table, asks and writes the answers.
     fn run(&self, arguments: &TraceArguments) -> anyhow::Result<Traced> {
         let common = &arguments.common;
@@ -179,7 +183,7 @@ impl<R: Row + Sync> Task<'_, R> {
         let rereadable =
             !is_standard_stream(self.path) && self.path.metadata().is_ok_and(|file| file.is_file());
         let rows = if rereadable {
-            Some(workers.install(|| self.count_rows())?)
+            Some(workers.install(|| self.count_rows(&arguments.format))?)
         } else {
             None
         };
@@ -206,20 +210,23 @@ impl<R: Row + Sync> Task<'_, R> {
         target.write_all(self.header.as_bytes())?;
         let mut totals = Totals::default();
         let traced = workers.install(|| {
-            for_each_batch(self.path, |blocks| {
+            for_each_batch(self.path, &arguments.format, |blocks| {
                 let before = totals.asked;
                 self.batch(&tracer, &blocks, &mut totals, &mut target)?;
                 bar.inc(totals.asked - before);
                 Ok(())
             })
         });
-        traced.map_err(|error| match error.downcast_ref::<Interrupted>() {
+        let note = traced.map_err(|error| match error.downcast_ref::<Interrupted>() {
             Some(_) if target.shows_parts() => Interrupted::PartWritten.into(),
             _ => error,
         })?;
         target.finish()?;
         let trace = start.elapsed().as_secs_f64();
         bar.finish_and_clear();
+        if let Some(note) = &note {
+            print::note(common, note);
+        }
         Ok(Traced {
             tracer,
             items: self.items,
@@ -229,13 +236,14 @@ impl<R: Row + Sync> Task<'_, R> {
             build,
             trace,
             threads,
+            note,
         })
     }
 
     /// The number of rows in the table, all of them good.
-    fn count_rows(&self) -> anyhow::Result<u64> {
+    fn count_rows(&self, format: &FormatArguments) -> anyhow::Result<u64> {
         let mut count = 0;
-        for_each_batch(self.path, |blocks: Vec<Vec<R>>| {
+        for_each_batch(self.path, format, |blocks: Vec<Vec<R>>| {
             count += blocks.iter().map(|rows| rows.len() as u64).sum::<u64>();
             Ok(())
         })?;
@@ -294,7 +302,9 @@ impl Traced {
     fn tell(&self, arguments: &TraceArguments, own: Value, came_to: &str) -> anyhow::Result<()> {
         let common = &arguments.common;
         let statistics = &self.tracer.statistics();
-        let skipped_rows = self.tracer.scene().skipped_rows;
+        let scene = self.tracer.scene();
+        let skipped_rows = scene.skipped_rows;
+        let notes: Vec<&String> = scene.notes.iter().chain(&self.note).collect();
         let mut figures = json!({
             "scene": arguments.scene,
             "output": arguments.output,
@@ -308,7 +318,7 @@ impl Traced {
             "memory": json::memory(statistics),
             "skipped": statistics.skipped,
             "skipped_rows": skipped_rows,
-            "notes": self.tracer.scene().notes,
+            "notes": notes,
             "embree": statistics.embree_version,
             "isa": statistics.isa,
             "threads": self.threads,
@@ -322,7 +332,7 @@ impl Traced {
         }
         let mut text = format!("{}: {came_to}\n", arguments.output.display());
         text += &text::skipped_rows(skipped_rows);
-        text += &text::notes(&self.tracer.scene().notes);
+        text += &text::notes(notes);
         text += &format!(
             "time: check {:.2} s, load {:.2} s, build {:.2} s, trace {:.2} s on {} threads ({:.2} million {} a second, tables included)\n",
             self.check,
@@ -338,30 +348,33 @@ impl Traced {
 }
 
 /// Reads a table in the rayon pool that this is called in, and hands on the
-/// rows of some blocks at a time, in order.
-pub fn for_each_batch<R: Row>(
+/// rows of some blocks at a time, in order. Says what is not read of it.
+pub fn for_each_batch<R: NumberRow>(
     path: &Path,
+    format: &FormatArguments,
     mut action: impl FnMut(Vec<Vec<R>>) -> anyhow::Result<()>,
-) -> anyhow::Result<()> {
-    let mut table = NumberTable::<R>::open(path)?;
+) -> anyhow::Result<Option<String>> {
+    // The error's text is the whole message; its source would repeat a part.
+    let refused = |error: SceneError| anyhow!("{error}");
+    let table = NumberTable::<R>::open(path, format.format(), &format.columns);
+    let mut table = table.map_err(refused)?;
     let columns = table.columns();
     loop {
         interrupt::check()?;
         let mut blocks = Vec::new();
         while blocks.len() < BLOCKS_PER_THREAD * rayon::current_num_threads() {
-            let Some(block) = table.next_block()? else {
+            let Some(block) = table.next_block().map_err(refused)? else {
                 break;
             };
             blocks.push(block);
         }
         if blocks.is_empty() {
-            return Ok(());
+            return Ok(columns.unread());
         }
-        let name = number_table::name(path);
-        let parse = |block: &Block| NumberTable::rows(&name, &columns, block);
         // Collected first, then searched for an error, so that the first bad
         // row is the one that is reported.
-        let parsed: Vec<_> = blocks.par_iter().map(parse).collect();
-        action(parsed.into_iter().collect::<anyhow::Result<_>>()?)?;
+        let parsed: Vec<_> = blocks.par_iter().map(|block| columns.rows(block)).collect();
+        let parsed: Result<_, _> = parsed.into_iter().collect();
+        action(parsed.map_err(refused)?)?;
     }
 }

@@ -3,12 +3,13 @@
 use glam::DVec3;
 use toml::Spanned;
 
-use super::document::ThreeNames;
+use super::description::CylinderRecord;
 use super::error::SceneError;
 use super::gathered::{Degenerate, Gathered, Look, SKIP_HELP, is_degenerate};
+use super::named_table::{NamedTable, TableKeys, Tables, keys_of};
 use super::solid_keys::{CylinderColumns, CylinderTableKeys};
 use super::source::Source;
-use super::table::{Column, Table};
+use super::table::{Column, ColumnKey, Fault, Row};
 use super::values::Keys;
 use crate::math::unit;
 use crate::solid::{Caps, Cylinder, CylinderError};
@@ -16,30 +17,32 @@ use crate::solid::{Caps, Cylinder, CylinderError};
 /// Adds the rows of a `[[cylinder_table]]`.
 pub(super) fn add_table(
     solids: &mut Gathered,
-    source: &Source,
+    tables: &Tables,
     keys: &CylinderTableKeys,
     look: Look,
     degenerate: Degenerate,
 ) -> Result<(), SceneError> {
-    let mut table = Table::open(source, &keys.file)?;
-    let layout = Layout::new(source, &table, &keys.columns)?;
+    let source = tables.source;
+    let table = TableKeys {
+        file: &keys.file,
+        delimiter: keys.delimiter.as_ref(),
+        decimal: keys.decimal.as_ref(),
+    };
+    let columns = &keys.columns;
+    let mut table = tables.open(table, &columns.get_ref().0.all())?;
+    let layout = Layout::new(source, &table, columns)?;
+    table.note_unread(&layout.all());
     let before = solids.numbers();
     solids.records.reserve(table.most_rows());
-    while table.next_row()? {
-        match layout.cylinder(&table, look.caps)? {
+    while let Some(row) = table.next_row(size_of::<CylinderRecord>())? {
+        match layout.cylinder(&row, look.caps) {
             Ok(cylinder) => solids.push(&cylinder, look.material),
-            Err(fault) if degenerate == Degenerate::Error => {
-                return Err(table.row_error_with_help(
-                    fault.column,
-                    fault.message,
-                    Some(SKIP_HELP),
-                ));
-            }
-            Err(_) => solids.skip(),
+            Err(Fault::Degenerate { .. }) if degenerate == Degenerate::Skip => solids.skip(),
+            Err(fault) => return Err(row.refused_with_help(fault, Some(SKIP_HELP))),
         }
         .map_err(|refusal| {
             refusal.in_row(source, &keys.file, |message, help| {
-                table.row_error_with_help(None, message, help)
+                row.error_with_help(None, message, help)
             })
         })?;
     }
@@ -49,7 +52,17 @@ pub(super) fn add_table(
     Ok(())
 }
 
-/// Where a cylinder's numbers stand in a row.
+impl CylinderColumns {
+    /// All columns that are stated.
+    fn all(&self) -> Vec<ColumnKey> {
+        let threes = [Some(&self.p0), self.p1.as_ref(), self.axis.as_ref()];
+        let threes = threes.into_iter().flatten().flat_map(|three| &three.0);
+        let ones = [&self.length, &self.radius, &self.diameter];
+        keys_of(threes.chain(ones.into_iter().flatten()))
+    }
+}
+
+/// Where a cylinder's numbers are in a row.
 struct Layout {
     p0: [Column; 3],
     end: End,
@@ -64,26 +77,20 @@ enum End {
     Along { axis: [Column; 3], length: Column },
 }
 
-/// Why a row is degenerate.
-struct Fault {
-    column: Option<Column>,
-    message: String,
-}
-
 impl Layout {
     fn new(
         source: &Source,
-        table: &Table,
+        table: &NamedTable,
         columns: &Spanned<Keys<CylinderColumns>>,
     ) -> Result<Self, SceneError> {
         let names = &columns.get_ref().0;
         let wrong = |message: &str| Err(source.error(columns.span(), message));
-        let p0 = three(source, table, &names.p0)?;
+        let p0 = table.three(&names.p0)?;
         let end = match (&names.p1, &names.axis, &names.length) {
-            (Some(p1), None, None) => End::Point(three(source, table, p1)?),
+            (Some(p1), None, None) => End::Point(table.three(p1)?),
             (None, Some(axis), Some(length)) => End::Along {
-                axis: three(source, table, axis)?,
-                length: table.column(source, length)?,
+                axis: table.three(axis)?,
+                length: table.column(length)?,
             },
             _ => return wrong("columns must name either p1, or both axis and length"),
         };
@@ -96,66 +103,56 @@ impl Layout {
         Ok(Self {
             p0,
             end,
-            radius: table.column(source, radius)?,
+            radius: table.column(radius)?,
             factor,
         })
     }
 
-    /// The cylinder of the current row, or why there is none.
-    fn cylinder(&self, table: &Table, caps: Caps) -> Result<Result<Cylinder, Fault>, SceneError> {
-        let p0 = DVec3::from(table.numbers(self.p0)?);
-        let radius = table.number(self.radius)? * self.factor;
-        let p1 = match &self.end {
-            End::Point(columns) => DVec3::from(table.numbers(*columns)?),
+    /// All columns that are read.
+    fn all(&self) -> Vec<Column> {
+        let mut all = self.p0.to_vec();
+        match self.end {
+            End::Point(p1) => all.extend(p1),
             End::Along { axis, length } => {
-                let distance = table.number(*length)?;
+                all.extend(axis);
+                all.push(length);
+            }
+        }
+        all.push(self.radius);
+        all
+    }
+
+    /// The cylinder of a row.
+    fn cylinder(&self, row: &Row, caps: Caps) -> Result<Cylinder, Fault> {
+        let p0 = DVec3::from(row.numbers(self.p0)?);
+        let radius = row.number(self.radius)? * self.factor;
+        let p1 = match &self.end {
+            End::Point(columns) => DVec3::from(row.numbers(*columns)?),
+            End::Along { axis, length } => {
+                let distance = row.number(*length)?;
                 if distance < 0.0 {
-                    return Err(table.row_error(
-                        Some(*length),
-                        format!("length is {distance}: it must be a positive number"),
-                    ));
+                    let message = format!("length is {distance}: it must be a positive number");
+                    return Err(row.error(Some(*length), message).into());
                 }
-                match unit(DVec3::from(table.numbers(*axis)?)) {
-                    Some(direction) => p0 + direction * distance,
-                    None => {
-                        return Ok(Err(Fault {
-                            column: Some(axis[0]),
-                            message: "the axis is zero: it has no direction".to_owned(),
-                        }));
-                    }
-                }
+                let direction = unit(DVec3::from(row.numbers(*axis)?));
+                let direction = direction.ok_or_else(|| Fault::Degenerate {
+                    column: Some(axis[0]),
+                    message: "the axis is zero: it has no direction".to_owned(),
+                })?;
+                p0 + direction * distance
             }
         };
-        Cylinder::new(p0, p1, radius, caps)
-            .map(Ok)
-            .or_else(|error| {
-                let column = match (error, &self.end) {
-                    (CylinderError::Radius { .. }, _) => Some(self.radius),
-                    (CylinderError::Length { .. }, End::Along { length, .. }) => Some(*length),
-                    _ => None,
-                };
-                if is_degenerate(&error) {
-                    Ok(Err(Fault {
-                        column,
-                        message: error.to_string(),
-                    }))
-                } else {
-                    Err(table.row_error(column, error.to_string()))
-                }
-            })
+        Cylinder::new(p0, p1, radius, caps).map_err(|error| {
+            let column = match (error, &self.end) {
+                (CylinderError::Radius { .. }, _) => Some(self.radius),
+                (CylinderError::Length { .. }, End::Along { length, .. }) => Some(*length),
+                _ => None,
+            };
+            let message = error.to_string();
+            match is_degenerate(&error) {
+                true => Fault::Degenerate { column, message },
+                false => row.error(column, message).into(),
+            }
+        })
     }
-}
-
-/// The columns of a point or a vector.
-pub(super) fn three(
-    source: &Source,
-    table: &Table,
-    names: &ThreeNames,
-) -> Result<[Column; 3], SceneError> {
-    let [x, y, z] = &names.0;
-    Ok([
-        table.column(source, x)?,
-        table.column(source, y)?,
-        table.column(source, z)?,
-    ])
 }

@@ -9,12 +9,13 @@ use super::solid_keys::{
     BeamLatticeKeys, CompositionKeys, ConeKeys, CuboidKeys, CylinderKeys, CylinderTableKeys,
     DiskKeys, RotationKeys, RoundedConeKeys, SphereKeys, SwcKeys,
 };
-use super::values::{Keys, List, NameOrList, Number, NumberOrList, Whole};
+use super::table::ColumnKey;
+use super::values::{ColumnOrList, Keys, List, Number, NumberOrList, Whole};
 
 /// Three numbers and their place.
 pub(super) type Triple = Spanned<List<Number, 3>>;
-/// The names of three columns, each with its place.
-pub(super) type ThreeNames = List<Spanned<String>, 3>;
+/// Three columns, each with its place.
+pub(super) type ThreeColumns = List<Spanned<ColumnKey>, 3>;
 
 /// Declares the tables that hold solids and placements, each with the lists of
 /// those behind its own keys, because serde cannot refuse unknown keys in a flattened
@@ -186,17 +187,19 @@ pub(super) struct InstanceTableKeys {
     pub of: Spanned<String>,
     pub file: Spanned<String>,
     pub columns: Spanned<Keys<InstanceColumns>>,
+    pub delimiter: Option<Spanned<String>>,
+    pub decimal: Option<Spanned<String>>,
 }
 
 /// `columns` of `[[instance_table]]`
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct InstanceColumns {
-    pub position: ThreeNames,
-    pub axis: Option<ThreeNames>,
-    pub degrees: Option<Spanned<String>>,
-    pub quaternion: Option<List<Spanned<String>, 4>>,
-    pub scale: Option<Spanned<NameOrList<3>>>,
+    pub position: ThreeColumns,
+    pub axis: Option<ThreeColumns>,
+    pub degrees: Option<Spanned<ColumnKey>>,
+    pub quaternion: Option<List<Spanned<ColumnKey>, 4>>,
+    pub scale: Option<Spanned<ColumnOrList<3>>>,
 }
 
 /// `[[scatter]]`

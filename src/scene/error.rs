@@ -3,7 +3,7 @@
 
 use std::fmt;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
@@ -59,6 +59,19 @@ pub enum SceneError {
         /// What to do about it.
         help: Option<String>,
     },
+}
+
+impl SceneError {
+    /// That `message` is true of a row of a table.
+    pub(super) fn row(path: &Path, line: u64, message: impl Into<String>) -> Self {
+        Self::Row {
+            path: path.to_owned(),
+            line,
+            column: None,
+            message: message.into(),
+            help: None,
+        }
+    }
 }
 
 /// A wrong place in a scene file.

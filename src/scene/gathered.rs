@@ -180,6 +180,11 @@ impl Gathered {
     /// Leaves a row out; it keeps its primitive number.
     pub fn skip(&mut self) -> Result<(), Refusal> {
         self.skipped += 1;
+        self.leave_free()
+    }
+
+    /// Leaves the next primitive number free.
+    pub fn leave_free(&mut self) -> Result<(), Refusal> {
         self.number().map(drop)
     }
 }

@@ -84,3 +84,18 @@ pub(super) const MOST_NAMESPACES: usize = 256;
 /// Most places of the objects of a 3MF file, 2^20: components of components may otherwise be
 /// as many as a file states.
 pub(super) const MOST_PLACES: usize = 1 << 20;
+/// Most bytes of a table or a neuron, 2^40: enough for 10^10 rows.
+pub const GREATEST_TABLE_BYTES: u64 = 1 << 40;
+
+/// Most bytes of a row of a table or a neuron, 2^24. A row is read as a whole, so
+/// that this is what a line without an end takes before it is refused.
+pub const LONGEST_LINE: usize = 1 << 24;
+
+/// Most cells of a row, 2^14: as many columns as a sheet of Excel has.
+pub const MOST_COLUMNS: usize = 1 << 14;
+
+/// Most bytes of a cell that holds a number, 2^16.
+pub const LONGEST_NUMBER: usize = 1 << 16;
+
+/// How long a named pipe may be without a program that writes to it.
+pub const PIPE_PATIENCE: std::time::Duration = std::time::Duration::from_secs(5);

@@ -13,21 +13,25 @@ pub(super) fn lines(path: &Path) -> io::Result<u64> {
     }
     let mut file = File::open(path)?;
     let mut bytes = vec![0; 1 << 16];
-    let mut ends = 0_u64;
+    let (mut feeds, mut returns) = (0_u64, 0_u64);
     loop {
         match file.read(&mut bytes) {
-            Ok(0) => return Ok(ends + 1),
-            Ok(read) => ends += line_ends(&bytes[..read]),
+            // Lines end with LF, CR LF or CR.
+            Ok(0) => return Ok(feeds.max(returns) + 1),
+            Ok(read) => {
+                feeds += count(&bytes[..read], b'\n');
+                returns += count(&bytes[..read], b'\r');
+            }
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
             Err(error) => return Err(error),
         }
     }
 }
 
-/// The line ends in some bytes, in shares that a byte can count: so it is as
+/// How often a byte is among others, in shares that a byte can count: so it is as
 /// fast as memory is.
-fn line_ends(bytes: &[u8]) -> u64 {
-    let in_share = |share: &[u8]| -> u8 { share.iter().map(|&byte| u8::from(byte == b'\n')).sum() };
+fn count(bytes: &[u8], one: u8) -> u64 {
+    let in_share = |share: &[u8]| -> u8 { share.iter().map(|&byte| u8::from(byte == one)).sum() };
     bytes
         .chunks(128)
         .map(|share| u64::from(in_share(share)))

@@ -15,6 +15,7 @@ use super::document::{Body, Document, PrototypeKeys, ScatterKeys};
 use super::error::SceneError;
 use super::gathered::{Degenerate, Gathered, Look, Refusal};
 use super::graph::{self, Node};
+use super::named_table::Tables;
 use super::names::{quoted, suggestion};
 use super::placing::{Edge, Placements};
 use super::scatter::{Pattern, Scatter};
@@ -24,7 +25,7 @@ use super::settings::{Materials, check_names, film, lights, render};
 use super::solid_keys::{BeamLatticeKeys, CompositionKeys, SolidTable};
 use super::solids::{SolidKeys, caps};
 use super::source::Source;
-use super::swc::{add_swc, joints};
+use super::swc::{Shape, add_swc};
 use super::transform::GREATEST_ENTRY;
 use super::values::{Keys, NumberOrList};
 
@@ -42,11 +43,17 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
 }
 
 /// From the keys of a scene file to the scene.
-pub(super) fn lower(source: &Source, document: Document) -> Result<Scene, SceneError> {
+pub(super) fn lower(
+    source: &Source,
+    document: Document,
+    memory: Option<u64>,
+) -> Result<Scene, SceneError> {
+    let tables = Tables::new(source, memory);
     let materials = Materials::new(source, &document.material)?;
     let index = prototype_index(source, &document.prototype)?;
     let loader = Loader {
         source,
+        tables: &tables,
         records: records(source, document.records.as_ref())?,
         materials: &materials,
         prototypes: &index,
@@ -64,6 +71,11 @@ pub(super) fn lower(source: &Source, document: Document) -> Result<Scene, SceneE
         sky.as_ref(),
         document.background.as_ref(),
     )?;
+    let notes = bodies
+        .iter()
+        .flat_map(|body| body.notes.clone())
+        .collect::<Vec<_>>();
+    let notes = notes.into_iter();
     Ok(Scene {
         camera: camera(source, &keys(document.camera))?,
         film: film(source, &keys(document.film))?,
@@ -72,7 +84,7 @@ pub(super) fn lower(source: &Source, document: Document) -> Result<Scene, SceneE
         sky: lights.sky,
         background: lights.background,
         skipped_rows: bodies.iter().map(|body| body.skipped).sum(),
-        notes: bodies.iter().flat_map(|body| body.notes.clone()).collect(),
+        notes: notes.chain(tables.into_notes()).collect(),
         prototypes: bodies.into_iter().map(|body| body.prototype).collect(),
         materials: materials.list,
     })
@@ -113,6 +125,7 @@ fn prototype_index(
 /// What every entry of a prototype may refer to.
 struct Loader<'a> {
     source: &'a Source,
+    tables: &'a Tables<'a>,
     records: Records,
     materials: &'a Materials,
     prototypes: &'a HashMap<String, PrototypeIndex>,
@@ -157,7 +170,7 @@ impl Loader<'_> {
             placements.add_instance(source, keys, self.placed(&keys.of)?)?;
         }
         for Keys(keys) in body.instance_table {
-            placements.add_table(source, keys, self.placed(&keys.of)?)?;
+            placements.add_table(self.tables, keys, self.placed(&keys.of)?)?;
         }
         let scatters = body.scatter.iter().map(|Keys(keys)| {
             let of = self.placed(&keys.of)?;
@@ -191,13 +204,13 @@ impl Loader<'_> {
         for Keys(keys) in body.cylinder_table {
             let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
             let degenerate = self.degenerate(keys.degenerate.as_ref())?;
-            add_table(&mut solids, source, keys, look, degenerate)?;
+            add_table(&mut solids, self.tables, keys, look, degenerate)?;
         }
         for Keys(keys) in body.swc {
             let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
             let degenerate = self.degenerate(keys.degenerate.as_ref())?;
-            let joints = joints(source, keys)?;
-            add_swc(&mut solids, source, keys, look, joints, degenerate)?;
+            let shape = Shape::new(source, keys)?;
+            add_swc(&mut solids, self.tables, keys, look, shape, degenerate)?;
         }
         for Keys(keys) in body.beam_lattice {
             let lattice = self.beam_lattice(keys)?;

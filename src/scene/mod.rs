@@ -4,13 +4,17 @@
 //! `document` holds the keys as they stand there, with their places; the
 //! entries are lowered one kind a file (`solids`, with their `pose`,
 //! `set_operations`, `cylinder_table`, `swc`, `beam_lattice`, `placing`, `scatter`,
-//! `camera`, `settings`), streaming the rows of `table`s; `gathered` collects the
+//! `camera`, `settings`), streaming the rows of tables, which `table` reads and
+//! `named_table` opens for them; `gathered` collects the
 //! solids of a prototype and numbers them; `graph` checks how prototypes place each
 //! other. `scene_file` knows the file between the two
 //! first steps, and `contents` what it will hold, so that a scene which is too
 //! large is refused early. `cylinder_list` keeps cylinders in f64 or f32,
 //! `solid_lists` the other kinds; `aimed_camera` aims the camera. The result is a [`Scene`] that needs no
 //! further checks and knows nothing of files.
+//!
+//! `number_table` and `hit_table` read what else comes as tables: rays, points, and the
+//! hits of another program.
 
 mod aimed_camera;
 mod beam_lattice;
@@ -25,10 +29,13 @@ mod document;
 mod error;
 mod gathered;
 mod graph;
+mod hit_table;
 mod limits;
 mod lines;
 mod load;
+mod named_table;
 mod names;
+mod number_table;
 mod placing;
 mod pose;
 mod regular_file;
@@ -57,10 +64,16 @@ pub use description::{
     Projection, Prototype, PrototypeIndex, RenderSettings, Scene, Sky, Sun,
 };
 pub use error::{SceneError, Statement};
+pub use hit_table::{GivenHit, GivenHits};
 pub use limits::*;
 pub use load::load;
+pub use number_table::{NumberColumns, NumberRow, NumberTable};
 pub use scene_file::SceneFile;
 pub use solid_lists::{CompositionRecord, Listed, SolidRecord, Solids};
+pub use swc::check_swc;
+pub use table::{
+    Block, Column, ColumnKey, Decimal, Delimiter, Fault, Layout, Row, Rows, Table, TableFormat,
+};
 pub use view_volume::ViewVolume;
 
 pub use crate::solid::Composition;

@@ -7,17 +7,17 @@ use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 use toml::Spanned;
 
-use super::cylinder_table::three;
 use super::description::{Placement, PrototypeIndex};
 use super::document::{InstanceColumns, InstanceKeys, InstanceTableKeys};
 use super::error::SceneError;
+use super::named_table::{NamedTable, TableKeys, Tables, keys_of};
 use super::pose;
 use super::scatter::Scatter;
 use super::settings::vector;
 use super::source::Source;
-use super::table::{Column, Table};
+use super::table::{Column, ColumnKey, Fault, Row};
 use super::transform::{Reach, checked, quaternion_rotation};
-use super::values::{Keys, NameOrList, NumberOrList};
+use super::values::{ColumnOrList, Keys, NumberOrList};
 use crate::math::{rotation, sin_cos_degrees, unit};
 
 /// The placements of one prototype.
@@ -66,20 +66,27 @@ impl Placements {
     /// Adds the rows of an `[[instance_table]]`.
     pub fn add_table(
         &mut self,
-        source: &Source,
+        tables: &Tables,
         keys: &InstanceTableKeys,
         of: PrototypeIndex,
     ) -> Result<(), SceneError> {
-        let mut table = Table::open(source, &keys.file)?;
+        let source = tables.source;
+        let table = TableKeys {
+            file: &keys.file,
+            delimiter: keys.delimiter.as_ref(),
+            decimal: keys.decimal.as_ref(),
+        };
+        let mut table = tables.open(table, &keys.columns.get_ref().0.all())?;
         let layout = Layout::new(source, &table, &keys.columns)?;
+        table.note_unread(&layout.all());
         let mut reach = Reach::default();
         let before = self.list.len();
         // What cannot be had is asked for again, row by row.
         let _ = self.list.try_reserve_exact(table.most_rows());
-        while table.next_row()? {
-            let parent_from_child = layout.placement(&table)?;
-            let row_reach = checked(&parent_from_child)
-                .map_err(|error| table.row_error(None, error.to_string()))?;
+        while let Some(row) = table.next_row(size_of::<Placement>())? {
+            let parent_from_child = layout.placement(&row).map_err(|fault| row.refused(fault))?;
+            let row_reach =
+                checked(&parent_from_child).map_err(|error| row.error(None, error.to_string()))?;
             reach = reach.union(row_reach);
             self.make_room(source, &keys.of, 1)?;
             self.list.push(Placement {
@@ -190,7 +197,23 @@ fn composed(source: &Source, keys: &InstanceKeys) -> Result<DAffine3, SceneError
     Ok(DAffine3::from_mat3_translation(matrix, translation))
 }
 
-/// Where a placement's numbers stand in a row.
+impl InstanceColumns {
+    /// All columns that are stated.
+    fn all(&self) -> Vec<ColumnKey> {
+        let threes = [Some(&self.position), self.axis.as_ref()];
+        let threes = threes.into_iter().flatten().flat_map(|three| &three.0);
+        let four = self.quaternion.iter().flat_map(|four| &four.0);
+        let mut all = keys_of(threes.chain(&self.degrees).chain(four));
+        match self.scale.as_ref().map(Spanned::get_ref) {
+            None => {}
+            Some(ColumnOrList::One(key)) => all.push(key.clone()),
+            Some(ColumnOrList::Many(keys)) => all.extend(keys.iter().cloned()),
+        }
+        all
+    }
+}
+
+/// Where a placement's numbers are in a row.
 struct Layout {
     position: [Column; 3],
     turn: Turn,
@@ -212,24 +235,24 @@ enum Scale {
 impl Layout {
     fn new(
         source: &Source,
-        table: &Table,
+        table: &NamedTable,
         columns: &Spanned<Keys<InstanceColumns>>,
     ) -> Result<Self, SceneError> {
         let names = &columns.get_ref().0;
-        let position = three(source, table, &names.position)?;
+        let position = table.three(&names.position)?;
         let turn = match (&names.axis, &names.degrees, &names.quaternion) {
             (None, None, None) => Turn::None,
             (Some(axis), Some(degrees), None) => Turn::About {
-                axis: three(source, table, axis)?,
-                degrees: table.column(source, degrees)?,
+                axis: table.three(axis)?,
+                degrees: table.column(degrees)?,
             },
             (None, None, Some(quaternion)) => {
                 let [x, y, z, w] = &quaternion.0;
                 Turn::Quaternion([
-                    table.column(source, x)?,
-                    table.column(source, y)?,
-                    table.column(source, z)?,
-                    table.column(source, w)?,
+                    table.column(x)?,
+                    table.column(y)?,
+                    table.column(z)?,
+                    table.column(w)?,
                 ])
             }
             _ => {
@@ -242,14 +265,10 @@ impl Layout {
         let scale = match &names.scale {
             None => Scale::None,
             Some(scale) => {
-                let column = |name: &String| {
-                    table.find(name).map_err(|(message, help)| {
-                        source.error_with_help(scale.span(), message, help)
-                    })
-                };
+                let column = |key| table.column_at(key, scale.span());
                 match scale.get_ref() {
-                    NameOrList::One(name) => Scale::One(column(name)?),
-                    NameOrList::Many([x, y, z]) => {
+                    ColumnOrList::One(key) => Scale::One(column(key)?),
+                    ColumnOrList::Many([x, y, z]) => {
                         Scale::Three([column(x)?, column(y)?, column(z)?])
                     }
                 }
@@ -262,34 +281,53 @@ impl Layout {
         })
     }
 
-    /// The placement of the current row.
-    fn placement(&self, table: &Table) -> Result<DAffine3, SceneError> {
+    /// All columns that are read.
+    fn all(&self) -> Vec<Column> {
+        let mut all = self.position.to_vec();
+        match self.turn {
+            Turn::None => {}
+            Turn::About { axis, degrees } => {
+                all.extend(axis);
+                all.push(degrees);
+            }
+            Turn::Quaternion(columns) => all.extend(columns),
+        }
+        match self.scale {
+            Scale::None => {}
+            Scale::One(column) => all.push(column),
+            Scale::Three(columns) => all.extend(columns),
+        }
+        all
+    }
+
+    /// The placement of a row.
+    fn placement(&self, row: &Row) -> Result<DAffine3, Fault> {
         let scale = match &self.scale {
             Scale::None => DVec3::ONE,
-            Scale::One(column) => DVec3::splat(table.number(*column)?),
-            Scale::Three(columns) => DVec3::from(table.numbers(*columns)?),
+            Scale::One(column) => DVec3::splat(row.number(*column)?),
+            Scale::Three(columns) => DVec3::from(row.numbers(*columns)?),
         };
         let turn = match &self.turn {
             Turn::None => DMat3::IDENTITY,
             Turn::About { axis, degrees } => {
-                let direction = unit(DVec3::from(table.numbers(*axis)?)).ok_or_else(|| {
-                    table.row_error(
+                let direction = unit(DVec3::from(row.numbers(*axis)?)).ok_or_else(|| {
+                    row.error(
                         Some(axis[0]),
                         "the rotation axis is zero: it needs a direction, of any length",
                     )
                 })?;
-                rotation(direction, sin_cos_degrees(table.number(*degrees)?))
+                rotation(direction, sin_cos_degrees(row.number(*degrees)?))
             }
             Turn::Quaternion(columns) => {
-                quaternion_rotation(table.numbers(*columns)?).ok_or_else(|| {
-                    table.row_error(
+                quaternion_rotation(row.numbers(*columns)?).ok_or_else(|| {
+                    row.error(
                         Some(columns[0]),
                         "the quaternion is zero: it needs a direction, of any length",
                     )
                 })?
             }
         };
-        let position = DVec3::from(table.numbers(self.position)?);
+        let position = DVec3::from(row.numbers(self.position)?);
         Ok(DAffine3::from_mat3_translation(
             turn * DMat3::from_diagonal(scale),
             position,

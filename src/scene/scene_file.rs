@@ -14,7 +14,7 @@ use super::lines::lines;
 use super::load::{lower, records};
 use super::set_operations::operand_count;
 use super::source::Source;
-use super::swc::{Joints, joints};
+use super::swc::{Joints, SAMPLE_BYTES, Shape};
 use super::values::Keys;
 use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
 
@@ -100,6 +100,16 @@ impl SceneFile {
         contents
     }
 
+    /// The most bytes that any file takes while it is read, beside the records that are
+    /// made of it: the samples of a neuron, which are read before the first becomes a
+    /// record.
+    #[must_use]
+    pub fn reading_bytes(&self) -> u64 {
+        let neurons = self.document.bodies().flat_map(|body| body.swc);
+        let rows = neurons.map(|Keys(keys)| self.rows(&keys.file));
+        rows.max().unwrap_or(0).saturating_mul(SAMPLE_BYTES)
+    }
+
     /// The rows of a table; none of what cannot be read.
     fn rows(&self, file: &Spanned<String>) -> u64 {
         let lines = lines(&self.source.resolve(file.get_ref()));
@@ -121,12 +131,17 @@ impl SceneFile {
         }
         for Keys(keys) in body.swc {
             let rows = self.rows(&keys.file);
-            match joints(&self.source, keys) {
-                Ok(Joints::Steps) => cylinders = cylinders.saturating_add(rows),
-                Ok(Joints::Flat) => others = others.and::<Cone>(rows),
-                Ok(Joints::Round) => others = others.and::<RoundedCone>(rows),
-                // Loading makes nothing of it.
-                Err(_) => {}
+            // Loading makes nothing of what is stated wrongly.
+            let Ok(shape) = Shape::new(&self.source, keys) else {
+                continue;
+            };
+            match shape.joints {
+                Joints::Steps => cylinders = cylinders.saturating_add(rows),
+                Joints::Flat => others = others.and::<Cone>(rows),
+                Joints::Round => others = others.and::<RoundedCone>(rows),
+            }
+            if shape.has_soma {
+                others = others.and::<Sphere>(1);
             }
         }
         for Keys(keys) in body.beam_lattice {
@@ -150,7 +165,16 @@ impl SceneFile {
     /// # Errors
     /// Those of [`load`](super::load()).
     pub fn load(self) -> Result<Scene, SceneError> {
-        lower(&self.source, self.document)
+        self.load_within(None)
+    }
+
+    /// The same, with so many bytes of memory for the records of pipes, whose rows
+    /// [`SceneFile::contents`] cannot count; `None` sets no limit.
+    ///
+    /// # Errors
+    /// Those of [`load`](super::load()), and rows beyond the memory.
+    pub fn load_within(self, memory: Option<u64>) -> Result<Scene, SceneError> {
+        lower(&self.source, self.document, memory)
     }
 }
 

@@ -4,7 +4,8 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use toml::Spanned;
 
-use super::document::{ThreeNames, Triple};
+use super::document::{ThreeColumns, Triple};
+use super::table::ColumnKey;
 use super::values::{Keys, Number};
 
 /// How an object is turned and moved.
@@ -148,6 +149,8 @@ pub(super) struct OperandKeys {
 pub(super) struct CylinderTableKeys {
     pub file: Spanned<String>,
     pub columns: Spanned<Keys<CylinderColumns>>,
+    pub delimiter: Option<Spanned<String>>,
+    pub decimal: Option<Spanned<String>>,
     pub degenerate: Option<Spanned<String>>,
     pub caps: Option<Spanned<String>>,
     pub material: Option<Spanned<String>>,
@@ -158,12 +161,12 @@ pub(super) struct CylinderTableKeys {
 #[serde(deny_unknown_fields)]
 pub(super) struct CylinderColumns {
     #[serde(alias = "start")]
-    pub p0: ThreeNames,
-    pub p1: Option<ThreeNames>,
-    pub axis: Option<ThreeNames>,
-    pub length: Option<Spanned<String>>,
-    pub radius: Option<Spanned<String>>,
-    pub diameter: Option<Spanned<String>>,
+    pub p0: ThreeColumns,
+    pub p1: Option<ThreeColumns>,
+    pub axis: Option<ThreeColumns>,
+    pub length: Option<Spanned<ColumnKey>>,
+    pub radius: Option<Spanned<ColumnKey>>,
+    pub diameter: Option<Spanned<ColumnKey>>,
 }
 
 /// `[[swc]]`
@@ -172,6 +175,7 @@ pub(super) struct CylinderColumns {
 pub(super) struct SwcKeys {
     pub file: Spanned<String>,
     pub joints: Option<Spanned<String>>,
+    pub soma: Option<Spanned<String>>,
     pub degenerate: Option<Spanned<String>>,
     pub caps: Option<Spanned<String>>,
     pub material: Option<Spanned<String>>,

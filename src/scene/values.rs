@@ -10,6 +10,8 @@ use std::marker::PhantomData;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
+use super::table::ColumnKey;
+
 /// A finite number; whole numbers are welcome too.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Number(pub f64);
@@ -29,11 +31,11 @@ pub(super) enum NumberOrList<const N: usize> {
     Many([f64; N]),
 }
 
-/// The name of a column, or an array of exactly `N` names.
+/// A column, or an array of exactly `N` columns.
 #[derive(Clone, Debug)]
-pub(super) enum NameOrList<const N: usize> {
-    One(String),
-    Many([String; N]),
+pub(super) enum ColumnOrList<const N: usize> {
+    One(ColumnKey),
+    Many([ColumnKey; N]),
 }
 
 /// A TOML table with the keys of `T`, and nothing else.
@@ -163,25 +165,54 @@ impl<'de, const N: usize> Deserialize<'de> for NumberOrList<N> {
     }
 }
 
-impl<'de, const N: usize> Deserialize<'de> for NameOrList<N> {
+/// The column of a number, from 0.
+fn column<E: Error>(number: i64, expected: &dyn serde::de::Expected) -> Result<ColumnKey, E> {
+    u64::try_from(number)
+        .map(ColumnKey::Number)
+        .map_err(|_| E::invalid_value(serde::de::Unexpected::Signed(number), expected))
+}
+
+impl<'de> Deserialize<'de> for ColumnKey {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct NamesVisitor<const N: usize>;
-        impl<'de, const N: usize> Visitor<'de> for NamesVisitor<N> {
-            type Value = NameOrList<N>;
+        struct ColumnVisitor;
+        impl Visitor<'_> for ColumnVisitor {
+            type Value = ColumnKey;
+            fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+                formatter.write_str("the name of a column, or its number from 0")
+            }
+            fn visit_str<E: Error>(self, value: &str) -> Result<ColumnKey, E> {
+                Ok(value.into())
+            }
+            fn visit_i64<E: Error>(self, value: i64) -> Result<ColumnKey, E> {
+                column(value, &self)
+            }
+        }
+        deserializer.deserialize_any(ColumnVisitor)
+    }
+}
+
+impl<'de, const N: usize> Deserialize<'de> for ColumnOrList<N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ColumnsVisitor<const N: usize>;
+        impl<'de, const N: usize> Visitor<'de> for ColumnsVisitor<N> {
+            type Value = ColumnOrList<N>;
             fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
                 write!(
                     formatter,
-                    "the name of a column or an array of {N} such names"
+                    "the name of a column, its number from 0, or an array of {N} of these"
                 )
             }
             fn visit_str<E: Error>(self, value: &str) -> Result<Self::Value, E> {
-                Ok(NameOrList::One(value.to_owned()))
+                Ok(ColumnOrList::One(value.into()))
+            }
+            fn visit_i64<E: Error>(self, value: i64) -> Result<Self::Value, E> {
+                column(value, &self).map(ColumnOrList::One)
             }
             fn visit_seq<A: SeqAccess<'de>>(self, elements: A) -> Result<Self::Value, A::Error> {
-                exactly(elements, &self).map(NameOrList::Many)
+                exactly(elements, &self).map(ColumnOrList::Many)
             }
         }
-        deserializer.deserialize_any(NamesVisitor)
+        deserializer.deserialize_any(ColumnsVisitor)
     }
 }
 

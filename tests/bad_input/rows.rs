@@ -271,7 +271,7 @@ pub fn cases() -> Vec<Case> {
         swc(
             "sample_with_an_id_used_before",
             "\n1 3 0 0 1 1 1\n",
-            &["neuron.swc:4: column \"id\": the id 1 stands on line 2 already"],
+            &["neuron.swc:4: column \"id\": the id 1 is on line 2 already"],
         ),
         swc(
             "sample_with_zero_radius",
@@ -289,7 +289,12 @@ pub fn cases() -> Vec<Case> {
                 "degenerate = \"skip\"",
             ],
         ),
-        swc("neuron_without_segments", "", &["the scene is empty"]),
+        Case::new(
+            "neuron_without_segments",
+            format!("{SWC}soma = \"none\"\n"),
+            &["the scene is empty"],
+        )
+        .with("neuron.swc", "1 1 0 0 0 1 -1\n"),
         places(
             "axis_without_degrees",
             ", axis = [\"i\", \"j\", \"k\"]",

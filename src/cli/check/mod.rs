@@ -1,7 +1,6 @@
 //! `cyltrace check`.
 
 mod figures;
-mod hit_file;
 mod told;
 
 use std::ops::ControlFlow;

@@ -1,19 +1,20 @@
 //! Hits from elsewhere: of another program, or of a mesh.
 
-use anyhow::bail;
+use anyhow::{anyhow, bail};
 use cyltrace::check::{
     Agreement, F32_TOLERANCE, Outcome, Progress, TracedMesh, compare_hits, compare_mesh,
     rays_around,
 };
 use cyltrace::math::Ray;
 use cyltrace::mesh_file::{MeshFile, read_mesh_within};
+use cyltrace::scene::{GivenHit, GivenHits};
 use cyltrace::tracer::Tracer;
 
-use super::hit_file::{ToldHit, read_hits};
 use super::{Found, MOST_LISTED};
 use crate::cli::arguments::{CheckArguments, Rays};
 use crate::cli::interrupt::Interrupted;
 use crate::cli::memory::readable;
+use crate::cli::print;
 use crate::cli::trace::for_each_batch;
 
 /// Bytes that a triangle takes with its vertices and in the tree, on the safe side: in STL
@@ -23,7 +24,7 @@ const TRIANGLE_BYTES: u64 = 250;
 /// What is compared.
 pub enum Told {
     /// The rays, and a hit for each.
-    Hits(Vec<Ray>, Vec<ToldHit>, String),
+    Hits(Vec<Ray>, Vec<GivenHit>, String),
     /// The rays where they are given, the mesh, and what it may be off.
     Mesh(Option<Vec<Ray>>, MeshFile, f64),
 }
@@ -59,7 +60,12 @@ impl Told {
             return Ok(None);
         };
         let rays = given_rays(arguments)?.unwrap_or_default();
-        let hits = read_hits(path)?;
+        let format = arguments.format.format();
+        let GivenHits { hits, unread } =
+            GivenHits::open(path, format, rays.len()).map_err(|error| anyhow!("{error}"))?;
+        if let Some(note) = unread {
+            print::note(&arguments.common, &note);
+        }
         if hits.is_empty() {
             bail!(
                 "{}: there is no row, so there is nothing to compare",
@@ -67,10 +73,15 @@ impl Told {
             );
         }
         if hits.len() != rays.len() {
+            let more = if hits.len() > rays.len() {
+                "more than "
+            } else {
+                ""
+            };
             bail!(
-                "{}: there are {} rows for {} rays; it must have one row a ray, in order",
+                "{}: there are {more}{} rows for {} rays; it must have one row a ray, in order",
                 path.display(),
-                hits.len(),
+                hits.len().min(rays.len()),
                 rays.len()
             );
         }
@@ -135,10 +146,23 @@ fn given_rays(arguments: &CheckArguments) -> anyhow::Result<Option<Vec<Ray>>> {
     let Rays::Table(path) = &arguments.rays else {
         return Ok(None);
     };
+    // The rays, with the hits that go with them; a list that grows is there twice.
+    let bytes = 2 * (size_of::<Ray>() + size_of::<GivenHit>()) as u64;
     let mut rays = Vec::new();
-    for_each_batch(path, |blocks: Vec<Vec<Ray>>| {
+    let note = for_each_batch(path, &arguments.format, |blocks: Vec<Vec<Ray>>| {
         rays.extend(blocks.into_iter().flatten());
+        if rays.len() as u64 * bytes > arguments.max_memory {
+            bail!(
+                "{}: {} rays take more than the {} of --max-memory",
+                path.display(),
+                rays.len(),
+                readable(arguments.max_memory)
+            );
+        }
         Ok(())
     })?;
+    if let Some(note) = note {
+        print::note(&arguments.common, &note);
+    }
     Ok(Some(rays))
 }

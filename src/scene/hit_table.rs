@@ -1,0 +1,112 @@
+//! Tables of hits of another program: the columns `hit` and `t` of `trace`, a row a
+//! ray in their order. Where there is a column `ray`, it must count the rows.
+
+use std::io::Read;
+use std::path::Path;
+
+use super::error::SceneError;
+use super::names::quoted;
+use super::table::{Column, Row, Table, TableFormat, input};
+
+/// Columns of `trace` that are not compared.
+const KNOWN: [&str; 15] = [
+    "x",
+    "y",
+    "z",
+    "nx",
+    "ny",
+    "nz",
+    "prototype",
+    "solid",
+    "primitive",
+    "part",
+    "crossing",
+    "instance",
+    "u",
+    "v",
+    "error",
+];
+
+/// A row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GivenHit {
+    /// The ray's parameter; `None` for a miss.
+    pub t: Option<f64>,
+    /// The line in the file, from 1.
+    pub line: u64,
+}
+
+/// All rows of a table, and what to say of columns that are not read.
+#[derive(Debug)]
+pub struct GivenHits {
+    /// One a ray.
+    pub hits: Vec<GivenHit>,
+    /// The names of unknown columns, in a sentence.
+    pub unread: Option<String>,
+}
+
+impl GivenHits {
+    /// Reads the table of a file or a pipe, of at most `most` rows and one.
+    ///
+    /// # Errors
+    /// When it cannot be read, or a row says something else.
+    pub fn open(path: &Path, format: TableFormat, most: usize) -> Result<Self, SceneError> {
+        Self::read(input::open(path)?, path, format, most)
+    }
+
+    /// The same from anything; errors call it `path`.
+    ///
+    /// # Errors
+    /// When it cannot be read, or a row says something else.
+    pub fn read(
+        input: impl Read,
+        path: &Path,
+        format: TableFormat,
+        most: usize,
+    ) -> Result<Self, SceneError> {
+        let wanted = ["hit", "t", "ray"].map(Into::into);
+        let table = Table::new(input, path, format, &wanted)?;
+        let layout = table.layout();
+        let (hit, t) = (layout.column(&wanted[0])?, layout.column(&wanted[1])?);
+        let find = |name: &str| layout.column(&name.into()).ok();
+        let ray = find("ray");
+        let mut known: Vec<Column> = KNOWN.iter().filter_map(|name| find(name)).collect();
+        known.extend([hit, t].into_iter().chain(ray));
+        let unread = layout.unread(&known);
+        let mut rows = table.rows();
+        let mut hits = Vec::new();
+        // One more than there may be says enough.
+        while hits.len() <= most {
+            let Some(row) = rows.next_row()? else {
+                break;
+            };
+            if let Some(ray) = ray {
+                check_number(&row, ray, hits.len())?;
+            }
+            let is_hit = row.flag(hit).ok_or_else(|| {
+                let cell = quoted(row.cell(hit));
+                row.error(
+                    Some(hit),
+                    format!("{cell} must be 0 or 1, or True or False"),
+                )
+            })?;
+            let t = match is_hit {
+                true => Some(row.number(t).map_err(|fault| row.refused(fault))?),
+                false => None,
+            };
+            hits.push(GivenHit { t, line: row.line });
+        }
+        Ok(Self { hits, unread })
+    }
+}
+
+/// A table with several rows a ray, or in another order, is not compared.
+fn check_number(row: &Row, column: Column, due: usize) -> Result<(), SceneError> {
+    let number = row.any_number(column).map_err(|fault| row.refused(fault))?;
+    if number == due as f64 {
+        return Ok(());
+    }
+    let cell = quoted(row.cell(column));
+    let message = format!("{cell} where {due} is due: there must be one row a ray, in order");
+    Err(row.error(Some(column), message))
+}

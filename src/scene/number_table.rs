@@ -1,0 +1,203 @@
+//! Tables of rays, `ox,oy,oz,dx,dy,dz` and optionally `t_min,t_max`, and of points,
+//! `x,y,z`, as [`Table`] reads them.
+//!
+//! A table is read in blocks of rows, so that blocks can be parsed by many threads and
+//! a table of any length needs little memory.
+
+use std::io::{self, Read};
+use std::marker::PhantomData;
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::error::SceneError;
+use super::table::{Block, Column, ColumnKey, Layout, Row, Table, TableFormat, input};
+use crate::math::Ray;
+
+/// What a row of numbers says.
+pub trait NumberRow: Sized + Send {
+    /// The columns' names: first those that hold finite numbers and must be there, then
+    /// those that may be absent.
+    const NAMES: &'static [&'static str];
+
+    /// Columns that a table must have.
+    const REQUIRED: usize;
+
+    /// The values of the columns that are absent.
+    const DEFAULTS: &'static [f64];
+
+    /// The row of numbers, one a column.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    fn of(values: &[f64]) -> Result<Self, String>;
+}
+
+impl NumberRow for Ray {
+    const NAMES: &'static [&'static str] = &["ox", "oy", "oz", "dx", "dy", "dz", "t_min", "t_max"];
+    const REQUIRED: usize = 6;
+    const DEFAULTS: &'static [f64] = &[0.0, f64::INFINITY];
+
+    fn of(values: &[f64]) -> Result<Self, String> {
+        let ray = Self {
+            origin: DVec3::from_slice(values),
+            direction: DVec3::from_slice(&values[3..]),
+            t_min: values[6],
+            t_max: values[7],
+        };
+        if ray.direction == DVec3::ZERO {
+            return Err(
+                "columns \"dx\", \"dy\", \"dz\": the direction is zero; it must have a length"
+                    .to_owned(),
+            );
+        }
+        ray.check_sizes().map_err(|error| error.to_string())?;
+        let (t_min, t_max) = (ray.t_min, ray.t_max);
+        match t_min > t_max {
+            true => Err(format!(
+                "columns \"t_min\", \"t_max\": {t_min:?} is greater than {t_max:?}"
+            )),
+            false => Ok(ray),
+        }
+    }
+}
+
+/// A point.
+impl NumberRow for DVec3 {
+    const NAMES: &'static [&'static str] = &["x", "y", "z"];
+    const REQUIRED: usize = 3;
+    const DEFAULTS: &'static [f64] = &[];
+
+    fn of(values: &[f64]) -> Result<Self, String> {
+        Ok(Self::from_slice(values))
+    }
+}
+
+/// The most columns that a [`NumberRow`] has.
+const MOST_NUMBERS: usize = 8;
+
+/// A table that is being read.
+pub struct NumberTable<R, I = Box<dyn Read>> {
+    table: Table<I>,
+    columns: NumberColumns<R>,
+}
+
+/// Which columns of a table hold what.
+pub struct NumberColumns<R> {
+    layout: Layout,
+    /// Those that are there, each by its position in [`NumberRow::NAMES`].
+    columns: Vec<(usize, Column)>,
+    row: PhantomData<fn() -> R>,
+}
+
+impl<R: NumberRow> NumberTable<R> {
+    /// Opens a table of a file or a pipe; `-` is standard input. `columns` are the
+    /// numbers of the columns, from 0, where they have no names.
+    ///
+    /// # Errors
+    /// When it cannot be read or a column is missing.
+    pub fn open(path: &Path, format: TableFormat, columns: &[u64]) -> Result<Self, SceneError> {
+        if path.as_os_str() == "-" {
+            let name = Path::new("standard input");
+            return Self::new(Box::new(io::stdin()), name, format, columns);
+        }
+        Self::new(Box::new(input::open(path)?), path, format, columns)
+    }
+}
+
+impl<R: NumberRow, I: Read> NumberTable<R, I> {
+    /// Begins to read a table, which errors call `path`; see [`NumberTable::open`].
+    ///
+    /// # Errors
+    /// When it cannot be read or a column is missing.
+    pub fn new(
+        input: I,
+        path: &Path,
+        format: TableFormat,
+        columns: &[u64],
+    ) -> Result<Self, SceneError> {
+        let names = R::NAMES[..R::REQUIRED].join(",");
+        let is_numbered = !columns.is_empty();
+        let keys: Vec<ColumnKey> = match is_numbered {
+            true => columns.iter().map(|&at| ColumnKey::Number(at)).collect(),
+            false => R::NAMES.iter().map(|&name| name.into()).collect(),
+        };
+        if is_numbered && ![R::REQUIRED, R::NAMES.len()].contains(&keys.len()) {
+            let message = format!(
+                "{} columns are numbered, {} are needed: {names}",
+                keys.len(),
+                R::REQUIRED
+            );
+            return Err(SceneError::row(path, 1, message));
+        }
+        let table = Table::new(input, path, format, &keys)?;
+        let layout = table.layout();
+        let mut found = Vec::new();
+        for (position, key) in keys.iter().enumerate() {
+            // Those that may be absent must not be there twice.
+            if is_numbered || position < R::REQUIRED || layout.names(key) {
+                found.push((position, layout.column(key)?));
+            }
+        }
+        let columns = NumberColumns {
+            layout: layout.clone(),
+            columns: found,
+            row: PhantomData,
+        };
+        Ok(Self { table, columns })
+    }
+
+    /// The next rows, `None` at the end.
+    ///
+    /// # Errors
+    /// When the table cannot be read or goes beyond a limit.
+    pub fn next_block(&mut self) -> Result<Option<Block>, SceneError> {
+        self.table.next_block()
+    }
+
+    /// Its columns, for other threads too.
+    #[must_use]
+    pub fn columns(&self) -> NumberColumns<R> {
+        NumberColumns {
+            layout: self.columns.layout.clone(),
+            columns: self.columns.columns.clone(),
+            row: PhantomData,
+        }
+    }
+}
+
+impl<R: NumberRow> NumberColumns<R> {
+    /// The rows of a block.
+    ///
+    /// # Errors
+    /// What is wrong with the first bad one.
+    pub fn rows(&self, block: &Block) -> Result<Vec<R>, SceneError> {
+        let mut rows = Vec::with_capacity(block.len());
+        self.layout.for_each_row(block, |row| {
+            rows.push(self.row(row)?);
+            Ok(())
+        })?;
+        Ok(rows)
+    }
+
+    fn row(&self, row: &Row) -> Result<R, SceneError> {
+        let mut values = [0.0; MOST_NUMBERS];
+        values[R::REQUIRED..R::NAMES.len()].copy_from_slice(R::DEFAULTS);
+        for &(position, column) in &self.columns {
+            // The range of a ray may be infinite.
+            let value = match position < R::REQUIRED {
+                true => row.number(column),
+                false => row.any_number(column),
+            };
+            values[position] = value.map_err(|fault| row.refused(fault))?;
+        }
+        R::of(&values[..R::NAMES.len()]).map_err(|message| row.error(None, message))
+    }
+
+    /// What to say of the columns that are not read.
+    #[must_use]
+    pub fn unread(&self) -> Option<String> {
+        let read: Vec<Column> = self.columns.iter().map(|(_, column)| *column).collect();
+        self.layout.unread(&read)
+    }
+}

@@ -1,0 +1,324 @@
+//! What the first lines of a table say: the names of its columns, how its cells are
+//! separated, and how many a row has.
+//!
+//! The names are in the first row, or in a comment before it, as numpy and CloudCompare
+//! write them. The first row counts as names unless all of its cells are numbers. Where
+//! columns are wanted by their numbers, a table needs no names.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use super::cells::{Cells, Splitter};
+use super::format::{Decimal, Delimiter, TableFormat, of_names, of_numbers};
+use super::row::{is_missing, number_of};
+use crate::scene::error::SceneError;
+use crate::scene::names::{quoted, suggestion};
+
+/// A column as a user names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ColumnKey {
+    /// By its name in the header, upper and lower case included.
+    Name(String),
+    /// By its place, from 0.
+    Number(u64),
+}
+
+/// A column of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Column(pub(super) usize);
+
+/// How a table is laid out.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    pub(super) path: PathBuf,
+    /// The line of the header, or of the first row.
+    line: u64,
+    pub(super) delimiter: Delimiter,
+    pub(super) decimal: Decimal,
+    /// The names of the columns; empty where the table has none.
+    header: Vec<String>,
+    /// Cells of a row, and those of them that must be there: behind those, delimiters
+    /// at the end of a line leave empty cells.
+    cells: usize,
+    needed: usize,
+    /// Whether each row begins with a name, which has no name in the header: so R
+    /// writes them.
+    has_row_names: bool,
+}
+
+/// The first row and what precedes it.
+pub(super) struct Beginning<'a> {
+    pub path: &'a Path,
+    pub line: u64,
+    pub format: TableFormat,
+    pub wanted: &'a [ColumnKey],
+    pub comments: &'a [String],
+}
+
+impl ColumnKey {
+    fn name(&self) -> Option<&str> {
+        match self {
+            Self::Name(name) => Some(name),
+            Self::Number(_) => None,
+        }
+    }
+}
+
+impl fmt::Display for ColumnKey {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Name(name) => formatter.write_str(&name.escape_debug().to_string()),
+            Self::Number(number) => write!(formatter, "{number}"),
+        }
+    }
+}
+
+impl From<&str> for ColumnKey {
+    fn from(name: &str) -> Self {
+        Self::Name(name.to_owned())
+    }
+}
+
+impl Beginning<'_> {
+    /// The layout that the first row shows, and whether that row is the header.
+    pub fn layout(&self, first: &str) -> (Layout, bool) {
+        let stated = self.format.delimiter;
+        let of_names = stated.unwrap_or_else(|| of_names(first.as_bytes()));
+        let of_numbers =
+            stated.unwrap_or_else(|| of_numbers(first.as_bytes(), self.format.decimal));
+        let names = split(first, of_names);
+        let numbers = split(first, of_numbers);
+        if self.wanted_names(&names) > 0 {
+            return (self.with(names, of_names), true);
+        }
+        if let Some(names) = self.commented_header(numbers.len()) {
+            return (self.with(names, of_numbers), false);
+        }
+        match self.has_text(&numbers) {
+            true => (self.with(names, of_names), true),
+            false => (self.with(Vec::new(), of_numbers), false),
+        }
+    }
+
+    /// How many of the wanted columns are named.
+    fn wanted_names(&self, names: &[String]) -> usize {
+        let wanted = self.wanted.iter().filter_map(ColumnKey::name);
+        wanted
+            .filter(|name| names.iter().any(|cell| cell == name))
+            .count()
+    }
+
+    /// Whether a cell of the first row, or one that is wanted by its number, is text.
+    fn has_text(&self, numbers: &[String]) -> bool {
+        let is_value =
+            |cell: &str| is_missing(cell) || number_of(cell, self.format.decimal).is_some();
+        let numbered: Vec<&String> = self
+            .wanted
+            .iter()
+            .filter_map(|key| match key {
+                ColumnKey::Number(number) => numbers.get(usize::try_from(*number).ok()?),
+                ColumnKey::Name(_) => None,
+            })
+            .collect();
+        match numbered.is_empty() {
+            // Columns that are not wanted may hold anything.
+            false => numbered.iter().any(|cell| !is_value(cell)),
+            true => numbers.iter().any(|cell| !is_value(cell)),
+        }
+    }
+
+    /// The names in a comment: the last that names a wanted column, one with as many
+    /// names as the row has cells before others.
+    fn commented_header(&self, cells: usize) -> Option<Vec<String>> {
+        let comments = self.comments.iter();
+        let candidates = comments.map(|comment| split(comment, of_names(comment.as_bytes())));
+        candidates
+            .filter(|names| self.wanted_names(names) > 0)
+            .max_by_key(|names| (names.len() == cells, self.wanted_names(names)))
+    }
+
+    fn with(&self, header: Vec<String>, delimiter: Delimiter) -> Layout {
+        let mut layout = Layout {
+            path: self.path.to_owned(),
+            line: self.line,
+            delimiter,
+            decimal: self.format.decimal,
+            header,
+            cells: 0,
+            needed: 0,
+            has_row_names: false,
+        };
+        layout.count(layout.header.clone().iter().map(String::as_str));
+        layout
+    }
+}
+
+impl Layout {
+    /// What errors call the table.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Takes the number of cells from a row.
+    fn count<'a>(&mut self, cells: impl Iterator<Item = &'a str>) {
+        (self.cells, self.needed) = (0, 0);
+        for cell in cells {
+            self.cells += 1;
+            if !cell.is_empty() {
+                self.needed = self.cells;
+            }
+        }
+    }
+
+    /// Adapts to the first row behind the header, `row`: without names that matter it
+    /// decides how many cells there are, and it shows names of rows.
+    pub(super) fn adapt(&mut self, row: &str, cells: Cells, wanted: &[ColumnKey]) {
+        if wanted.iter().all(|key| key.name().is_none()) {
+            self.count(cells.iter());
+            // A cell without a value at the end of the first row is one nevertheless.
+            self.needed = self
+                .needed
+                .max(wanted.iter().map(ColumnKey::end).max().unwrap_or(0));
+            if self.header.len() != self.cells {
+                self.header.clear();
+            }
+            return;
+        }
+        // R puts names of rows in quotes, and numbers never.
+        let is_quoted = row.trim_start().starts_with('"');
+        let are_all_quoted = row.matches('"').count() >= 2 * cells.len();
+        self.has_row_names = cells.len() == self.cells + 1 && is_quoted && !are_all_quoted;
+    }
+
+    /// The cells that a row must not have more of, or less.
+    pub(super) fn fault(&self, cells: Cells) -> Option<String> {
+        let (names, found) = (usize::from(self.has_row_names), cells.len());
+        let (least, most) = (self.needed + names, self.cells + names);
+        if found == most || (found >= least && (least..found).all(|at| cells.get(at).is_empty())) {
+            return None;
+        }
+        let other = match self.header.is_empty() {
+            true => "the first row",
+            false => "the header",
+        };
+        Some(format!("the row has {found} cells, {other} has {most}"))
+    }
+
+    /// Finds a column.
+    ///
+    /// # Errors
+    /// When there is no such column, or more than one.
+    pub fn column(&self, key: &ColumnKey) -> Result<Column, SceneError> {
+        self.find(key).map_err(|(message, help)| SceneError::Row {
+            path: self.path.clone(),
+            line: self.line,
+            column: None,
+            message: format!("the table {message}"),
+            help: Some(help),
+        })
+    }
+
+    /// Finds a column; else says what is wrong with the table and what to do.
+    pub(in crate::scene) fn find(&self, key: &ColumnKey) -> Result<Column, (String, String)> {
+        let names = usize::from(self.has_row_names);
+        let name = match key {
+            ColumnKey::Name(name) => name,
+            ColumnKey::Number(number) => {
+                return match usize::try_from(*number).ok().filter(|at| *at < self.cells) {
+                    Some(at) => Ok(Column(at)),
+                    None => Err((
+                        format!("has no column {number}"),
+                        format!("it has {} columns, numbered from 0", self.cells),
+                    )),
+                };
+            }
+        };
+        let mut places = (0..self.header.len()).filter(|&index| self.header[index] == *name);
+        match (places.next(), places.next()) {
+            (Some(index), None) => Ok(Column(index + names)),
+            (Some(_), Some(_)) => Err((
+                format!("has more than one column {}", quoted(name)),
+                "give each column a name of its own".to_owned(),
+            )),
+            (None, _) => Err((
+                format!("has no column {}", quoted(name)),
+                self.missing_help(name),
+            )),
+        }
+    }
+
+    /// Whether any column has that name.
+    pub(in crate::scene) fn names(&self, key: &ColumnKey) -> bool {
+        let name = key.name();
+        self.header.iter().any(|cell| Some(cell.as_str()) == name)
+    }
+
+    fn missing_help(&self, name: &str) -> String {
+        if self.header.is_empty() {
+            return "its first line holds numbers: a header with the names of the columns is needed, or columns by their numbers from 0".to_owned();
+        }
+        suggestion(name, self.header.iter().map(String::as_str), "columns")
+    }
+
+    /// A column as messages name it.
+    pub(super) fn name(&self, column: Column) -> String {
+        let index = column.0.checked_sub(usize::from(self.has_row_names));
+        match index.and_then(|index| self.header.get(index)) {
+            Some(name) => name.clone(),
+            None => column.0.to_string(),
+        }
+    }
+
+    /// What to say of the columns that nobody reads, `None` where there are none.
+    #[must_use]
+    pub fn unread(&self, read: &[Column]) -> Option<String> {
+        const MOST_NAMED: usize = 20;
+        let first = usize::from(self.has_row_names);
+        let is_read = |index: &usize| read.contains(&Column(index + first));
+        let (named, unnamed): (Vec<usize>, Vec<usize>) = (0..self.cells.max(self.header.len()))
+            .filter(|index| !is_read(index))
+            .partition(|index| self.header.get(*index).is_some_and(|name| !name.is_empty()));
+        // Behind the last name there is nothing but what delimiters at line ends leave.
+        let unnamed = unnamed.iter().filter(|index| **index < self.needed).count() + first;
+        let mut names: Vec<String> = named
+            .iter()
+            .take(MOST_NAMED)
+            .map(|index| quoted(&self.header[*index]))
+            .collect();
+        if named.len() > MOST_NAMED {
+            names.push(format!("{} more", named.len() - MOST_NAMED));
+        }
+        if unnamed > 0 {
+            names.push(format!("{unnamed} without a name"));
+        }
+        match names.is_empty() {
+            true => None,
+            false => Some(format!(
+                "{}: columns that are not read: {}",
+                self.path.display(),
+                names.join(", ")
+            )),
+        }
+    }
+}
+
+impl ColumnKey {
+    /// The cells that a row needs for it.
+    fn end(&self) -> usize {
+        match self {
+            Self::Name(_) => 0,
+            Self::Number(number) => usize::try_from(*number).map_or(0, |at| at.saturating_add(1)),
+        }
+    }
+}
+
+/// The cells of a row, as far as there may be any.
+fn split(row: &str, delimiter: Delimiter) -> Vec<String> {
+    let mut splitter = Splitter::default();
+    let cells = splitter.split(row, delimiter);
+    cells.map_or_else(
+        |_| Vec::new(),
+        |cells| cells.iter().map(str::to_owned).collect(),
+    )
+}

@@ -1,0 +1,351 @@
+//! The rows of a table as pieces of text: lines, or several where quotes go over line
+//! ends. Comments and blank lines are left out, and limits are kept here, before a
+//! row takes memory.
+//!
+//! Rows come in blocks, so that many threads can work on a table of any length and it
+//! needs little memory. A line ends with LF, CR LF or CR.
+
+use std::collections::VecDeque;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use super::format::Delimiter;
+use crate::scene::error::SceneError;
+use crate::scene::limits::{GREATEST_TABLE_BYTES, LONGEST_LINE};
+
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// What a comment begins with.
+const COMMENT_MARKS: [&[u8]; 2] = [b"#", b"//"];
+
+/// Bytes of a block, about 1000 rows: enough that handing it to a thread costs
+/// nothing, few enough to share the work evenly.
+const BLOCK_BYTES: usize = 1 << 16;
+
+/// Most comments that are kept for the names of columns in them, and the longest.
+const MOST_COMMENTS: usize = 64;
+const LONGEST_COMMENT: usize = 1 << 16;
+
+/// Some rows of a table.
+#[derive(Default)]
+pub struct Block {
+    text: Vec<u8>,
+    records: Vec<Record>,
+}
+
+/// A row in the text of a block.
+#[derive(Clone, Copy)]
+struct Record {
+    start: usize,
+    end: usize,
+    line: u64,
+}
+
+/// A table as it is read.
+pub(in crate::scene) struct Records<R> {
+    path: PathBuf,
+    input: BufReader<R>,
+    /// Lines that have been read.
+    line: u64,
+    bytes: u64,
+    /// Whether the last line ended with CR, so that LF belongs to it.
+    after_return: bool,
+    /// Those before the first row.
+    pub comments: VecDeque<String>,
+}
+
+impl Block {
+    /// How many rows it has.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.records.len()
+    }
+
+    /// Whether it has no row.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.records.is_empty()
+    }
+
+    /// The text of a row and its line.
+    pub(in crate::scene) fn text(
+        &self,
+        path: &Path,
+        index: usize,
+    ) -> Result<(&str, u64), SceneError> {
+        let Record { start, end, line } = self.records[index];
+        match std::str::from_utf8(&self.text[start..end]) {
+            Ok(text) => Ok((text, line)),
+            Err(_) => Err(SceneError::Encoding {
+                path: path.to_owned(),
+                line,
+                column: None,
+                utf16: false,
+            }),
+        }
+    }
+}
+
+impl<R: Read> Records<R> {
+    /// The rows of a table, which errors call `path`.
+    pub fn new(input: R, path: &Path) -> Self {
+        Self {
+            path: path.to_owned(),
+            input: BufReader::with_capacity(BLOCK_BYTES, input),
+            line: 0,
+            bytes: 0,
+            after_return: false,
+            comments: VecDeque::new(),
+        }
+    }
+
+    /// Lines that have been read.
+    pub fn line(&self) -> u64 {
+        self.line
+    }
+
+    /// The next rows; none at the end.
+    pub fn next_block(&mut self, delimiter: Delimiter) -> Result<Block, SceneError> {
+        let mut block = Block {
+            text: Vec::with_capacity(BLOCK_BYTES + 256),
+            records: Vec::new(),
+        };
+        while block.text.len() < BLOCK_BYTES && self.next_record(&mut block, Some(delimiter))? {}
+        Ok(block)
+    }
+
+    /// Adds the next row to a block; false at the end. Where the delimiter is not
+    /// known yet, each that there can be counts for quotes.
+    pub fn next_record(
+        &mut self,
+        block: &mut Block,
+        delimiter: Option<Delimiter>,
+    ) -> Result<bool, SceneError> {
+        let start = block.text.len();
+        loop {
+            if !self.next_line(&mut block.text, start)? {
+                return Ok(false);
+            }
+            let content = block.text[start..].trim_ascii();
+            if let Some(mark) = COMMENT_MARKS.iter().find(|mark| content.starts_with(mark)) {
+                self.keep_comment(&block.text[start..], mark);
+            } else if !content.is_empty() {
+                break;
+            }
+            block.text.truncate(start);
+        }
+        let line = self.line;
+        let mut quotes = Quotes::new(delimiter);
+        let mut fed = start;
+        while quotes.are_open_after(&block.text[fed..]) {
+            block.text.push(b'\n');
+            fed = block.text.len();
+            if !self.next_line(&mut block.text, start)? {
+                return Err(self.error(line, "a quote is opened in this row and never closed"));
+            }
+        }
+        let end = block.text.len();
+        block.records.push(Record { start, end, line });
+        Ok(true)
+    }
+
+    /// Appends the next line, without its end, to the text of a row that begins at
+    /// `start`; false at the end of the table.
+    fn next_line(&mut self, text: &mut Vec<u8>, start: usize) -> Result<bool, SceneError> {
+        let line_start = text.len();
+        let mut is_ended = false;
+        while !is_ended {
+            let buffer = match self.input.fill_buf() {
+                Ok(buffer) => buffer,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                Err(source) => {
+                    return Err(SceneError::Unreadable {
+                        path: self.path.clone(),
+                        source,
+                    });
+                }
+            };
+            if buffer.is_empty() {
+                break;
+            }
+            if std::mem::take(&mut self.after_return) && buffer[0] == b'\n' {
+                self.input.consume(1);
+                continue;
+            }
+            let end = memchr::memchr2(b'\n', b'\r', buffer);
+            let piece = &buffer[..end.unwrap_or(buffer.len())];
+            if text.len() - start + piece.len() > LONGEST_LINE {
+                let message = format!(
+                    "the line is longer than {LONGEST_LINE} bytes, the most that a row may have"
+                );
+                return Err(self.error(self.line + 1, &message));
+            }
+            text.extend_from_slice(piece);
+            is_ended = end.is_some();
+            self.after_return = end.is_some_and(|end| buffer[end] == b'\r');
+            let used = piece.len() + usize::from(is_ended);
+            self.input.consume(used);
+            self.bytes += used as u64;
+        }
+        if !is_ended && text.len() == line_start {
+            return Ok(false);
+        }
+        self.line += 1;
+        if self.bytes > GREATEST_TABLE_BYTES {
+            let message = format!("the table has more than {GREATEST_TABLE_BYTES} bytes");
+            return Err(self.error(self.line, &message));
+        }
+        if self.line == 1 {
+            self.strip_mark(text)?;
+        }
+        Ok(true)
+    }
+
+    /// Takes the byte order mark off the first line.
+    fn strip_mark(&self, text: &mut Vec<u8>) -> Result<(), SceneError> {
+        if text.starts_with(&[0xff, 0xfe]) || text.starts_with(&[0xfe, 0xff]) {
+            return Err(SceneError::Encoding {
+                path: self.path.clone(),
+                line: 1,
+                column: None,
+                utf16: true,
+            });
+        }
+        if text.starts_with(BYTE_ORDER_MARK) {
+            text.drain(..BYTE_ORDER_MARK.len());
+        }
+        Ok(())
+    }
+
+    fn keep_comment(&mut self, line: &[u8], mark: &[u8]) {
+        let line = line.trim_ascii();
+        if line.len() > LONGEST_COMMENT {
+            return;
+        }
+        if self.comments.len() == MOST_COMMENTS {
+            self.comments.pop_front();
+        }
+        let mut text = line;
+        while let Some(rest) = text.strip_prefix(mark) {
+            text = rest;
+        }
+        // What is no UTF-8 is no name either.
+        self.comments
+            .extend(std::str::from_utf8(text).map(str::to_owned));
+    }
+
+    fn error(&self, line: u64, message: &str) -> SceneError {
+        SceneError::row(&self.path, line, message)
+    }
+}
+
+/// Whether quotes are open, from line to line of a row. As `csv-core` has it, a quote
+/// opens where a cell begins, and a doubled one within quotes is a character.
+struct Quotes {
+    delimiter: Option<Delimiter>,
+    state: State,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum State {
+    CellStart,
+    InCell,
+    InQuotes,
+    /// Behind a quote within quotes: the end, unless it is doubled.
+    AfterQuote,
+}
+
+impl Quotes {
+    fn new(delimiter: Option<Delimiter>) -> Self {
+        Self {
+            delimiter,
+            state: State::CellStart,
+        }
+    }
+
+    fn are_open_after(&mut self, line: &[u8]) -> bool {
+        if self.state != State::InQuotes && memchr::memchr(b'"', line).is_none() {
+            return false;
+        }
+        let bytes = match self.delimiter {
+            Some(delimiter) => match delimiter.byte() {
+                Some(byte) => [byte; 3],
+                // Between blanks quotes end with the line.
+                None => return false,
+            },
+            None => [b',', b';', b'\t'],
+        };
+        for byte in line {
+            self.state = match (self.state, byte) {
+                (State::CellStart | State::AfterQuote, b'"') => State::InQuotes,
+                (State::InQuotes, b'"') => State::AfterQuote,
+                (State::InQuotes, _) => State::InQuotes,
+                (_, byte) if bytes.contains(byte) => State::CellStart,
+                _ => State::InCell,
+            };
+        }
+        self.state == State::InQuotes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(text: &[u8]) -> Result<Vec<(String, u64)>, String> {
+        let mut records = Records::new(text, Path::new("t.csv"));
+        let mut rows = Vec::new();
+        loop {
+            let block = records.next_block(Delimiter::Comma);
+            let block = block.map_err(|error| error.to_string())?;
+            if block.is_empty() {
+                return Ok(rows);
+            }
+            rows.extend((0..block.len()).map(|index| {
+                let (text, line) = block.text(Path::new("t.csv"), index).expect("UTF-8");
+                (text.to_owned(), line)
+            }));
+        }
+    }
+
+    #[test]
+    fn rows_have_their_lines_whatever_ends_them() {
+        let expected = [("a", 2), ("b", 4), ("c", 5)];
+        let expected = expected.map(|(text, line)| (text.to_owned(), line));
+        for end in ["\n", "\r\n", "\r"] {
+            let text = format!("# x{end}a{end}{end}b{end}c");
+            assert_eq!(rows(text.as_bytes()), Ok(expected.to_vec()), "{end:?}");
+            let text = format!("\u{feff}// x{end}a{end}  {end}b{end}c{end}");
+            assert_eq!(rows(text.as_bytes()), Ok(expected.to_vec()), "{end:?}");
+        }
+    }
+
+    #[test]
+    fn quotes_go_over_line_ends_only_where_a_cell_begins_with_them() {
+        let text = b"1,\"a\n# b\",2\n5\" pipe,1\n\"\"\"\",\"\"\"\n\"\nlast";
+        let expected = [
+            ("1,\"a\n# b\",2", 1),
+            ("5\" pipe,1", 3),
+            ("\"\"\"\",\"\"\"\n\"", 4),
+            ("last", 6),
+        ];
+        let expected = expected.map(|(text, line)| (text.to_owned(), line));
+        assert_eq!(rows(text), Ok(expected.to_vec()));
+        let message = rows(b"a\n1,\"b\nc\n").expect_err("never closed");
+        assert!(message.starts_with("t.csv:2: a quote"), "{message}");
+    }
+
+    #[test]
+    fn line_that_never_ends_is_refused_after_what_a_line_may_have() {
+        let mut records = Records::new(io::repeat(0), Path::new("zero"));
+        let error = records.next_block(Delimiter::Comma).map(|_| ());
+        let message = error.expect_err("no row").to_string();
+        assert!(
+            message.contains("zero:1: the line is longer than"),
+            "{message}"
+        );
+        let endless = io::repeat(b'"').take(1 << 30);
+        let mut records = Records::new(endless.chain(&b"\n"[..]), Path::new("quotes"));
+        assert!(records.next_block(Delimiter::Comma).is_err());
+    }
+}

@@ -1,0 +1,232 @@
+//! A row of a table: its cells as numbers, and what is wrong with them.
+
+use std::path::Path;
+
+use super::cells::Cells;
+use super::format::Decimal;
+use super::header::{Column, Layout};
+use crate::scene::error::SceneError;
+use crate::scene::limits::LONGEST_NUMBER;
+use crate::scene::names::quoted;
+
+/// A row that is being read.
+#[derive(Clone, Copy)]
+pub struct Row<'a> {
+    pub(super) layout: &'a Layout,
+    pub(super) cells: Cells<'a>,
+    /// The line on which the row begins, from 1.
+    pub line: u64,
+}
+
+/// Why a row gives nothing.
+#[derive(Debug)]
+pub enum Fault {
+    /// It is degenerate: a reader may leave it out.
+    Degenerate {
+        /// The column to blame, where there is one.
+        column: Option<Column>,
+        /// What is wrong.
+        message: String,
+    },
+    /// It is wrong.
+    Wrong(SceneError),
+}
+
+impl From<SceneError> for Fault {
+    fn from(error: SceneError) -> Self {
+        Self::Wrong(error)
+    }
+}
+
+impl Row<'_> {
+    /// What errors call the table.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.layout.path
+    }
+
+    /// A cell, without what surrounds it.
+    #[must_use]
+    pub fn cell(&self, column: Column) -> &str {
+        self.cells.get(column.0)
+    }
+
+    /// The finite number in a cell. A cell without a value makes the row degenerate.
+    ///
+    /// # Errors
+    /// When the cell has no value, or another one.
+    pub fn number(&self, column: Column) -> Result<f64, Fault> {
+        let number = self.any_number(column)?;
+        match number.is_finite() {
+            true => Ok(number),
+            false => Err(self.wrong(column, "is not a finite number").into()),
+        }
+    }
+
+    /// The number in a cell, which may be infinite.
+    ///
+    /// # Errors
+    /// When the cell has no value, or another one.
+    pub fn any_number(&self, column: Column) -> Result<f64, Fault> {
+        let cell = self.cell(column);
+        if let Some(number) = number_of(cell, self.layout.decimal) {
+            return Ok(number);
+        }
+        if is_missing(cell) {
+            let message = match cell.is_empty() {
+                true => "the cell is empty, a number is needed".to_owned(),
+                false => format!("{} is not a finite number", quoted(cell)),
+            };
+            return Err(Fault::Degenerate {
+                column: Some(column),
+                message,
+            });
+        }
+        if cell.len() > LONGEST_NUMBER {
+            let length = cell.len();
+            let message = format!(
+                "is not a number: the cell has {length} bytes, a number at most {LONGEST_NUMBER}"
+            );
+            return Err(self.wrong(column, &message).into());
+        }
+        let other = match self.layout.decimal {
+            Decimal::Point => Decimal::Comma,
+            Decimal::Comma => Decimal::Point,
+        };
+        Err(match (number_of(cell, other), other) {
+            (None, Decimal::Comma) => self.wrong(column, "is not a number (such as 1.5 or 2e-3)"),
+            (None, Decimal::Point) => self.wrong(column, "is not a number (such as 1,5 or 2e-3)"),
+            (Some(_), Decimal::Comma) => self.error_with_help(
+                Some(column),
+                format!("{} is not a number (such as 1.5 or 2e-3)", quoted(cell)),
+                Some("decimal = \",\" in a scene file and --decimal comma read decimal commas"),
+            ),
+            (Some(_), Decimal::Point) => self.error_with_help(
+                Some(column),
+                format!(
+                    "{} is not a number with a decimal comma (such as 1,5)",
+                    quoted(cell)
+                ),
+                Some("without decimal = \",\" numbers have a decimal point"),
+            ),
+        }
+        .into())
+    }
+
+    /// The finite numbers in some cells.
+    ///
+    /// # Errors
+    /// Those of [`Row::number`].
+    pub fn numbers<const N: usize>(&self, columns: [Column; N]) -> Result<[f64; N], Fault> {
+        let mut numbers = [0.0; N];
+        for (number, column) in numbers.iter_mut().zip(columns) {
+            *number = self.number(column)?;
+        }
+        Ok(numbers)
+    }
+
+    /// Yes or no: `true`, `false`, `1`, `0` or another number of these values.
+    #[must_use]
+    pub fn flag(&self, column: Column) -> Option<bool> {
+        let cell = self.cell(column);
+        if cell.eq_ignore_ascii_case("true") {
+            return Some(true);
+        }
+        if cell.eq_ignore_ascii_case("false") {
+            return Some(false);
+        }
+        let number = number_of(cell, self.layout.decimal)?;
+        (number == 0.0 || number == 1.0).then_some(number == 1.0)
+    }
+
+    /// That a cell is wrong: its text, and `message`.
+    fn wrong(&self, column: Column, message: &str) -> SceneError {
+        let text = format!("{} {message}", quoted(self.cell(column)));
+        self.error(Some(column), text)
+    }
+
+    /// That `message` is true of the row, or of one cell of it.
+    pub fn error(&self, column: Option<Column>, message: impl Into<String>) -> SceneError {
+        self.error_with_help(column, message, None)
+    }
+
+    /// The same, and what to do about it.
+    pub fn error_with_help(
+        &self,
+        column: Option<Column>,
+        message: impl Into<String>,
+        help: Option<&str>,
+    ) -> SceneError {
+        SceneError::Row {
+            path: self.layout.path.clone(),
+            line: self.line,
+            column: column.map(|column| self.layout.name(column)),
+            message: message.into(),
+            help: help.map(str::to_owned),
+        }
+    }
+
+    /// The error of a fault where no row may be left out.
+    #[must_use]
+    pub fn refused(&self, fault: Fault) -> SceneError {
+        self.refused_with_help(fault, None)
+    }
+
+    /// The same, and what to do about a degenerate row.
+    #[must_use]
+    pub fn refused_with_help(&self, fault: Fault, help: Option<&str>) -> SceneError {
+        match fault {
+            Fault::Wrong(error) => error,
+            Fault::Degenerate { column, message } => self.error_with_help(column, message, help),
+        }
+    }
+}
+
+/// Whether a cell says that there is no value, in the words of pandas, R and others.
+pub(super) fn is_missing(cell: &str) -> bool {
+    const WORDS: [&str; 9] = [
+        "", "na", "n/a", "<na>", "nan", "-nan", "+nan", "null", "none",
+    ];
+    cell.len() <= 4 && WORDS.iter().any(|word| cell.eq_ignore_ascii_case(word))
+}
+
+/// The number in a cell, if there is one; NaN is none.
+pub(in crate::scene) fn number_of(cell: &str, decimal: Decimal) -> Option<f64> {
+    if cell.len() > LONGEST_NUMBER {
+        return None;
+    }
+    let parsed: Option<f64> = match decimal {
+        Decimal::Point => cell.parse().ok(),
+        Decimal::Comma if cell.contains('.') => None,
+        Decimal::Comma if cell.contains(',') => cell.replacen(',', ".", 1).parse().ok(),
+        Decimal::Comma => cell.parse().ok(),
+    };
+    parsed.filter(|number| !number.is_nan())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_either_decimal_and_words_for_none() {
+        let point = |cell: &str| number_of(cell, Decimal::Point);
+        let comma = |cell: &str| number_of(cell, Decimal::Comma);
+        assert_eq!(point("-2.5e-1"), Some(-0.25));
+        assert_eq!(point("Inf"), Some(f64::INFINITY));
+        assert_eq!(point("1,5"), None);
+        assert_eq!(comma("1,5"), Some(1.5));
+        assert_eq!(comma("-,5E2"), Some(-50.0));
+        assert_eq!(comma("7"), Some(7.0));
+        assert_eq!(comma("1.5"), None);
+        assert_eq!(comma("1.234,5"), None);
+        assert_eq!(comma("1,234,5"), None);
+        assert_eq!(point(&"9".repeat(LONGEST_NUMBER + 1)), None);
+        for word in [
+            "", "NA", "nan", "NaN", "-nan", "N/A", "<NA>", "None", "NULL",
+        ] {
+            assert!(is_missing(word) && point(word).is_none(), "{word}");
+        }
+        assert!(!is_missing("0") && !is_missing("nano"));
+    }
+}
