@@ -151,9 +151,9 @@ impl Tracer {
     /// instance path, primitive, entry before exit, and part. The first is that
     /// of [`Tracer::closest`].
     ///
-    /// The hits are found on the way, `batch` of them in a traversal, so that
-    /// memory does not grow with their number; the answer is the same for
-    /// every `batch`, which is taken as at least 1. A tangent is an entry and an exit at the same `t`.
+    /// The hits are found on the way, `batch` of them in a traversal and more where
+    /// very many solids overlap, in a time of N log N for N hits. The answer is the
+    /// same for every `batch`, which is taken as at least 1. A tangent is an entry and an exit at the same `t`.
     #[must_use]
     pub fn all_hits(&self, ray: &Ray, batch: usize) -> AllHits<'_> {
         AllHits::new(self, ray, batch)
