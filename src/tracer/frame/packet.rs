@@ -241,7 +241,11 @@ impl Enter<'_> {
     fn enter_from_afar(&self, far: RaySet, entry: &mut PacketEntry) {
         for number in far {
             let (row, lane) = (number / LANES, number % LANES);
-            let (ray, passing) = self.frame.approached(&self.rays.ray(row, lane));
+            let ray = self.rays.ray(row, lane);
+            if self.frame.is_missed_from_afar(&self.frame.passing(&ray)) {
+                continue;
+            }
+            let (ray, passing) = self.frame.approached(&ray);
             let (t_min, t_max) = (self.t_min[row].0[lane], self.t_max[row].0[lane]);
             let one = self.frame.entry(&ray, &passing, t_min, t_max);
             entry.level.rays.set(row, lane, &ray);
