@@ -13,6 +13,7 @@ mod json;
 mod limit;
 mod memory;
 mod number_table;
+mod outliers;
 mod outputs;
 mod print;
 mod progress;

@@ -5,6 +5,7 @@ use toml::Spanned;
 use super::cylinder_list::{CylinderList, Records};
 use super::description::{CylinderRecord, MaterialIndex};
 use super::error::SceneError;
+use super::origins::Origins;
 use super::solid_lists::{SolidRecord, Solids};
 use super::source::Source;
 use crate::math::Bounds;
@@ -29,6 +30,8 @@ pub(super) struct Gathered {
     pub skipped: u64,
     /// At least the size of every coordinate of a point of the solids.
     pub reach: f64,
+    /// The files that they come from.
+    pub origins: Origins,
 }
 
 /// What the solids of an entry have in common.
@@ -166,6 +169,11 @@ impl Gathered {
     fn reach_to(&mut self, bounds: &Bounds) {
         let corner = bounds.lower.abs().max(bounds.upper.abs());
         self.reach = self.reach.max(corner.max_element());
+    }
+
+    /// Says that the numbers from `first` on come from a file.
+    pub fn came_from(&mut self, file: &str, is_table: bool, first: u32) {
+        self.origins.add(file, is_table, first, self.numbers);
     }
 
     /// Leaves a row out; it keeps its primitive number.

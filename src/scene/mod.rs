@@ -29,6 +29,7 @@ mod limits;
 mod lines;
 mod load;
 mod names;
+mod origins;
 mod placing;
 mod pose;
 mod scatter;
@@ -57,6 +58,7 @@ pub use description::{
 pub use error::{SceneError, Statement};
 pub use limits::{GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_PIXELS, GREATEST_STRETCH};
 pub use load::load;
+pub use origins::{Origin, Origins};
 pub use scene_file::SceneFile;
 pub use solid_lists::{CompositionRecord, Listed, SolidRecord, Solids};
 pub use view_volume::ViewVolume;

@@ -18,6 +18,7 @@ mod first_hit;
 mod frame;
 mod hit;
 mod options;
+mod outliers;
 mod prototype;
 mod query;
 mod resolve;
@@ -35,6 +36,7 @@ pub use first_hit::FirstHit;
 pub(crate) use frame::{Frame, LocalRay};
 pub use hit::Hit;
 pub use options::{BuildTime, Layout, Options};
+pub use outliers::{Outlier, outliers};
 pub use statistics::Statistics;
 pub use workers::workers;
 
