@@ -154,7 +154,7 @@ mod tests {
             for (name, tracer) in [("coincident", coincident), ("concentric", concentric)] {
                 let (hits, visits, batch) = cost(&tracer);
                 assert_eq!(hits, 2 * count, "{name}");
-                let greatest = GREATEST_COST as f64 + (count as f64).log2();
+                let greatest = GREATEST_COST as f64 + libm::log2(count as f64);
                 assert!(visits <= greatest, "{name}, {count}: {visits} visits a hit");
                 assert!(batch <= count / 8, "{name}, {count}: batches of {batch}");
             }

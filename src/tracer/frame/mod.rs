@@ -92,8 +92,13 @@ impl Frame {
 
     /// That ray, and its point nearest to the centre.
     fn approached(&self, ray: &LocalRay) -> (LocalRay, Passing) {
+        self.moved_if_far(ray, self.passing(ray))
+    }
+
+    /// The same, where it is known how the ray passes the centre.
+    #[inline(always)]
+    fn moved_if_far(&self, ray: &LocalRay, passing: Passing) -> (LocalRay, Passing) {
         debug_assert_eq!(ray.base, DVec3::ZERO, "the ray was moved before");
-        let passing = self.passing(ray);
         if passing.is_far {
             self.approach_from_afar(ray, passing.nearest)
         } else {
@@ -170,10 +175,11 @@ impl Frame {
                 .is_inside
                 .then_some((Level { ray, window }, entry.ray32));
         }
-        if self.is_missed_from_afar(&self.passing(ray)) {
+        let passing = self.passing(ray);
+        if self.is_missed_from_afar(&passing) {
             return None;
         }
-        let (ray, passing) = self.approached(ray);
+        let (ray, passing) = self.moved_if_far(ray, passing);
         let entry = self.entry(&ray, &passing, t_min, t_max);
         let level = Level {
             ray,

@@ -242,10 +242,11 @@ impl Enter<'_> {
         for number in far {
             let (row, lane) = (number / LANES, number % LANES);
             let ray = self.rays.ray(row, lane);
-            if self.frame.is_missed_from_afar(&self.frame.passing(&ray)) {
+            let passing = self.frame.passing(&ray);
+            if self.frame.is_missed_from_afar(&passing) {
                 continue;
             }
-            let (ray, passing) = self.frame.approached(&ray);
+            let (ray, passing) = self.frame.moved_if_far(&ray, passing);
             let (t_min, t_max) = (self.t_min[row].0[lane], self.t_max[row].0[lane]);
             let one = self.frame.entry(&ray, &passing, t_min, t_max);
             entry.level.rays.set(row, lane, &ray);

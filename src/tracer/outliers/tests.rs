@@ -73,8 +73,10 @@ const COUNT: u32 = 3_000;
 /// Each outlier costs a ray at most one callback at each level of placements, where the ray
 /// comes to its box.
 fn assert_few_more(name: &str, with: f64, without: f64) {
-    println!("{name}: {with} callbacks a ray, {without} without the outlier");
-    assert!(with <= without + 2.0, "{name}: {with} for {without}");
+    assert!(
+        with <= without + 2.0,
+        "{name}: {with} callbacks a ray, {without} without the outlier"
+    );
 }
 
 #[test]

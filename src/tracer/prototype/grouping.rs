@@ -105,7 +105,12 @@ fn half_area(bounds: &Bounds) -> f64 {
 
 /// The cubes of all groups but the last, which has the rest; `whole` contains
 /// everything. What is in several cubes belongs to the first of them.
-pub(super) fn cubes(all: &impl Boxed, whole: &Bounds) -> Vec<Cube> {
+///
+/// `first` contains all but the further groups of what is placed. Where nothing is gained
+/// by a frame of its own, it gets one all the same if that is [`LEAST_RATIO`] times
+/// smaller: what was apart in a child stays apart, and hits are the bits of the scene
+/// without the child's outliers.
+pub(super) fn cubes(all: &impl Boxed, whole: &Bounds, first: &Bounds) -> Vec<Cube> {
     let mut cubes = Vec::new();
     let mut rest = Rest {
         all,
@@ -116,6 +121,14 @@ pub(super) fn cubes(all: &impl Boxed, whole: &Bounds) -> Vec<Cube> {
         let Some(cube) = rest.cube() else { break };
         rest = rest.without(&cube);
         cubes.push(cube);
+    }
+    if cubes.is_empty() && first != whole && !first.is_empty() {
+        let centre = first.centre();
+        let half_side = reach(centre, first);
+        let cube = Cube { centre, half_side };
+        if half_side <= rest.greatest() {
+            cubes.push(rest.widened(cube));
+        }
     }
     cubes
 }
@@ -159,6 +172,11 @@ impl<'a, B: Boxed> Rest<'a, B> {
         }
     }
 
+    /// The greatest half side of a cube. Whatever its centre, something is outside.
+    fn greatest(&self) -> f64 {
+        0.5 * self.bounds.extent().max_element() / LEAST_RATIO
+    }
+
     /// The cube of a group, if one pays.
     fn cube(&self) -> Option<Cube> {
         let stride = self.len().div_ceil(SAMPLE).max(1);
@@ -183,16 +201,16 @@ impl<'a, B: Boxed> Rest<'a, B> {
             least,
             each: self.len() as f64 / sample.len() as f64,
             growth,
-            greatest: 0.5 * self.bounds.extent().max_element() / LEAST_RATIO,
+            greatest: self.greatest(),
         };
         let middles = small.iter().step_by(small.len().div_ceil(CENTRES));
         let cubes = middles.filter_map(|bounds| search.around(bounds.centre()));
         let (gain, cube) = cubes.reduce(|best, one| if one.0 > best.0 { one } else { best })?;
-        (gain >= LEAST_GAIN).then(|| self.widened(cube, search.greatest))
+        (gain >= LEAST_GAIN).then(|| self.widened(cube))
     }
 
-    /// The cube doubled until the next octave is empty, up to half a side of `greatest`.
-    fn widened(&self, mut cube: Cube, greatest: f64) -> Cube {
+    /// The cube doubled until the next octave is empty, or it is the greatest.
+    fn widened(&self, mut cube: Cube) -> Cube {
         let inside = |cube: &Cube| self.with(|bounds| cube.contains(bounds)).len();
         let mut count = inside(&cube);
         loop {
@@ -200,7 +218,7 @@ impl<'a, B: Boxed> Rest<'a, B> {
                 half_side: 2.0 * cube.half_side,
                 ..cube
             };
-            if wider.half_side > greatest {
+            if wider.half_side > self.greatest() {
                 return cube;
             }
             let more = inside(&wider);

@@ -193,7 +193,11 @@ impl<'a> Boxes<'a> {
         if whole.is_empty() {
             return Vec::new();
         }
-        let cubes = cubes(self, &whole);
+        let cubes = cubes(
+            self,
+            &whole,
+            &self.without_further_groups(&everything, &whole),
+        );
         if cubes.is_empty() {
             return vec![(everything, whole)];
         }
@@ -203,6 +207,16 @@ impl<'a> Boxes<'a> {
             (members, bounds)
         });
         groups.filter(|(_, bounds)| !bounds.is_empty()).collect()
+    }
+
+    /// The box around all but the further groups of what is placed.
+    fn without_further_groups(&self, everything: &Members, whole: &Bounds) -> Bounds {
+        let mut lists = everything.lists.clone();
+        if lists.len() == KINDS.len() + 1 {
+            return *whole;
+        }
+        lists.truncate(KINDS.len() + 1);
+        self.around(&Members { lists })
     }
 
     /// The members of the group with a number.

@@ -22,6 +22,8 @@ mod sight;
 
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 pub(crate) use blocks::{CylinderBlock, block_bytes};
 pub(crate) use cylinders::Cylinders;
 pub(crate) use described::{Described, SolidList};
@@ -88,7 +90,13 @@ pub(crate) struct Prototype {
     description: Arc<Scene>,
     index: PrototypeIndex,
     children: Children<Self>,
+    /// Whether placements out of view were left out.
+    is_viewed: bool,
 }
+
+/// Steps from the root to a place. Scenes are rarely nested deeper than what is kept
+/// without the heap.
+type Way<'a, T> = SmallVec<[(T, Option<&'a Placement>); 4]>;
 
 /// The prototypes that another one places, or a group of each, without those that
 /// contain nothing, in the order of their indices.
@@ -171,6 +179,7 @@ impl Prototype {
             description: Arc::clone(description),
             index,
             children,
+            is_viewed: workshop.view.is_some() && index == PrototypeIndex::ROOT,
         }))
     }
 
@@ -186,6 +195,9 @@ impl Prototype {
 
     /// How many placements no ray will reach.
     pub fn placements_out_of_view(&self) -> usize {
+        if !self.is_viewed {
+            return 0;
+        }
         let groups = self.groups.iter();
         let mut in_view: Vec<u32> = groups
             .flat_map(|group| group.placements_in_view())
@@ -225,13 +237,10 @@ impl Prototype {
         group.expect("what is hit is in a group")
     }
 
-    /// The prototypes on the way from the root to a place, each with the group and,
-    /// but for the root, the placement that lead there.
-    pub fn way_to<'a>(
-        root: &'a Arc<Self>,
-        place: &Place,
-    ) -> Vec<(&'a Group, Option<&'a Placement>)> {
-        let mut prototypes = Vec::with_capacity(place.path.len() + 1);
+    /// The groups on the way from the root to a place, each with the placement that led
+    /// there; the root has none.
+    pub fn way_to<'a>(root: &'a Arc<Self>, place: &Place) -> Way<'a, &'a Group> {
+        let mut prototypes = Way::new();
         prototypes.push((root, None));
         let mut last = root;
         for &index in &place.path {
@@ -239,12 +248,12 @@ impl Prototype {
             prototypes.push((child, Some(placement)));
             last = child;
         }
-        // A group of a child is a primitive in a group of its parent: so the last
-        // decides on all others.
+        // A group of a child is a primitive in a group of its parent: so the groups
+        // follow from the last one on.
         let mut list = List::Solids(place.member.kind);
         let mut number = place.member.record;
         let numbers = place.path.iter().rev().copied().chain([0]);
-        let mut way = Vec::with_capacity(prototypes.len());
+        let mut way = Way::new();
         for ((prototype, placement), above) in prototypes.into_iter().rev().zip(numbers) {
             let group = prototype.group_with(list, number);
             way.push((&*prototype.groups[group], placement));
