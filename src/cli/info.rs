@@ -2,13 +2,13 @@
 
 use std::time::Instant;
 
-use cyltrace::tracer::MemoryEstimate;
+use cyltrace::tracer::{self, MemoryEstimate};
 use serde_json::json;
 
 use super::arguments::InfoArguments;
 use super::limit::{Limit, Need};
 use super::outputs::Files;
-use super::{json, memory, print, scene, text};
+use super::{json, memory, outliers, print, scene, text};
 
 /// Says what the scene holds.
 pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
@@ -22,7 +22,8 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
     files.check_with(&file)?;
     let scene = scene::load(common, file, Need::Records, limit)?;
     let load = start.elapsed().as_secs_f64();
-    let census = scene::workers(common)?.install(|| scene.census());
+    let workers = scene::workers(common)?;
+    let (census, found) = workers.install(|| (scene.census(), tracer::outliers(&scene)));
     let estimate = MemoryEstimate::of(
         &scene.contents(),
         arguments.memory.layout.into(),
@@ -70,6 +71,7 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
             },
             "materials": materials,
             "records": json::records(&scene),
+            "outliers": outliers::values(&scene, &found),
         }),
     )?;
     if !arguments.common.prints() {
@@ -100,6 +102,7 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
     }
     text += &text::skipped_rows(scene.skipped_rows);
     text += &text::notes(&scene.notes);
+    text += &outliers::lines(&scene, &found);
     text += &format!("bounds: {} to {}\n", text::point(lower), text::point(upper));
     text += &format!(
         "memory, estimated: {} of records, {} in Embree, {} at most while it builds\n",

@@ -14,6 +14,7 @@ mod interrupt;
 mod json;
 mod limit;
 mod memory;
+mod outliers;
 mod outputs;
 mod print;
 mod progress;

@@ -26,6 +26,14 @@ pub fn point(point: DVec3) -> String {
     text + ")"
 }
 
+/// A factor to two digits.
+pub fn rounded(factor: f64) -> String {
+    match factor {
+        0.1..1000.0 => format!("{factor:.1}"),
+        _ => format!("{factor:.1e}"),
+    }
+}
+
 /// The cylinders of a traced scene.
 pub fn cylinders(statistics: &Statistics) -> String {
     let (unique, instances) = (statistics.cylinders_unique, statistics.instances);

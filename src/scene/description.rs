@@ -4,6 +4,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::cylinder_list::{CylinderList, Records};
+use super::origins::Origins;
 use super::solid_lists::Solids;
 use crate::solid::{AnySolid, Caps, Cylinder, SolidKind};
 
@@ -77,6 +78,10 @@ pub struct Prototype {
     pub solids: Solids,
     /// The placements, in the order of their instance numbers.
     pub placements: Vec<Placement>,
+    /// The files that the solids come from.
+    pub solid_origins: Origins,
+    /// The files that the placements come from.
+    pub placement_origins: Origins,
 }
 
 impl Prototype {

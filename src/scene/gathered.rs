@@ -5,6 +5,7 @@ use toml::Spanned;
 use super::cylinder_list::{CylinderList, Records};
 use super::description::{CylinderRecord, MaterialIndex};
 use super::error::SceneError;
+use super::origins::Origins;
 use super::solid_lists::{SolidRecord, Solids};
 use super::source::Source;
 use crate::math::Bounds;
@@ -31,6 +32,8 @@ pub(super) struct Gathered {
     pub reach: f64,
     /// What a user may want to know of the files.
     pub notes: Vec<String>,
+    /// The files that they come from.
+    pub origins: Origins,
 }
 
 /// What the solids of an entry have in common.
@@ -175,6 +178,11 @@ impl Gathered {
         if !self.notes.iter().any(|known| known == note) {
             self.notes.push(note.to_owned());
         }
+    }
+
+    /// Says that the numbers from `first` on come from a file.
+    pub fn came_from(&mut self, file: &str, is_table: bool, first: u32) {
+        self.origins.add(file, is_table, first, self.numbers);
     }
 
     /// Leaves a row out; it keeps its primitive number.

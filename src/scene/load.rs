@@ -17,6 +17,7 @@ use super::gathered::{Degenerate, Gathered, Look, Refusal};
 use super::graph::{self, Node};
 use super::named_table::Tables;
 use super::names::{quoted, suggestion};
+use super::origins::Origins;
 use super::placing::{Edge, Placements};
 use super::scatter::{Pattern, Scatter};
 use super::scene_file::SceneFile;
@@ -166,11 +167,15 @@ impl Loader<'_> {
         self.add_compositions(&mut solids, Operation::Difference, body.difference)?;
 
         let mut placements = Placements::default();
+        let mut placement_origins = Origins::default();
         for Keys(keys) in body.instance {
             placements.add_instance(source, keys, self.placed(&keys.of)?)?;
         }
         for Keys(keys) in body.instance_table {
+            let first = placements.list.len() as u32;
             placements.add_table(self.tables, keys, self.placed(&keys.of)?)?;
+            let end = placements.list.len() as u32;
+            placement_origins.add(keys.file.get_ref(), true, first, end);
         }
         let scatters = body.scatter.iter().map(|Keys(keys)| {
             let of = self.placed(&keys.of)?;
@@ -188,6 +193,8 @@ impl Loader<'_> {
                 cylinders: solids.records,
                 solids: solids.others,
                 placements: placements.list,
+                solid_origins: solids.origins,
+                placement_origins,
             },
             edges: placements.edges,
             reach: solids.reach,
@@ -204,17 +211,23 @@ impl Loader<'_> {
         for Keys(keys) in body.cylinder_table {
             let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
             let degenerate = self.degenerate(keys.degenerate.as_ref())?;
+            let first = solids.numbers();
             add_table(&mut solids, self.tables, keys, look, degenerate)?;
+            solids.came_from(keys.file.get_ref(), true, first);
         }
         for Keys(keys) in body.swc {
             let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
             let degenerate = self.degenerate(keys.degenerate.as_ref())?;
             let shape = Shape::new(source, keys)?;
+            let first = solids.numbers();
             add_swc(&mut solids, self.tables, keys, look, shape, degenerate)?;
+            solids.came_from(keys.file.get_ref(), false, first);
         }
         for Keys(keys) in body.beam_lattice {
             let lattice = self.beam_lattice(keys)?;
+            let first = solids.numbers();
             add_beam_lattice(&mut solids, source, &keys.file, &lattice)?;
+            solids.came_from(keys.file.get_ref(), false, first);
         }
         Ok(solids)
     }

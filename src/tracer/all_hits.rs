@@ -1,8 +1,24 @@
 //! All hits of a ray, a batch at a time.
 //!
-//! A traversal keeps the first so many hits after the last one that is known.
-//! Hits have a total order, so that the next traversal goes on exactly there:
-//! none is missed or doubled, also among many at the same `t`.
+//! A traversal keeps the first hits after the last one that is known, at most a
+//! batch of them. Hits have a total order, so that the next traversal continues
+//! exactly there: none is lost or repeated, also among many at the same `t`.
+//!
+//! **Time.** A full batch ends the ray where its last hit is, so a traversal of
+//! solids in a row visits about as many as it keeps. Where N solids overlap, as
+//! coincident and concentric ones do, each traversal visits all of them, and
+//! batches of constant size would take N²/batch visits. So a traversal that
+//! visits more than [`GREATEST_COST`] primitives a hit that it may keep is followed
+//! by a batch of twice the size. Then
+//!
+//! - the traversals that double are at most log2 N, with at most N visits each;
+//! - the others visit at most [`GREATEST_COST`] primitives a hit.
+//!
+//! Keeping the least k of the hits takes log k a hit, in a heap. Together that is
+//! N log N.
+//!
+//! **Memory.** A batch grows only while N > [`GREATEST_COST`] · batch, so it stays
+//! below N/8 hits, and at its first size where the range prunes.
 
 use super::frame::LocalRay;
 use super::query::{Found, Keep, Query};
@@ -14,17 +30,26 @@ use crate::math::Ray;
 /// keeping that many in order costs little.
 pub const DEFAULT_BATCH: usize = 32;
 
+/// The most primitives that a traversal visits for each hit of its batch before
+/// the batch grows. Less takes more memory for overlapping solids, more takes
+/// proportionally more time for them. Rays through thickets visit some five
+/// primitives a hit, and their batches shall not grow.
+const GREATEST_COST: usize = 16;
+
 /// The hits of [`Tracer::all_hits`].
 pub struct AllHits<'a> {
     tracer: &'a Tracer,
     /// The ray in use, and the factor that turns its `t` back.
     ray: Option<(Ray, f64)>,
+    /// The most hits of the next traversal.
     batch: usize,
-    /// Those of the last traversal that have not been handed out.
+    /// The hits of the last traversal that have not been handed out.
     known: std::vec::IntoIter<Found>,
-    /// The last one of that traversal, after which the next goes on.
+    /// The last one of that traversal, after which the next continues.
     last: Option<Found>,
     is_complete: bool,
+    /// The primitives visited so far.
+    visits: u64,
 }
 
 impl<'a> AllHits<'a> {
@@ -36,6 +61,7 @@ impl<'a> AllHits<'a> {
             known: Vec::new().into_iter(),
             last: None,
             is_complete: false,
+            visits: 0,
         }
     }
 
@@ -46,12 +72,16 @@ impl<'a> AllHits<'a> {
         let mut query = Query::next(&ray, self.last.take(), self.batch);
         root.search(&LocalRay::new(&ray), &mut query);
         let Keep::Next(next) = query.keep else {
-            unreachable!("the query keeps what it was told to keep");
+            unreachable!("a query keeps the kind of answer that it began with");
         };
-        let hits = next.hits;
+        let hits = next.hits.into_sorted_vec();
         self.is_complete = hits.len() < self.batch;
         self.last = hits.last().cloned();
         self.known = hits.into_iter();
+        self.visits += u64::from(query.callbacks);
+        if query.callbacks as usize > self.batch.saturating_mul(GREATEST_COST) {
+            self.batch *= 2;
+        }
         Some(())
     }
 }
@@ -71,5 +101,72 @@ impl Iterator for AllHits<'_> {
             self.tracer
                 .resolved(root, &ray, factor, &found.place, which),
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::DVec3;
+
+    use super::*;
+    use crate::scene::{CylinderRecord, MaterialIndex, Prototype, Scene};
+    use crate::solid::{Caps, Cylinder};
+    use crate::tracer::Options;
+
+    /// Cylinders across the ray from (-5, 0, 1/2) along x, each with its place on the
+    /// ray and its radius.
+    fn tracer(cylinders: impl Iterator<Item = (f64, f64)>) -> Tracer {
+        let record = |(number, (x, radius)): (usize, (f64, f64))| {
+            let (p0, p1) = (DVec3::new(x, 0.0, 0.0), DVec3::new(x, 0.0, 1.0));
+            let cylinder = Cylinder::new(p0, p1, radius, Caps::Both).expect("a cylinder");
+            CylinderRecord::new(&cylinder, number as u32, MaterialIndex(0))
+        };
+        let root = Prototype {
+            cylinders: cylinders.enumerate().map(record).collect(),
+            ..Prototype::default()
+        };
+        let scene = Arc::new(Scene::new(vec![root]));
+        Tracer::new(scene, &Options::default()).expect("a tracer")
+    }
+
+    /// The hits of that ray, how many primitives it visited for each, and the size of
+    /// the last batch.
+    fn cost(tracer: &Tracer) -> (usize, f64, usize) {
+        let ray = Ray::new(DVec3::new(-5.0, 0.0, 0.5), DVec3::X);
+        let mut hits = tracer.all_hits(&ray, DEFAULT_BATCH);
+        let (mut count, mut before) = (0, (f64::NEG_INFINITY, 0));
+        for hit in hits.by_ref() {
+            let place = (hit.t, hit.primitive);
+            assert!(before < place, "{before:?} before {place:?}");
+            (count, before) = (count + 1, place);
+        }
+        (count, hits.visits as f64 / count as f64, hits.batch)
+    }
+
+    #[test]
+    fn visits_a_hit_grow_with_the_logarithm_where_all_solids_overlap() {
+        for count in [1_000_usize, 10_000, 40_000] {
+            let share = |number: usize| number as f64 / count as f64;
+            let coincident = tracer((0..count).map(|_| (0.0, 1.0)));
+            let concentric = tracer((0..count).map(|number| (0.0, 1.0 + share(number))));
+            for (name, tracer) in [("coincident", coincident), ("concentric", concentric)] {
+                let (hits, visits, batch) = cost(&tracer);
+                assert_eq!(hits, 2 * count, "{name}");
+                let greatest = GREATEST_COST as f64 + libm::log2(count as f64);
+                assert!(visits <= greatest, "{name}, {count}: {visits} visits a hit");
+                assert!(batch <= count / 8, "{name}, {count}: batches of {batch}");
+            }
+        }
+    }
+
+    #[test]
+    fn batches_stay_small_where_the_range_prunes() {
+        for count in [1_000_usize, 40_000] {
+            let (hits, visits, batch) = cost(&tracer((0..count).map(|i| (3.0 * i as f64, 1.0))));
+            assert_eq!((hits, batch), (2 * count, DEFAULT_BATCH));
+            assert!(visits <= 2.0, "{count}: {visits} visits a hit");
+        }
     }
 }

@@ -18,6 +18,7 @@ mod first_hit;
 mod frame;
 mod hit;
 mod options;
+mod outliers;
 mod prototype;
 mod query;
 mod resolve;
@@ -35,6 +36,7 @@ pub use first_hit::FirstHit;
 pub(crate) use frame::{Frame, LocalRay};
 pub use hit::Hit;
 pub use options::{BuildTime, Layout, Options};
+pub use outliers::{Outlier, outliers};
 pub use statistics::Statistics;
 pub use workers::workers;
 
@@ -159,9 +161,9 @@ impl Tracer {
     /// instance path, primitive, entry before exit, and part. The first is that
     /// of [`Tracer::closest`].
     ///
-    /// The hits are found on the way, `batch` of them in a traversal, so that
-    /// memory does not grow with their number; the answer is the same for
-    /// every `batch`, which is taken as at least 1. A tangent is an entry and an exit at the same `t`.
+    /// The hits are found on the way, `batch` of them in a traversal and more where
+    /// very many solids overlap, in a time of N log N for N hits. The answer is the
+    /// same for every `batch`, which is taken as at least 1. A tangent is an entry and an exit at the same `t`.
     #[must_use]
     pub fn all_hits(&self, ray: &Ray, batch: usize) -> AllHits<'_> {
         AllHits::new(self, ray, batch)

@@ -107,18 +107,17 @@ pub(crate) fn resolve(
     which: Which,
 ) -> Hit {
     // Down to the prototype that was hit.
-    let mut prototype = root;
-    let mut local = root.frame.approach(&LocalRay::new(ray));
+    let mut local = LocalRay::new(ray);
     let mut placements = Vec::with_capacity(place.path.len());
-    let mut description = &scene.prototypes[0];
-    for &index in &place.path {
-        let (placement, child) = prototype.placement(index);
-        let way = ChildFromParent::new(&placement.parent_from_child);
-        placements.push((way, placement.parent_from_child));
-        local = child.frame.approach(&local.in_child(&way));
-        prototype = child;
-        description = &scene.prototypes[placement.of.0 as usize];
+    for (group, placement) in Prototype::way_to(root, place) {
+        if let Some(placement) = placement {
+            let way = ChildFromParent::new(&placement.parent_from_child);
+            placements.push((way, placement.parent_from_child));
+            local = local.in_child(&way);
+        }
+        local = group.frame.approach(&local);
     }
+    let description = &scene.prototypes[place.prototype.0 as usize];
 
     // The point on the solid.
     let search = Search {

@@ -9,6 +9,7 @@
 use glam::DVec3;
 
 use super::frame::LocalRay;
+use super::prototype::List;
 use crate::math::Bounds;
 use crate::scene::Listed;
 use crate::solid::{
@@ -40,6 +41,9 @@ impl Met {
 
 /// A solid as queries know it.
 pub(crate) trait TracedSolid: Listed + Send + Sync {
+    /// The list of a prototype that it is in.
+    const LIST: List;
+
     /// What it is called, which says in which list it is.
     fn kind(&self) -> SolidKind;
 
@@ -75,6 +79,8 @@ fn chord<S: ConvexSolid>(solid: &S, ray: &LocalRay) -> Option<Chord> {
 }
 
 impl<S: ConvexSolid + Listed> TracedSolid for S {
+    const LIST: List = List::Solids(S::KIND);
+
     #[inline(always)]
     fn kind(&self) -> SolidKind {
         S::KIND
@@ -126,6 +132,8 @@ impl From<ComposedMeeting> for Met {
 }
 
 impl TracedSolid for Composition {
+    const LIST: List = List::Solids(SolidKind::Union);
+
     fn kind(&self) -> SolidKind {
         self.kind()
     }

@@ -241,7 +241,12 @@ impl Enter<'_> {
     fn enter_from_afar(&self, far: RaySet, entry: &mut PacketEntry) {
         for number in far {
             let (row, lane) = (number / LANES, number % LANES);
-            let (ray, passing) = self.frame.approached(&self.rays.ray(row, lane));
+            let ray = self.rays.ray(row, lane);
+            let passing = self.frame.passing(&ray);
+            if self.frame.is_missed_from_afar(&passing) {
+                continue;
+            }
+            let (ray, passing) = self.frame.moved_if_far(&ray, passing);
             let (t_min, t_max) = (self.t_min[row].0[lane], self.t_max[row].0[lane]);
             let one = self.frame.entry(&ray, &passing, t_min, t_max);
             entry.level.rays.set(row, lane, &ray);

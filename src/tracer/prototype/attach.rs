@@ -1,10 +1,11 @@
-//! Attaches the solids of a prototype to its Embree scene: a user geometry for
-//! each kind that there is.
+//! Attaches the solids of a group to its Embree scene: a user geometry for
+//! each kind that it contains.
 
 use super::blocks::BlockedCylinders;
 use super::cylinders::{Cylinders, SingleCylinders};
 use super::described::{Described, SolidList};
 use super::ends::{Capped, Ends, EndsKind, Mixed, Open};
+use super::members::Members;
 use crate::embree::{self, SceneBuilder};
 use crate::scene::Records;
 use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
@@ -55,23 +56,24 @@ fn attach<E: Ends>(
 /// Attaches the solids of other kinds.
 pub(super) fn attach_solids(
     described: &Described,
+    members: &Members,
     builder: &mut SceneBuilder<Query>,
 ) -> Result<(), embree::Error> {
-    attach_list::<Sphere>(described, builder)?;
-    attach_list::<Cuboid>(described, builder)?;
-    attach_list::<Cone>(described, builder)?;
-    attach_list::<RoundedCone>(described, builder)?;
-    attach_list::<Disk>(described, builder)?;
-    attach_list::<Composition>(described, builder)
+    attach_list::<Sphere>(described, members, builder)?;
+    attach_list::<Cuboid>(described, members, builder)?;
+    attach_list::<Cone>(described, members, builder)?;
+    attach_list::<RoundedCone>(described, members, builder)?;
+    attach_list::<Disk>(described, members, builder)?;
+    attach_list::<Composition>(described, members, builder)
 }
 
 fn attach_list<S: TracedSolid>(
     described: &Described,
+    members: &Members,
     builder: &mut SceneBuilder<Query>,
 ) -> Result<(), embree::Error> {
-    let list = SolidList::<S>::new(described);
-    if !list.records().is_empty() {
-        builder.attach_user(list)?;
+    if members.of(S::LIST).len() > 0 {
+        builder.attach_user(SolidList::<S>::new(described, members))?;
     }
     Ok(())
 }

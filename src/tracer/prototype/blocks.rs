@@ -195,6 +195,7 @@ impl<E: Ends, S: Stored> BlockedCylinders<E, S> {
     /// Puts the cylinders into blocks, on up to `threads` threads.
     pub fn new(cylinders: &Cylinders, threads: usize) -> Self {
         let mut items: Vec<Item> = (0..cylinders.len())
+            .map(|position| cylinders.record(position))
             .map(|number| Item {
                 bounds: cylinders.grown_box(number),
                 number,

@@ -1,4 +1,4 @@
-//! The cylinders of a prototype as Embree's primitives, one each.
+//! The cylinders of a group as Embree's primitives, one each.
 
 use std::marker::PhantomData;
 use std::sync::Arc;
@@ -6,22 +6,27 @@ use std::sync::Arc;
 use super::blocks::GREATEST_RECORDS;
 use super::described::Described;
 use super::ends::{Ends, EndsKind};
+use super::members::{List, Members};
+use super::numbers::Numbers;
 use crate::embree::{Box32, GREATEST_PACKET, RaySet, UserGeometry};
 use crate::scene::{CylinderList, CylinderRecord};
-use crate::solid::Cylinder;
+use crate::solid::{Cylinder, SolidKind};
 use crate::tracer::counters;
 use crate::tracer::query::{Packet, Query};
 
-/// The cylinders of a prototype, where the description keeps them.
+/// The cylinders of a group, where the description keeps them.
 #[derive(Clone)]
 pub(crate) struct Cylinders {
     described: Described,
+    /// The positions of their records.
+    numbers: Numbers,
 }
 
 impl Cylinders {
-    pub fn new(described: &Described) -> Self {
+    pub fn new(described: &Described, members: &Members) -> Self {
         Self {
             described: described.clone(),
+            numbers: members.of(List::Solids(SolidKind::Cylinder)).clone(),
         }
     }
 
@@ -31,7 +36,7 @@ impl Cylinders {
         &self.described
     }
 
-    /// All of them.
+    /// The list of the prototype.
     #[inline(always)]
     pub fn records(&self) -> &CylinderList {
         &self.described.prototype().cylinders
@@ -40,7 +45,13 @@ impl Cylinders {
     /// How many there are.
     #[inline]
     pub fn len(&self) -> u32 {
-        self.records().len() as u32
+        self.numbers.len()
+    }
+
+    /// The position of the record of the cylinder at a position.
+    #[inline(always)]
+    pub fn record(&self, position: u32) -> u32 {
+        self.numbers.number(position)
     }
 
     /// Which ends they have.
@@ -101,7 +112,7 @@ impl<E: Ends> UserGeometry for SingleCylinders<E> {
     }
 
     fn bounds(&self, primitive: u32) -> Box32 {
-        self.cylinders.grown_box(primitive)
+        self.cylinders.grown_box(self.cylinders.record(primitive))
     }
 
     #[inline(always)]
@@ -109,7 +120,8 @@ impl<E: Ends> UserGeometry for SingleCylinders<E> {
         counters::called_back();
         query.callbacks += 1;
         let before = query.bound();
-        query.visit(&self.cylinder(primitive), &self.cylinders, primitive);
+        let record = self.cylinders.record(primitive);
+        query.visit(&self.cylinder(record), &self.cylinders, record);
         (query.bound() < before).then(|| query.t_far())
     }
 
@@ -117,7 +129,7 @@ impl<E: Ends> UserGeometry for SingleCylinders<E> {
     fn occluded(&self, primitive: u32, query: &mut Query) -> bool {
         counters::called_back();
         query.callbacks += 1;
-        query.meets(&self.cylinder(primitive))
+        query.meets(&self.cylinder(self.cylinders.record(primitive)))
     }
 
     #[inline(always)]
@@ -130,14 +142,20 @@ impl<E: Ends> UserGeometry for SingleCylinders<E> {
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        let cylinder = self.cylinder(primitive);
-        packet.visit::<E>(&cylinder, (&self.cylinders, primitive), rays, t_far)
+        let record = self.cylinders.record(primitive);
+        packet.visit::<E>(
+            &self.cylinder(record),
+            (&self.cylinders, record),
+            rays,
+            t_far,
+        )
     }
 
     #[inline(always)]
     fn occluded_packet(&self, primitive: u32, rays: RaySet, packet: &mut Packet) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        packet.meets::<E>(&self.cylinder(primitive), rays)
+        let record = self.cylinders.record(primitive);
+        packet.meets::<E>(&self.cylinder(record), rays)
     }
 }

@@ -3,15 +3,17 @@
 use std::marker::PhantomData;
 use std::sync::Arc;
 
+use super::members::Members;
+use super::numbers::Numbers;
 use crate::embree::{Box32, GREATEST_PACKET, RaySet, UserGeometry};
 use crate::math::Bounds;
-use crate::scene::{self, PrototypeIndex, Scene, SolidRecord};
+use crate::scene::{self, PrototypeIndex, Scene};
 use crate::tracer::counters;
 use crate::tracer::frame::Frame;
 use crate::tracer::query::{Member, Packet, Query};
 use crate::tracer::traced::TracedSolid;
 
-/// A prototype in the description, and its frame.
+/// A prototype in the description, and the frame of a group of it.
 #[derive(Clone)]
 pub(crate) struct Described {
     scene: Arc<Scene>,
@@ -53,31 +55,35 @@ impl Described {
     }
 }
 
-/// The solids of one kind, that are no cylinders: a user geometry with a
+/// The solids of one kind in a group, that are no cylinders: a user geometry with a
 /// primitive for each.
 pub(crate) struct SolidList<S> {
     described: Described,
+    /// The positions of their records.
+    numbers: Numbers,
     kind: PhantomData<fn() -> S>,
 }
 
 impl<S: TracedSolid> SolidList<S> {
-    pub fn new(described: &Described) -> Self {
+    pub fn new(described: &Described, members: &Members) -> Self {
         Self {
             described: described.clone(),
+            numbers: members.of(S::LIST).clone(),
             kind: PhantomData,
         }
-    }
-
-    /// All of them.
-    #[inline(always)]
-    pub fn records(&self) -> &[SolidRecord<S>] {
-        S::list(&self.described.prototype().solids)
     }
 
     /// The solid of a record.
     #[inline(always)]
     pub fn solid(&self, record: u32) -> &S {
-        &self.records()[record as usize].solid
+        let records = S::list(&self.described.prototype().solids);
+        &records[record as usize].solid
+    }
+
+    /// The solid that is a primitive to Embree.
+    #[inline(always)]
+    fn of_primitive(&self, primitive: u32) -> &S {
+        self.solid(self.numbers.number(primitive))
     }
 
     /// Whose they are.
@@ -91,11 +97,11 @@ impl<S: TracedSolid> UserGeometry for SolidList<S> {
     type Query = Query;
 
     fn primitive_count(&self) -> u32 {
-        self.records().len() as u32
+        self.numbers.len()
     }
 
     fn bounds(&self, primitive: u32) -> Box32 {
-        let bounds = self.solid(primitive).bounds();
+        let bounds = self.of_primitive(primitive).bounds();
         if bounds.is_empty() {
             // What set operations leave nothing of; Embree wants a box all the same.
             return Box32 {
@@ -110,14 +116,14 @@ impl<S: TracedSolid> UserGeometry for SolidList<S> {
         counters::called_back();
         query.callbacks += 1;
         let before = query.bound();
-        query.visit_solid(self, primitive);
+        query.visit_solid(self, self.numbers.number(primitive));
         (query.bound() < before).then(|| query.t_far())
     }
 
     fn occluded(&self, primitive: u32, query: &mut Query) -> bool {
         counters::called_back();
         query.callbacks += 1;
-        query.meets_solid(self.solid(primitive))
+        query.meets_solid(self.of_primitive(primitive))
     }
 
     // Inlined for the rows of lanes within, as `embree::callback` says.
@@ -131,13 +137,13 @@ impl<S: TracedSolid> UserGeometry for SolidList<S> {
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        packet.visit_solid(self, primitive, rays, t_far)
+        packet.visit_solid(self, self.numbers.number(primitive), rays, t_far)
     }
 
     #[inline(always)]
     fn occluded_packet(&self, primitive: u32, rays: RaySet, packet: &mut Packet) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        packet.meets_solid(self.solid(primitive), rays)
+        packet.meets_solid(self.of_primitive(primitive), rays)
     }
 }

@@ -1,10 +1,11 @@
-//! A prototype's Embree scene and what its callbacks do.
+//! A prototype that can be traced: what it contains, in groups.
 //!
-//! A prototype has a user geometry for each kind of solid that it has, and one for
-//! its placements if it has any. Where it is and how far
-//! it reaches is known from the start. Its Embree scene is built when it is
-//! asked for, which may be when a first ray gets there: threads that need it
-//! then build it together, and others go on.
+//! Nearly every prototype is one group: a frame, and an Embree scene with a callback for
+//! each primitive (`group`). Where one solid is so far away or so large that its
+//! box alone would set the frame of all others, there are several (`grouping` has the rule,
+//! `members` what they contain). A ray enters them one after another,
+//! each with the range that the hits so far have left. Which groups there are is known
+//! from the start; what each needs is built when a first ray gets there.
 
 mod attach;
 mod blocks;
@@ -12,32 +13,30 @@ mod clusters;
 mod cylinders;
 mod described;
 mod ends;
+mod group;
+mod grouping;
+mod members;
+mod numbers;
 mod placements;
 mod sight;
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
-use rayon::prelude::*;
+use smallvec::SmallVec;
 
 pub(crate) use blocks::{CylinderBlock, block_bytes};
 pub(crate) use cylinders::Cylinders;
 pub(crate) use described::{Described, SolidList};
 pub(crate) use ends::Ends;
+pub(crate) use group::Group;
+pub(crate) use members::{Boxes, List};
 
-use super::frame::{Frame, LocalRay, PacketEntry, PacketLevel, PacketRays};
+use super::frame::{LocalRay, PacketRays};
 use super::options::Layout;
-use super::query::{Packet, Query};
-use super::traced::TracedSolid;
-use crate::embree::{
-    self, Coherence, Device, GREATEST_PACKET, Instructions, JointCommit, PacketWidth, RaySet,
-    SceneBuilder,
-};
+use super::query::{Packet, Place, Query};
+use crate::embree::{self, Device, Instructions, PacketWidth, RaySet};
 use crate::math::Bounds;
 use crate::scene::{Placement, PrototypeIndex, Scene, ViewVolume};
-use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
-use attach::{attach_cylinders, attach_solids};
-use placements::Placements;
-use sight::Sight;
 
 /// With fewer rays than this a packet is given up for single rays: what they
 /// share no longer pays for what Embree does for all lanes.
@@ -82,23 +81,42 @@ fn stays_packet(entered: RaySet, packet: &Packet) -> bool {
 
 /// A prototype that can be traced.
 pub(crate) struct Prototype {
-    /// Holds all its solids.
+    /// Contains all its solids.
     pub bounds: Bounds,
-    /// Holds every point at which a query may place a hit: `bounds`, and what
-    /// roundings on the way through placements can add to it.
-    reach: Bounds,
-    pub frame: Frame,
-    cylinders: Cylinders,
-    placements: Arc<Placements>,
-    workshop: Workshop,
-    scene: OnceLock<Result<JointCommit<Query>, embree::Error>>,
+    /// At least one. The first has most of what rays are after, as a rule.
+    pub groups: Vec<Arc<Group>>,
+    /// The boxes of the groups.
+    boxes: Vec<Bounds>,
+    description: Arc<Scene>,
+    index: PrototypeIndex,
+    children: Children<Self>,
+    /// Whether placements out of view were left out.
+    is_viewed: bool,
 }
 
-/// The prototypes that another one places, without those that hold nothing, in
-/// the order of their indices.
-pub(super) struct Children(Vec<(PrototypeIndex, Arc<Prototype>)>);
+/// Steps from the root to a place. Scenes are rarely nested deeper than what is kept
+/// without the heap.
+type Way<'a, T> = SmallVec<[(T, Option<&'a Placement>); 4]>;
 
-impl Children {
+/// The prototypes that another one places, or a group of each, without those that
+/// contain nothing, in the order of their indices.
+pub(super) struct Children<T>(Vec<(PrototypeIndex, Arc<T>)>);
+
+impl<T> Children<T> {
+    fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The one of an index, if it contains anything.
+    #[inline]
+    pub fn of(&self, index: PrototypeIndex) -> Option<&Arc<T>> {
+        let position = self.0.partition_point(|(known, _)| *known < index);
+        let (known, child) = self.0.get(position)?;
+        (*known == index).then_some(child)
+    }
+}
+
+impl Children<Prototype> {
     /// Those that any of the placements place, of all that are made.
     fn new(placements: &[Placement], made: &[Option<Arc<Prototype>>]) -> Self {
         let mut indices: Vec<PrototypeIndex> = Vec::new();
@@ -118,20 +136,21 @@ impl Children {
         )
     }
 
-    /// The prototype of an index, if it holds anything.
-    #[inline]
-    pub fn of(&self, index: PrototypeIndex) -> Option<&Arc<Prototype>> {
-        let position = self.0.partition_point(|(known, _)| *known < index);
-        let (known, prototype) = self.0.get(position)?;
-        (*known == index).then_some(prototype)
+    /// The groups with a number, of those that have so many.
+    fn groups(&self, group: usize) -> Children<Group> {
+        let groups = self.0.iter().filter_map(|(index, child)| {
+            let group = child.groups.get(group)?;
+            Some((*index, Arc::clone(group)))
+        });
+        Children(groups.collect())
     }
 }
 
 impl Prototype {
-    /// Makes a prototype whose children are made. `made` answers with the child
-    /// of an index; `None` for one that holds nothing.
+    /// Makes a prototype whose children are made. `made` has the child
+    /// of each index; `None` for one that contains nothing.
     ///
-    /// Answers `None` if the prototype itself holds nothing.
+    /// Returns `None` if the prototype itself contains nothing.
     pub fn new(
         workshop: &Workshop,
         description: &Arc<Scene>,
@@ -139,237 +158,145 @@ impl Prototype {
         made: &[Option<Arc<Self>>],
     ) -> Option<Arc<Self>> {
         let prototype = &description.prototypes[index.0 as usize];
-        let union = |one: Bounds, other: Bounds| one.union(&other);
-        let cylinders = (0..prototype.cylinders.len()).into_par_iter();
-        let cylinders = cylinders
-            .with_min_len(1 << 10)
-            .map(|record| prototype.cylinders.get(record).cylinder().bounds())
-            .reduce(|| Bounds::EMPTY, union);
-        let solids = cylinders.union(&prototype.solids.bounds());
-        let child = |placement: &Placement| made[placement.of.0 as usize].as_ref();
-        let placed = || {
-            let placements = prototype.placements.par_iter().with_min_len(1 << 10);
-            placements.filter_map(|placement| Some((placement, child(placement)?)))
+        let boxes_of = |of: PrototypeIndex| {
+            let child = made[of.0 as usize].as_ref();
+            child.map_or(&[][..], |child| &child.boxes)
         };
-        let bounds = placed()
-            .map(|(placement, child)| child.bounds.transformed(&placement.parent_from_child))
-            .reduce(|| solids, union);
-        if bounds.is_empty() {
-            return None;
-        }
-        let sight = Sight::new(&bounds, placed().map(|(placement, _)| placement));
-        let reach = placed()
-            .map(|(placement, child)| sight.placement_reach(placement, &child.reach))
-            .reduce(|| solids, union);
-        let frame = Frame::new(&reach);
-
-        let may_reach = |view: &ViewVolume| {
-            let placements = prototype.placements.par_iter().with_min_len(1 << 10);
-            let numbered = placements.enumerate().filter(|(_, placement)| {
-                child(placement).is_some_and(|child| {
-                    view.may_reach(&sight.placement_reach(placement, &child.reach))
-                })
-            });
-            numbered.map(|(number, _)| number as u32).collect()
-        };
-        // Only in the root the rays are those of the caller.
-        let view = workshop.view.filter(|_| index == PrototypeIndex::ROOT);
-        let placements = Placements {
-            in_view: view.as_ref().map(may_reach),
-            description: Arc::clone(description),
-            prototype: index,
-            frame: frame.clone(),
-            sight,
-            children: Children::new(&prototype.placements, made),
-            instructions: workshop.instructions,
-        };
+        let groups = Boxes::new(prototype, &boxes_of).groups();
+        let children = Children::new(&prototype.placements, made);
+        let boxes: Vec<Bounds> = groups.iter().map(|(_, bounds)| *bounds).collect();
+        let bounds = boxes
+            .iter()
+            .copied()
+            .reduce(|one, other| one.union(&other))?;
+        let groups = groups.into_iter();
+        let groups = groups
+            .map(|group| Arc::new(Group::new(workshop, description, index, group, &children)));
         Some(Arc::new(Self {
             bounds,
-            reach,
-            cylinders: Cylinders::new(&Described::new(description, index, &frame)),
-            frame,
-            placements: Arc::new(placements),
-            workshop: workshop.clone(),
-            scene: OnceLock::new(),
+            groups: groups.collect(),
+            boxes,
+            description: Arc::clone(description),
+            index,
+            children,
+            is_viewed: workshop.view.is_some() && index == PrototypeIndex::ROOT,
         }))
     }
 
-    /// Builds the Embree scene, unless it is built.
+    /// Builds the Embree scenes, unless they are built.
     pub fn build(&self) -> Result<(), embree::Error> {
-        self.joined().map(|_| ())
+        self.groups.iter().try_for_each(|group| group.build())
+    }
+
+    /// Whether an Embree scene is built or being built.
+    pub fn is_touched(&self) -> bool {
+        self.groups.iter().any(|group| group.is_touched())
     }
 
     /// How many placements no ray will reach.
     pub fn placements_out_of_view(&self) -> usize {
-        self.placements.out_of_view()
-    }
-
-    /// Whether the Embree scene is built or being built.
-    pub fn is_touched(&self) -> bool {
-        self.scene.get().is_some()
-    }
-
-    /// The Embree scene, which is built if this is the first time it is needed.
-    ///
-    /// # Panics
-    /// When Embree refuses, which is for want of memory: boxes are legal by the
-    /// frame's making, and a query has no way to answer with an error. Whoever
-    /// wants one builds everything beforehand.
-    #[inline]
-    fn scene(&self) -> &embree::Scene<Query> {
-        match self.joined() {
-            Ok(scene) => scene,
-            Err(error) => panic!("a prototype cannot be built when a ray reaches it: {error}"),
+        if !self.is_viewed {
+            return 0;
         }
+        let groups = self.groups.iter();
+        let mut in_view: Vec<u32> = groups
+            .flat_map(|group| group.placements_in_view())
+            .collect();
+        in_view.sort_unstable();
+        in_view.dedup();
+        self.placements().len() - in_view.len()
     }
 
-    #[inline]
-    fn joined(&self) -> Result<&embree::Scene<Query>, embree::Error> {
-        let scene = self.scene.get_or_init(|| self.begin());
-        scene.as_ref().map_err(Clone::clone)?.join()
-    }
-
-    /// Makes Embree's scene ready to be built.
-    #[cold]
-    fn begin(&self) -> Result<JointCommit<Query>, embree::Error> {
-        let mut builder = SceneBuilder::new(&self.workshop.device)?;
-        let layout = self.workshop.layout;
-        attach_cylinders(&self.cylinders, layout, self.workshop.threads, &mut builder)?;
-        attach_solids(self.cylinders.described(), &mut builder)?;
-        if !self.placements.children.0.is_empty() {
-            builder.attach_user(Arc::clone(&self.placements))?;
-        }
-        Ok(builder.into_joint())
-    }
-
-    /// The bytes that are kept for the cylinders beside the description and
-    /// Embree's tree.
+    /// The bytes that are kept beside the description and Embree's trees.
     pub fn kept_bytes(&self) -> usize {
-        match self.workshop.layout {
-            Layout::Block if self.is_touched() => {
-                let records = self.cylinders.records().records();
-                block_bytes(u64::from(self.cylinders.len()), records) as usize
-            }
-            Layout::Block | Layout::Single => 0,
-        }
+        self.groups.iter().map(|group| group.kept_bytes()).sum()
+    }
+
+    fn placements(&self) -> &[Placement] {
+        &self.description.prototypes[self.index.0 as usize].placements
     }
 
     /// A placement and the prototype it places, which is there because a hit
     /// lies in it.
     pub fn placement(&self, index: u32) -> (&Placement, &Arc<Self>) {
-        let placed = self.placements.get(index);
-        placed.expect("a hit lies in a prototype that holds something")
+        let placement = &self.placements()[index as usize];
+        let child = self.children.of(placement.of);
+        (
+            placement,
+            child.expect("a hit lies in a prototype that contains something"),
+        )
+    }
+
+    /// The number of the group with an entry of a list.
+    fn group_with(&self, list: List, number: u32) -> usize {
+        if self.groups.len() == 1 {
+            return 0;
+        }
+        let mut groups = self.groups.iter();
+        let group = groups.position(|group| group.members.of(list).contains(number));
+        group.expect("what is hit is in a group")
+    }
+
+    /// The groups on the way from the root to a place, each with the placement that led
+    /// there; the root has none.
+    pub fn way_to<'a>(root: &'a Arc<Self>, place: &Place) -> Way<'a, &'a Group> {
+        let mut prototypes = Way::new();
+        prototypes.push((root, None));
+        let mut last = root;
+        for &index in &place.path {
+            let (placement, child) = last.placement(index);
+            prototypes.push((child, Some(placement)));
+            last = child;
+        }
+        // A group of a child is a primitive in a group of its parent: so the groups
+        // follow from the last one on.
+        let mut list = List::Solids(place.member.kind);
+        let mut number = place.member.record;
+        let numbers = place.path.iter().rev().copied().chain([0]);
+        let mut way = Way::new();
+        for ((prototype, placement), above) in prototypes.into_iter().rev().zip(numbers) {
+            let group = prototype.group_with(list, number);
+            way.push((&*prototype.groups[group], placement));
+            (list, number) = (List::Placements { group }, above);
+        }
+        way.reverse();
+        way
     }
 
     /// Traces for the hits that `query` keeps.
     pub fn search(&self, ray: &LocalRay, query: &mut Query) {
-        if let Some((level, ray32)) = query.enter(&self.frame, ray) {
-            let outer = query.level.replace(level);
-            self.scene().closest(&ray32, query);
-            query.level = outer;
+        for group in &self.groups {
+            group.search(ray, query);
+        }
+    }
+
+    /// As [`Prototype::search`], but visits every primitive, wherever the ray is.
+    pub fn search_exhaustively(&self, ray: &LocalRay, query: &mut Query) {
+        for group in &self.groups {
+            group.search_exhaustively(ray, query);
         }
     }
 
     /// Whether anything is hit.
     pub fn occluded(&self, ray: &LocalRay, query: &mut Query) -> bool {
-        let Some((level, ray32)) = query.enter(&self.frame, ray) else {
-            return false;
-        };
-        let outer = query.level.replace(level);
-        let hit = self.scene().any(&ray32, query);
-        query.level = outer;
-        hit
+        self.groups.iter().any(|group| group.occluded(ray, query))
     }
 
-    /// Traces rays of a packet for their first hits. Answers with those whose
-    /// first hit is nearer now.
-    pub fn search_packet(&self, rays: RaySet, local: &PacketRays, packet: &mut Packet) -> RaySet {
-        let PacketEntry {
-            level,
-            rays32,
-            entered,
-        } = packet.enter(&self.frame, rays, local, self.workshop.instructions);
-        let before: [f64; GREATEST_PACKET] = std::array::from_fn(|ray| packet.bound(ray));
-        if stays_packet(entered, packet) {
-            packet.within(level, |packet| {
-                let (scene, width) = (self.scene(), self.workshop.packet_width());
-                scene.closest_packet(&rays32, entered, width, Coherence::Coherent, packet);
-            });
-        } else {
-            self.each_alone(entered, &level, packet, |scene, ray, query| {
-                scene.closest(&rays32.ray(ray), query);
-            });
+    /// Traces rays of a packet for their first hits.
+    pub fn search_packet(&self, rays: RaySet, local: &PacketRays, packet: &mut Packet) {
+        for group in &self.groups {
+            group.search_packet(rays, local, packet);
         }
-        let mut nearer = RaySet::EMPTY;
-        for ray in entered {
-            if packet.bound(ray) < before[ray] {
-                nearer.insert(ray);
-            }
-        }
-        nearer
     }
 
     /// Those rays of a packet for which anything is hit.
     pub fn occluded_packet(&self, rays: RaySet, local: &PacketRays, packet: &mut Packet) -> RaySet {
-        let PacketEntry {
-            level,
-            rays32,
-            entered,
-        } = packet.enter(&self.frame, rays, local, self.workshop.instructions);
-        if stays_packet(entered, packet) {
-            return packet.within(level, |packet| {
-                let (scene, width) = (self.scene(), self.workshop.packet_width());
-                scene.any_packet(&rays32, entered, width, Coherence::Coherent, packet)
-            });
-        }
         let mut blocked = RaySet::EMPTY;
-        self.each_alone(entered, &level, packet, |scene, ray, query| {
-            if scene.any(&rays32.ray(ray), query) {
-                blocked.insert(ray);
+        for group in &self.groups {
+            if blocked != rays {
+                blocked = blocked | group.occluded_packet(rays - blocked, local, packet);
             }
-        });
+        }
         blocked
-    }
-
-    /// Traces rays of a packet one by one.
-    fn each_alone(
-        &self,
-        rays: RaySet,
-        level: &PacketLevel,
-        packet: &mut Packet,
-        mut trace: impl FnMut(&embree::Scene<Query>, usize, &mut Query),
-    ) {
-        for ray in rays {
-            packet.alone(ray, level.of_ray(ray), |query| {
-                trace(self.scene(), ray, query);
-            });
-        }
-    }
-
-    /// As [`Prototype::search`], but visits every primitive, also where the ray
-    /// is nowhere near: neither boxes nor spheres have a say.
-    pub fn search_exhaustively(&self, ray: &LocalRay, query: &mut Query) {
-        let outer = query.level.replace(self.frame.enter_unseen(ray));
-        for record in 0..self.cylinders.len() {
-            query.visit(&self.cylinders.cylinder(record), &self.cylinders, record);
-        }
-        self.visit_list::<Sphere>(query);
-        self.visit_list::<Cuboid>(query);
-        self.visit_list::<Cone>(query);
-        self.visit_list::<RoundedCone>(query);
-        self.visit_list::<Disk>(query);
-        self.visit_list::<Composition>(query);
-        for placement in 0..self.placements.len() {
-            self.placements
-                .visit(placement, query, Self::search_exhaustively);
-        }
-        query.level = outer;
-    }
-    /// Visits every solid of one kind.
-    fn visit_list<S: TracedSolid>(&self, query: &mut Query) {
-        let list = SolidList::<S>::new(self.cylinders.described());
-        for record in 0..list.records().len() as u32 {
-            query.visit_solid(&list, record);
-        }
     }
 }

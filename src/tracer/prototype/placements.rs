@@ -1,9 +1,10 @@
-//! The placements of a prototype as Embree's primitives.
+//! The placements of a group as Embree's primitives.
 
 use std::sync::Arc;
 
+use super::numbers::Numbers;
 use super::sight::Sight;
-use super::{Children, Prototype};
+use super::{Children, Group};
 use crate::embree::{Box32, GREATEST_PACKET, Instructions, RaySet, UserGeometry};
 use crate::math::{Bounds, ChildFromParent};
 use crate::scene::{Placement, PrototypeIndex, Scene};
@@ -11,7 +12,8 @@ use crate::tracer::counters;
 use crate::tracer::frame::{Frame, IntoChild, LocalRay, PacketRays};
 use crate::tracer::query::{Packet, Query};
 
-/// The placements of a prototype, where the description keeps them: there is
+/// Placements of a prototype, each of them for the group with the same number of what
+/// it places. The description keeps them: there is
 /// nothing else in memory of a placement but its leaf in Embree's tree.
 ///
 /// The way back into the child's space is worked out on each visit. It is some
@@ -22,9 +24,11 @@ pub(super) struct Placements {
     pub prototype: PrototypeIndex,
     pub frame: Frame,
     pub sight: Sight,
-    pub children: Children,
-    /// The numbers of those that rays may reach, if it is known.
-    pub in_view: Option<Vec<u32>>,
+    pub children: Children<Group>,
+    /// The numbers of the placements.
+    pub all: Numbers,
+    /// The numbers of those that rays may reach.
+    pub in_view: Numbers,
     pub instructions: Instructions,
 }
 
@@ -33,38 +37,20 @@ impl Placements {
         &self.description.prototypes[self.prototype.0 as usize].placements
     }
 
-    /// How many there are.
-    pub fn len(&self) -> u32 {
-        self.placements().len() as u32
-    }
-
-    /// How many there are that no ray will reach.
-    pub fn out_of_view(&self) -> usize {
-        let in_view = self.in_view.as_ref();
-        in_view.map_or(0, |numbers| self.placements().len() - numbers.len())
-    }
-
-    /// The number of the placement that is a primitive to Embree.
+    /// A placement and the group it places, if there is anything.
     #[inline]
-    fn number(&self, primitive: u32) -> u32 {
-        let in_view = self.in_view.as_ref();
-        in_view.map_or(primitive, |numbers| numbers[primitive as usize])
-    }
-
-    /// A placement and the prototype it places, if that holds anything.
-    #[inline]
-    pub fn get(&self, index: u32) -> Option<(&Placement, &Arc<Prototype>)> {
+    fn get(&self, index: u32) -> Option<(&Placement, &Arc<Group>)> {
         let placement = &self.placements()[index as usize];
         Some((placement, self.children.of(placement.of)?))
     }
 
-    /// Hands the query's ray to `trace` in the space of the placed prototype.
+    /// Hands the query's ray to `trace` in the space of the placed group.
     #[inline]
     pub fn visit<T: Default>(
         &self,
         index: u32,
         query: &mut Query,
-        trace: impl FnOnce(&Prototype, &LocalRay, &mut Query) -> T,
+        trace: impl FnOnce(&Group, &LocalRay, &mut Query) -> T,
     ) -> T {
         let Some((placement, child)) = self.get(index) else {
             return T::default();
@@ -85,7 +71,7 @@ impl Placements {
         index: u32,
         rays: RaySet,
         packet: &mut Packet,
-        trace: impl FnOnce(&Prototype, &PacketRays, &mut Packet) -> RaySet,
+        trace: impl FnOnce(&Group, &PacketRays, &mut Packet) -> RaySet,
     ) -> RaySet {
         let Some((placement, child)) = self.get(index) else {
             return RaySet::EMPTY;
@@ -107,14 +93,13 @@ impl UserGeometry for Arc<Placements> {
     type Query = Query;
 
     fn primitive_count(&self) -> u32 {
-        let in_view = self.in_view.as_ref();
-        in_view.map_or(self.len(), |numbers| numbers.len() as u32)
+        self.in_view.len()
     }
 
     fn bounds(&self, primitive: u32) -> Box32 {
         // Where nothing is placed any box will do; the least is best.
         let reach = self
-            .get(self.number(primitive))
+            .get(self.in_view.number(primitive))
             .map_or(Bounds::at(self.frame.centre()), |(placement, child)| {
                 self.sight.placement_reach(placement, &child.reach)
             });
@@ -125,14 +110,14 @@ impl UserGeometry for Arc<Placements> {
         counters::called_back();
         query.callbacks += 1;
         let before = query.bound();
-        self.visit(self.number(primitive), query, Prototype::search);
+        self.visit(self.in_view.number(primitive), query, Group::search);
         (query.bound() < before).then(|| query.t_far())
     }
 
     fn occluded(&self, primitive: u32, query: &mut Query) -> bool {
         counters::called_back();
         query.callbacks += 1;
-        self.visit(self.number(primitive), query, Prototype::occluded)
+        self.visit(self.in_view.number(primitive), query, Group::occluded)
     }
 
     fn intersect_packet(
@@ -144,7 +129,7 @@ impl UserGeometry for Arc<Placements> {
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        let number = self.number(primitive);
+        let number = self.in_view.number(primitive);
         let shorter = self.visit_packet(number, rays, packet, |child, in_child, packet| {
             child.search_packet(rays, in_child, packet)
         });
@@ -157,7 +142,7 @@ impl UserGeometry for Arc<Placements> {
     fn occluded_packet(&self, primitive: u32, rays: RaySet, packet: &mut Packet) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        let number = self.number(primitive);
+        let number = self.in_view.number(primitive);
         self.visit_packet(number, rays, packet, |child, in_child, packet| {
             child.occluded_packet(rays, in_child, packet)
         })

@@ -1,6 +1,7 @@
 //! The hits that a query keeps, and their order.
 
 use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
 use smallvec::SmallVec;
 
@@ -89,7 +90,7 @@ pub(crate) struct Found {
 }
 
 impl Found {
-    /// How a hit that is not kept yet compares with this one: by `t`, then by
+    /// Compares a hit that is not kept yet with this one: by `t`, then by
     /// the instance path, the primitive, the number of the crossing, entry before exit,
     /// and the part.
     /// No two hits of a ray are equal.
@@ -107,6 +108,26 @@ impl Found {
     }
 }
 
+impl Ord for Found {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.order(&self.met, &self.place.path, self.primitive)
+    }
+}
+
+impl PartialOrd for Found {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Found {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Found {}
+
 /// What a query is after.
 #[derive(Debug)]
 pub(crate) enum Keep {
@@ -118,13 +139,14 @@ pub(crate) enum Keep {
     Holding(Vec<Place>),
 }
 
-/// The next hits after one that is known, at most so many.
+/// The first `most` hits after one that is known.
 #[derive(Debug)]
 pub(crate) struct Next {
     pub after: Option<Found>,
     pub most: usize,
-    /// In order.
-    pub hits: Vec<Found>,
+    /// The last of them on top: the one that an earlier hit replaces, in time
+    /// logarithmic in `most`.
+    pub hits: BinaryHeap<Found>,
 }
 
 impl Keep {
@@ -134,7 +156,7 @@ impl Keep {
         match self {
             Self::First(first) => first.as_ref().map_or(t_max, |first| first.t),
             Self::Next(next) if next.hits.len() == next.most => {
-                next.hits.last().map_or(t_max, |last| last.met.meeting.t)
+                next.hits.peek().map_or(t_max, |last| last.met.meeting.t)
             }
             Self::Next(_) | Self::Holding(_) => t_max,
         }
@@ -159,15 +181,16 @@ impl Next {
         {
             return;
         }
-        let position = self.hits.partition_point(|kept| order(kept).is_gt());
-        if position < self.most {
-            self.hits.truncate(self.most - 1);
-            let found = Found {
-                met,
-                primitive,
-                place: place(),
+        if self.hits.len() == self.most {
+            match self.hits.peek() {
+                Some(last) if order(last).is_lt() => self.hits.pop(),
+                _ => return,
             };
-            self.hits.insert(position, found);
         }
+        self.hits.push(Found {
+            met,
+            primitive,
+            place: place(),
+        });
     }
 }

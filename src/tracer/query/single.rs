@@ -1,5 +1,7 @@
 //! A query of one ray.
 
+use std::collections::BinaryHeap;
+
 use glam::DVec3;
 
 use super::found::{Found, InstancePath, Keep, Member, Nearest, Next, Place};
@@ -49,7 +51,7 @@ impl Query {
 
     /// A query for the next hits after one, at most `most`.
     pub fn next(ray: &Ray, after: Option<Found>, most: usize) -> Self {
-        let hits = Vec::new();
+        let hits = BinaryHeap::new();
         Self {
             keep: Keep::Next(Next { after, most, hits }),
             ..Self::first(ray)

@@ -1,0 +1,67 @@
+//! The files that solids and placements come from, for messages about single ones.
+
+/// What the entries of a prototype come from, in runs of consecutive numbers.
+#[derive(Clone, Debug, Default)]
+pub struct Origins {
+    runs: Vec<Run>,
+}
+
+/// Entries that come from one file.
+#[derive(Clone, Debug)]
+struct Run {
+    first: u32,
+    file: String,
+    /// Whether each row is an entry, also those that were skipped.
+    is_table: bool,
+    count: u32,
+}
+
+/// What an entry comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Origin<'a> {
+    /// The file, as the scene file names it.
+    pub file: &'a str,
+    /// The number of the row with data, from 1, where the file is a table.
+    pub row: Option<u32>,
+}
+
+impl Origins {
+    /// Adds the entries from `first` up to `end` that come from a file.
+    pub(super) fn add(&mut self, file: &str, is_table: bool, first: u32, end: u32) {
+        self.runs.push(Run {
+            first,
+            file: file.to_owned(),
+            is_table,
+            count: end - first,
+        });
+    }
+
+    /// What the entry of a number comes from; `None` if the scene file states it.
+    #[must_use]
+    pub fn of(&self, number: u32) -> Option<Origin<'_>> {
+        let mut runs = self.runs.iter();
+        let run = runs.find(|run| (run.first..run.first + run.count).contains(&number))?;
+        Some(Origin {
+            file: &run.file,
+            row: run.is_table.then(|| number - run.first + 1),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_have_the_rows_of_their_table() {
+        let mut origins = Origins::default();
+        origins.add("twigs.csv", true, 2, 5);
+        origins.add("cell.swc", false, 5, 9);
+        assert_eq!(origins.of(1), None);
+        let row = |file, row| Some(Origin { file, row });
+        assert_eq!(origins.of(2), row("twigs.csv", Some(1)));
+        assert_eq!(origins.of(4), row("twigs.csv", Some(3)));
+        assert_eq!(origins.of(5), row("cell.swc", None));
+        assert_eq!(origins.of(9), None);
+    }
+}

@@ -1,0 +1,283 @@
+//! A group: solids and placements of a prototype that have a frame and an Embree
+//! scene in common.
+//!
+//! A group has a user geometry for each kind of solid in it, and for its
+//! placements. Its frame is known from the start. Its Embree scene is built when
+//! it is first needed, which may be when a first ray gets there: threads that need
+//! it then build it together, and others continue.
+
+use std::sync::{Arc, OnceLock};
+
+use rayon::prelude::*;
+
+use super::attach::{attach_cylinders, attach_solids};
+use super::blocks::block_bytes;
+use super::cylinders::Cylinders;
+use super::described::{Described, SolidList};
+use super::members::{List, Members};
+use super::placements::Placements;
+use super::sight::Sight;
+use super::{Children, Prototype, Workshop, stays_packet};
+use crate::embree::{self, Coherence, GREATEST_PACKET, JointCommit, RaySet, SceneBuilder};
+use crate::math::Bounds;
+use crate::scene::{PrototypeIndex, Scene};
+use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, SolidKind, Sphere};
+use crate::tracer::frame::{Frame, LocalRay, PacketEntry, PacketLevel, PacketRays};
+use crate::tracer::options::Layout;
+use crate::tracer::query::{Packet, Query};
+use crate::tracer::traced::TracedSolid;
+
+/// A group that can be traced.
+pub(crate) struct Group {
+    /// Contains every point at which a query may place a hit: the box of its members,
+    /// and what roundings on the way through placements can add to it.
+    pub reach: Bounds,
+    pub frame: Frame,
+    /// What it contains of the prototype.
+    pub members: Members,
+    cylinders: Cylinders,
+    /// The placements, a geometry for each group of what they place.
+    placements: Vec<Arc<Placements>>,
+    workshop: Workshop,
+    scene: OnceLock<Result<JointCommit<Query>, embree::Error>>,
+}
+
+impl Group {
+    /// Makes a group of a prototype from its members and their box, which is not empty.
+    pub fn new(
+        workshop: &Workshop,
+        description: &Arc<Scene>,
+        index: PrototypeIndex,
+        (members, bounds): (Members, Bounds),
+        children: &Children<Prototype>,
+    ) -> Self {
+        let prototype = &description.prototypes[index.0 as usize];
+        let lists: Vec<_> = members.placements().collect();
+        let placed = || {
+            lists.par_iter().flat_map(|&(group, numbers)| {
+                numbers.par_iter().filter_map(move |number| {
+                    let placement = &prototype.placements[number as usize];
+                    let child = children.of(placement.of)?.groups.get(group)?;
+                    Some((placement, child))
+                })
+            })
+        };
+        let sight = Sight::new(&bounds, placed().map(|(placement, _)| placement));
+        let reach = placed()
+            .map(|(placement, child)| sight.placement_reach(placement, &child.reach))
+            .reduce(|| bounds, |one, other| one.union(&other));
+        let frame = Frame::new(&reach);
+
+        // Only in the root the rays are those of the caller.
+        let view = workshop.view.filter(|_| index == PrototypeIndex::ROOT);
+        let placements = lists.iter().filter_map(|&(group, all)| {
+            let children = children.groups(group);
+            (!children.is_empty()).then(|| {
+                let in_view = view.map(|view| {
+                    all.filtered(|number| {
+                        let placement = &prototype.placements[number as usize];
+                        children.of(placement.of).is_some_and(|child| {
+                            view.may_reach(&sight.placement_reach(placement, &child.reach))
+                        })
+                    })
+                });
+                Arc::new(Placements {
+                    in_view: in_view.unwrap_or_else(|| all.clone()),
+                    all: all.clone(),
+                    description: Arc::clone(description),
+                    prototype: index,
+                    frame: frame.clone(),
+                    sight,
+                    children,
+                    instructions: workshop.instructions,
+                })
+            })
+        });
+        let placements = placements.collect();
+        let described = Described::new(description, index, &frame);
+        Self {
+            reach,
+            cylinders: Cylinders::new(&described, &members),
+            frame,
+            placements,
+            members,
+            workshop: workshop.clone(),
+            scene: OnceLock::new(),
+        }
+    }
+
+    /// The placements that rays may reach.
+    pub fn placements_in_view(&self) -> impl Iterator<Item = u32> {
+        self.placements.iter().flat_map(|one| one.in_view.iter())
+    }
+
+    /// Builds the Embree scene, unless it is built.
+    pub fn build(&self) -> Result<(), embree::Error> {
+        self.joined().map(|_| ())
+    }
+
+    /// Whether the Embree scene is built or being built.
+    pub fn is_touched(&self) -> bool {
+        self.scene.get().is_some()
+    }
+
+    /// The Embree scene, which is built if this is the first time it is needed.
+    ///
+    /// # Panics
+    /// When Embree refuses, which is for want of memory: boxes are legal by the
+    /// frame's making, and a query has no way to answer with an error. Whoever
+    /// wants one builds everything beforehand.
+    #[inline]
+    fn scene(&self) -> &embree::Scene<Query> {
+        match self.joined() {
+            Ok(scene) => scene,
+            Err(error) => panic!("a prototype cannot be built when a ray reaches it: {error}"),
+        }
+    }
+
+    #[inline]
+    fn joined(&self) -> Result<&embree::Scene<Query>, embree::Error> {
+        let scene = self.scene.get_or_init(|| self.begin());
+        scene.as_ref().map_err(Clone::clone)?.join()
+    }
+
+    /// Makes Embree's scene ready to be built.
+    #[cold]
+    fn begin(&self) -> Result<JointCommit<Query>, embree::Error> {
+        let mut builder = SceneBuilder::new(&self.workshop.device)?;
+        let layout = self.workshop.layout;
+        attach_cylinders(&self.cylinders, layout, self.workshop.threads, &mut builder)?;
+        attach_solids(self.cylinders.described(), &self.members, &mut builder)?;
+        for placements in &self.placements {
+            builder.attach_user(Arc::clone(placements))?;
+        }
+        Ok(builder.into_joint())
+    }
+
+    /// The bytes that are kept for the members beside the description and
+    /// Embree's tree.
+    pub fn kept_bytes(&self) -> usize {
+        let blocks = match self.workshop.layout {
+            Layout::Block if self.is_touched() => {
+                let records = self.cylinders.records().records();
+                block_bytes(u64::from(self.cylinders.len()), records) as usize
+            }
+            Layout::Block | Layout::Single => 0,
+        };
+        self.members.bytes() + blocks
+    }
+
+    /// Traces for the hits that `query` keeps.
+    pub fn search(&self, ray: &LocalRay, query: &mut Query) {
+        if let Some((level, ray32)) = query.enter(&self.frame, ray) {
+            let outer = query.level.replace(level);
+            self.scene().closest(&ray32, query);
+            query.level = outer;
+        }
+    }
+
+    /// Whether anything is hit.
+    pub fn occluded(&self, ray: &LocalRay, query: &mut Query) -> bool {
+        let Some((level, ray32)) = query.enter(&self.frame, ray) else {
+            return false;
+        };
+        let outer = query.level.replace(level);
+        let hit = self.scene().any(&ray32, query);
+        query.level = outer;
+        hit
+    }
+
+    /// Traces rays of a packet for their first hits. Answers with those whose
+    /// first hit is nearer now.
+    pub fn search_packet(&self, rays: RaySet, local: &PacketRays, packet: &mut Packet) -> RaySet {
+        let PacketEntry {
+            level,
+            rays32,
+            entered,
+        } = packet.enter(&self.frame, rays, local, self.workshop.instructions);
+        let before: [f64; GREATEST_PACKET] = std::array::from_fn(|ray| packet.bound(ray));
+        if stays_packet(entered, packet) {
+            packet.within(level, |packet| {
+                let (scene, width) = (self.scene(), self.workshop.packet_width());
+                scene.closest_packet(&rays32, entered, width, Coherence::Coherent, packet);
+            });
+        } else {
+            self.each_alone(entered, &level, packet, |scene, ray, query| {
+                scene.closest(&rays32.ray(ray), query);
+            });
+        }
+        let mut nearer = RaySet::EMPTY;
+        for ray in entered {
+            if packet.bound(ray) < before[ray] {
+                nearer.insert(ray);
+            }
+        }
+        nearer
+    }
+
+    /// Those rays of a packet for which anything is hit.
+    pub fn occluded_packet(&self, rays: RaySet, local: &PacketRays, packet: &mut Packet) -> RaySet {
+        let PacketEntry {
+            level,
+            rays32,
+            entered,
+        } = packet.enter(&self.frame, rays, local, self.workshop.instructions);
+        if stays_packet(entered, packet) {
+            return packet.within(level, |packet| {
+                let (scene, width) = (self.scene(), self.workshop.packet_width());
+                scene.any_packet(&rays32, entered, width, Coherence::Coherent, packet)
+            });
+        }
+        let mut blocked = RaySet::EMPTY;
+        self.each_alone(entered, &level, packet, |scene, ray, query| {
+            if scene.any(&rays32.ray(ray), query) {
+                blocked.insert(ray);
+            }
+        });
+        blocked
+    }
+
+    /// Traces rays of a packet one by one.
+    fn each_alone(
+        &self,
+        rays: RaySet,
+        level: &PacketLevel,
+        packet: &mut Packet,
+        mut trace: impl FnMut(&embree::Scene<Query>, usize, &mut Query),
+    ) {
+        for ray in rays {
+            packet.alone(ray, level.of_ray(ray), |query| {
+                trace(self.scene(), ray, query);
+            });
+        }
+    }
+
+    /// As [`Group::search`], but visits every primitive, wherever the
+    /// ray is: neither boxes nor spheres are tested.
+    pub fn search_exhaustively(&self, ray: &LocalRay, query: &mut Query) {
+        let outer = query.level.replace(self.frame.enter_unseen(ray));
+        for record in self.members.of(List::Solids(SolidKind::Cylinder)).iter() {
+            query.visit(&self.cylinders.cylinder(record), &self.cylinders, record);
+        }
+        self.visit_list::<Sphere>(query);
+        self.visit_list::<Cuboid>(query);
+        self.visit_list::<Cone>(query);
+        self.visit_list::<RoundedCone>(query);
+        self.visit_list::<Disk>(query);
+        self.visit_list::<Composition>(query);
+        for placements in &self.placements {
+            for number in placements.all.iter() {
+                placements.visit(number, query, Self::search_exhaustively);
+            }
+        }
+        query.level = outer;
+    }
+
+    /// Visits every solid of one kind.
+    fn visit_list<S: TracedSolid>(&self, query: &mut Query) {
+        let list = SolidList::<S>::new(self.cylinders.described(), &self.members);
+        for record in self.members.of(S::LIST).iter() {
+            query.visit_solid(&list, record);
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! What the groups of a prototype contain.
+//!
+//! A prototype has a list for each kind of solid, and its placements. A placed
+//! prototype may have several groups itself: then a placement is one primitive for
+//! each of them, and these may be in different groups of the parent. So a far solid
+//! in a placed prototype does not enlarge the boxes of the others there, whatever the
+//! depth.
+
+use rayon::prelude::*;
+
+use super::grouping::{Boxed, Cube, cubes};
+use super::numbers::Numbers;
+use crate::math::Bounds;
+use crate::scene::{self, PrototypeIndex, SolidRecord};
+use crate::solid::SolidKind;
+use crate::tracer::traced::TracedSolid;
+
+/// A list of a prototype.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum List {
+    /// The solids of a kind; those of all set operations are one list.
+    Solids(SolidKind),
+    /// The placements, each for one group of what it places.
+    Placements {
+        /// The number of the group.
+        group: usize,
+    },
+}
+
+/// The first kind of each list of solids.
+const KINDS: [SolidKind; 7] = [
+    SolidKind::Cylinder,
+    SolidKind::Sphere,
+    SolidKind::Cuboid,
+    SolidKind::Cone,
+    SolidKind::RoundedCone,
+    SolidKind::Disk,
+    SolidKind::Union,
+];
+
+impl List {
+    fn position(self) -> usize {
+        match self {
+            Self::Solids(SolidKind::Cylinder) => 0,
+            Self::Solids(SolidKind::Sphere) => 1,
+            Self::Solids(SolidKind::Cuboid) => 2,
+            Self::Solids(SolidKind::Cone) => 3,
+            Self::Solids(SolidKind::RoundedCone) => 4,
+            Self::Solids(SolidKind::Disk) => 5,
+            Self::Solids(SolidKind::Union | SolidKind::Intersection | SolidKind::Difference) => 6,
+            Self::Placements { group } => KINDS.len() + group,
+        }
+    }
+
+    fn at(position: usize) -> Self {
+        let solids = KINDS.get(position).copied().map(Self::Solids);
+        solids.unwrap_or(Self::Placements {
+            group: position.saturating_sub(KINDS.len()),
+        })
+    }
+}
+
+/// What a group contains of each list.
+#[derive(Clone, Debug)]
+pub(crate) struct Members {
+    lists: Vec<Numbers>,
+}
+
+impl Members {
+    /// The numbers of a list that it contains.
+    pub fn of(&self, list: List) -> &Numbers {
+        &self.lists[list.position()]
+    }
+
+    /// The lists of placements with at least one number, each with the number of the
+    /// child's group.
+    pub fn placements(&self) -> impl Iterator<Item = (usize, &Numbers)> {
+        let lists = self.lists[KINDS.len()..].iter().enumerate();
+        lists.filter(|(_, numbers)| numbers.len() > 0)
+    }
+
+    /// All that it contains.
+    pub fn iter(&self) -> impl Iterator<Item = (List, u32)> {
+        let lists = self.lists.iter().enumerate();
+        lists.flat_map(|(position, numbers)| {
+            let list = List::at(position);
+            numbers.iter().map(move |number| (list, number))
+        })
+    }
+
+    /// How much it contains.
+    pub fn len(&self) -> u64 {
+        self.lists
+            .iter()
+            .map(|numbers| u64::from(numbers.len()))
+            .sum()
+    }
+
+    /// The memory of the numbers.
+    pub fn bytes(&self) -> usize {
+        self.lists.iter().map(Numbers::bytes).sum()
+    }
+}
+
+/// The boxes of the groups of a prototype; none of one that contains nothing.
+pub(crate) type BoxesOf<'a> = dyn Fn(PrototypeIndex) -> &'a [Bounds] + Sync + 'a;
+
+/// The boxes of all that a prototype contains.
+pub(crate) struct Boxes<'a> {
+    prototype: &'a scene::Prototype,
+    children: &'a BoxesOf<'a>,
+    /// The lengths of the lists.
+    lens: Vec<u32>,
+}
+
+impl<'a> Boxes<'a> {
+    /// Those of a prototype, given those of what it places.
+    pub fn new(prototype: &'a scene::Prototype, children: &'a BoxesOf<'a>) -> Self {
+        let (mut groups, mut last) = (1, None);
+        for placement in &prototype.placements {
+            if last.replace(placement.of) != Some(placement.of) {
+                groups = groups.max(children(placement.of).len());
+            }
+        }
+        let solids = &prototype.solids;
+        let lens = [
+            prototype.cylinders.len(),
+            solids.spheres.len(),
+            solids.cuboids.len(),
+            solids.cones.len(),
+            solids.rounded_cones.len(),
+            solids.disks.len(),
+            solids.compositions.len(),
+        ];
+        let placements = std::iter::repeat_n(prototype.placements.len(), groups);
+        Self {
+            prototype,
+            children,
+            lens: lens
+                .into_iter()
+                .chain(placements)
+                .map(|len| len as u32)
+                .collect(),
+        }
+    }
+
+    /// The box of an entry of a list; empty if it contains nothing.
+    pub fn entry(&self, list: List, number: u32) -> Bounds {
+        let (prototype, number) = (self.prototype, number as usize);
+        let solids = &prototype.solids;
+        match list {
+            List::Solids(SolidKind::Cylinder) => {
+                prototype.cylinders.get(number).cylinder().bounds()
+            }
+            List::Solids(SolidKind::Sphere) => bounds(&solids.spheres[number]),
+            List::Solids(SolidKind::Cuboid) => bounds(&solids.cuboids[number]),
+            List::Solids(SolidKind::Cone) => bounds(&solids.cones[number]),
+            List::Solids(SolidKind::RoundedCone) => bounds(&solids.rounded_cones[number]),
+            List::Solids(SolidKind::Disk) => bounds(&solids.disks[number]),
+            List::Solids(SolidKind::Union | SolidKind::Intersection | SolidKind::Difference) => {
+                bounds(&solids.compositions[number])
+            }
+            List::Placements { group } => {
+                let placement = &prototype.placements[number];
+                let child = (self.children)(placement.of).get(group);
+                child.map_or(Bounds::EMPTY, |child| {
+                    child.transformed(&placement.parent_from_child)
+                })
+            }
+        }
+    }
+
+    /// The box around a group.
+    pub fn around(&self, members: &Members) -> Bounds {
+        let lists = members.lists.iter().enumerate();
+        let boxes = lists.map(|(position, numbers)| {
+            let list = List::at(position);
+            numbers
+                .par_iter()
+                .map(|number| self.entry(list, number))
+                .reduce(|| Bounds::EMPTY, |one, other| one.union(&other))
+        });
+        boxes.fold(Bounds::EMPTY, |one, other| one.union(&other))
+    }
+
+    /// The groups with their boxes: nearly always one, with everything. None where there is
+    /// nothing.
+    pub fn groups(&self) -> Vec<(Members, Bounds)> {
+        let everything = Members {
+            lists: self.lens.iter().copied().map(Numbers::All).collect(),
+        };
+        let whole = self.around(&everything);
+        if whole.is_empty() {
+            return Vec::new();
+        }
+        let cubes = cubes(
+            self,
+            &whole,
+            &self.without_further_groups(&everything, &whole),
+        );
+        if cubes.is_empty() {
+            return vec![(everything, whole)];
+        }
+        let groups = (0..=cubes.len()).map(|group| {
+            let members = self.group(&cubes, group);
+            let bounds = self.around(&members);
+            (members, bounds)
+        });
+        groups.filter(|(_, bounds)| !bounds.is_empty()).collect()
+    }
+
+    /// The box around all but the further groups of what is placed.
+    fn without_further_groups(&self, everything: &Members, whole: &Bounds) -> Bounds {
+        let mut lists = everything.lists.clone();
+        if lists.len() == KINDS.len() + 1 {
+            return *whole;
+        }
+        lists.truncate(KINDS.len() + 1);
+        self.around(&Members { lists })
+    }
+
+    /// The members of the group with a number.
+    fn group(&self, cubes: &[Cube], group: usize) -> Members {
+        let lists = self.lens.iter().enumerate();
+        let lists = lists.map(|(position, &len)| {
+            let (all, list) = (Numbers::All(len), List::at(position));
+            let some = all.filtered(|number| {
+                let bounds = self.entry(list, number);
+                let cube = cubes.iter().position(|cube| cube.contains(&bounds));
+                cube.unwrap_or(cubes.len()) == group
+            });
+            if some.len() == len { all } else { some }
+        });
+        Members {
+            lists: lists.collect(),
+        }
+    }
+}
+
+impl Boxed for Boxes<'_> {
+    fn len(&self) -> usize {
+        self.lens.iter().map(|&len| len as usize).sum()
+    }
+
+    fn bounds(&self, number: usize) -> Bounds {
+        let mut number = number;
+        for (position, &len) in self.lens.iter().enumerate() {
+            match number.checked_sub(len as usize) {
+                None => return self.entry(List::at(position), number as u32),
+                Some(rest) => number = rest,
+            }
+        }
+        Bounds::EMPTY
+    }
+}
+
+fn bounds<S: TracedSolid>(record: &SolidRecord<S>) -> Bounds {
+    record.solid.bounds()
+}
