@@ -113,6 +113,19 @@ impl AnySolid {
         of_each!(self, solid => solid.locate(point))
     }
 
+    /// Whether a point of the boundary is on the surface of a part, exactly. A point on an
+    /// edge is on that of several.
+    #[must_use]
+    pub(super) fn is_on(&self, part: Part, point: DVec3) -> bool {
+        match self {
+            Self::Cylinder(cylinder) => cylinder.as_cone().is_on(part, point),
+            Self::Cone(cone) => cone.is_on(part, point),
+            Self::RoundedCone(cone) => cone.is_on(part, point),
+            Self::Cuboid(cuboid) => cuboid.is_on(part, point),
+            Self::Sphere(_) | Self::Disk(_) => part == Part::Side,
+        }
+    }
+
     /// As [`ConvexSolid::size`].
     #[must_use]
     pub fn size(&self) -> f64 {

@@ -107,14 +107,4 @@ impl Location {
     pub fn is_held(self) -> bool {
         self != Self::Outside
     }
-
-    /// As seen from all that is not the solid, which has the same boundary.
-    #[must_use]
-    pub(super) fn of_complement(self) -> Self {
-        match self {
-            Self::Outside => Self::Inside,
-            Self::Boundary => Self::Boundary,
-            Self::Inside => Self::Outside,
-        }
-    }
 }

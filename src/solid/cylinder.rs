@@ -173,6 +173,11 @@ impl Cylinder {
         self.caps
     }
 
+    /// The cone with equal radii that is the same set.
+    pub(super) fn as_cone(&self) -> Cone {
+        Cone::from_valid(self.p0, self.p1, self.radius, self.radius, self.caps)
+    }
+
     /// The least box that holds the solid, rounded outward by a few ulps.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
@@ -212,7 +217,7 @@ impl ConvexSolid for Cylinder {
 
     /// A cone's answer, with equal radii: both are the same set.
     fn locate(&self, point: DVec3) -> Location {
-        Cone::from_valid(self.p0, self.p1, self.radius, self.radius, self.caps).locate(point)
+        self.as_cone().locate(point)
     }
 
     fn size(&self) -> f64 {

@@ -22,6 +22,8 @@ pub(crate) struct Met {
     pub meeting: Meeting,
     /// Which of the solids that it is made of is met; 0 where it is one.
     pub leaf: u32,
+    /// Whether the normal is that solid's reversed.
+    pub is_reversed: bool,
     /// The number of the crossing, where one solid is entered more than once; 0
     /// where it is not.
     pub rank: u32,
@@ -34,6 +36,7 @@ impl Met {
         Self {
             meeting,
             leaf: 0,
+            is_reversed: false,
             rank: 0,
         }
     }
@@ -126,6 +129,18 @@ impl From<ComposedMeeting> for Met {
         Self {
             meeting: met.meeting,
             leaf: met.leaf,
+            is_reversed: met.is_reversed,
+            rank: met.rank,
+        }
+    }
+}
+
+impl From<&Met> for ComposedMeeting {
+    fn from(met: &Met) -> Self {
+        Self {
+            meeting: met.meeting,
+            leaf: met.leaf,
+            is_reversed: met.is_reversed,
             rank: met.rank,
         }
     }
@@ -157,9 +172,8 @@ impl TracedSolid for Composition {
     }
 
     fn surface(&self, ray: &LocalRay, met: &Met) -> (SurfacePoint, SpawnMargin) {
-        let Meeting { part, t_local, .. } = met.meeting;
-        self.surface(met.leaf, part, |anchor| {
-            ray.origin_from(anchor) + ray.direction * t_local
+        self.surface(&met.into(), |anchor| {
+            ray.origin_from(anchor) + ray.direction * met.meeting.t_local
         })
     }
 

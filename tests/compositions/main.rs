@@ -3,7 +3,9 @@
 //!
 //! `CYLTRACE_CASES=1000000 cargo test --release --test compositions` is the full run.
 
+mod in_plane;
 mod random;
+mod reference;
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -99,8 +101,7 @@ fn drilled_block_is_met_as_it_looks() {
         .iter()
         .map(|met| {
             let on_ray = at(-5.0, 0.0, 0.5) + DVec3::X * met.meeting.t_local;
-            let part = met.meeting.part;
-            let (surface, _) = block.surface(met.leaf, part, |anchor| on_ray - anchor);
+            let (surface, _) = block.surface(met, |anchor| on_ray - anchor);
             assert_eq!(surface.point, on_ray);
             surface.normal
         })

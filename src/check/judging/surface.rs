@@ -17,8 +17,11 @@
 //! direction of a vector `v` from the axis within `2 δ / |v|`, which the
 //! placement turns into at most `κ` times that.
 //!
-//! *Compositions.* Any leaf may be what is met, with its own parts; the normals of
-//! one that is taken away point into it.
+//! *Compositions.* Any leaf may be what is met, with its own parts. The normals of a leaf that
+//! is taken away point into it, those of others out of it, unless faces of several leaves
+//! coincide: then the composition may be on the side of the leaf that another one has, and
+//! the normal is the other one's. So the part and the normal of an answer may be those of
+//! two leaves that may both be met.
 
 use glam::DVec3;
 
@@ -66,20 +69,28 @@ pub(crate) fn wrong_surface(
 ) -> Option<WrongSurface> {
     let composition = window.composition_of(solid);
     let operands = composition.map(|found| found.composition.operands());
-    let mut wrong = Some(WrongSurface::Part);
-    for (leaf, position) in window.leaves_with(solid).zip(0..) {
-        let is_subtracted = operands
-            .as_ref()
-            .is_some_and(|operands| operands[position].is_subtracted);
-        let normal = normal.map(|normal| if is_subtracted { -normal } else { normal });
-        let local = LocalRay::new(&window.solids[leaf as usize], ray);
-        match local.wrong_surface(low, high, part, normal) {
-            None => return None,
-            Some(WrongSurface::Part) => {}
-            found => wrong = found,
+    let leaves: Vec<_> = window.leaves_with(solid).zip(0..).collect();
+    // By the first leaf that allows both, or by what the leaves allow together.
+    let judge = |part: Option<Part>, normal: Option<DVec3>| {
+        let mut wrong = Some(WrongSurface::Part);
+        for &(leaf, position) in &leaves {
+            let is_subtracted = operands
+                .as_ref()
+                .is_some_and(|operands| operands[position].is_subtracted);
+            let normal = normal.map(|normal| if is_subtracted { -normal } else { normal });
+            let local = LocalRay::new(&window.solids[leaf as usize], ray);
+            match local.wrong_surface(low, high, part, normal) {
+                None => return None,
+                Some(WrongSurface::Part) => {}
+                found => wrong = found,
+            }
         }
-    }
-    wrong
+        wrong
+    };
+    let wrong = judge(part, normal)?;
+    let is_shared =
+        leaves.len() > 1 && judge(part, None).is_none() && judge(None, normal).is_none();
+    (!is_shared).then_some(wrong)
 }
 
 impl<'a> LocalRay<'a> {

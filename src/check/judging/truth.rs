@@ -71,7 +71,8 @@ pub(crate) fn in_words(window: &Window, ray: &Ray) -> String {
                     })
                     .collect();
                 let bounds = composed_bounds(&found.composition, &leaves, ray.t_min);
-                let t = bounds.interval.low;
+                // Where it is inside over a length: two faces that coincide are no hit.
+                let t = bounds.interval.high;
                 (t <= ray.t_max && t < f64::INFINITY).then_some(())?;
                 (t, String::from(found.composition.kind().name()))
             }

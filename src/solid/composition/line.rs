@@ -1,28 +1,23 @@
-//! What a line meets of a composition.
+//! A line through the leaves of a composition.
 //!
 //! Each leaf is met in one interval of `t`, its [`Chord`]. All ends of all chords, in
-//! order, are the *stations* of the line. Between two stations nothing changes, and a
-//! leaf has the line inside, outside or, where the line runs within the leaf's
-//! surface, on the boundary. The tree of operations says which of the three the
-//! composition has there, as it says for points. Where what is before a station
-//! belongs to the composition and what is behind it does not, or the other way
-//! round, the line crosses the surface. So entries and exits alternate, and:
+//! order, are the *stations* of the line, and what is between two is a *stretch*. Over a
+//! stretch every leaf has the line inside or outside, or the line lies within the leaf's
+//! surface: in a face, along an edge, or along a ruling of a wall. All points of a stretch have
+//! the same around them, so that one of them says what the composition has there: the formula
+//! of the operations where the line is in no surface, else the neighbourhood.
 //!
-//! - **Nothing of no length is left.** What ends where another thing begins is not
-//!   kept as a point: a block without itself is empty, two blocks side by side are
-//!   one for a line across the face that they share, and have nothing in common.
-//! - **Tangents count.** Where the line touches a leaf in a point, and the point is of
-//!   the composition's surface, it is met twice at the same `t`: an entry and an exit,
-//!   or for a hole an exit and an entry.
-//! - **A line within a face** follows the sets themselves: what is subtracted takes
-//!   away its open inside only.
-//!
-//! A crossing has the `t` and the part of its leaf, bit for bit.
+//! **Walls along one ruling.** A line may be a ruling of two walls that touch along it. Of
+//! these the one that bends more is the inner one. A wall's radius of curvature `R(t)` along a ruling is
+//! linear: constant on a cylinder, proportional to the distance from the apex on a cone. Where two become equal the walls
+//! change places, so there is another station. If they are equal at two points they are
+//! everywhere, and the walls are one. So pieces that are equal to second order over a
+//! stretch are equal.
 //!
 //! **Stations that are one.** Faces are meant to coincide (a bore as long as its block),
 //! but the numbers that state turned ones are rounded, and so is each leaf's `t`. A
 //! solver's answer is exact for solids and rays displaced by at most
-//! [`SOLVER_DISPLACEMENT`] times the sizes that it sees ([`spawn`](super::super::spawn)),
+//! `SOLVER_DISPLACEMENT` times the sizes that it sees ([`spawn`](super::super::spawn)),
 //! and rounding the numbers of a turned solid moves it by a few u of its coordinates,
 //! which are among these sizes. A plane displaced by δ is met elsewhere by `δ / |n·d|`,
 //! `n` its unit normal. So two ends are one station if
@@ -33,240 +28,73 @@
 //!
 //! with the normal that has the greater `|n·d|`: of parallel faces either. What
 //! (1) passes over is thinner than what displacements can make or remove. Normals are
-//! worked out only where (1) may hold at an angle that is not below 2^-26.
+//! worked out only where (1) may be true at an angle that is not below 2^-26. `|t - t'| |n·d|` is the
+//! distance of the one point from the plane of the other, so the pieces of a surface that
+//! pass through a station are those within 2 δ of it (`piece.rs`).
 
 use std::ops::Range;
 
 use glam::DVec3;
 use smallvec::SmallVec;
 
-use super::super::spawn::SOLVER_DISPLACEMENT;
 use super::Composition;
-use super::change::Change;
+use super::leaf::{Event, Leaf, What};
+use super::neighbourhood::Neighbourhood;
+use super::piece::{Nearness, Pieces, Viewed};
 use crate::math::power_of_two;
-use crate::solid::{AnySolid, Chord, ChordEnd, Crossing, Location, Meeting};
+use crate::solid::{ChordEnd, Location, Part};
 
-/// A point where a ray meets a composition.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ComposedMeeting {
-    /// The point, the part being that of the leaf.
-    pub meeting: Meeting,
-    /// Whose surface is met, a position in [`Composition::operands`].
-    pub leaf: u32,
-    /// The number of the crossing on the whole line, whatever the ray's range. It
-    /// orders what is met at the same `t`.
-    pub rank: u32,
+/// What the composition has along a stretch.
+#[derive(Clone, Debug)]
+pub(super) struct Stretch {
+    pub location: Location,
+    /// The surface within which the line runs, if it does.
+    pub within: Option<Neighbourhood>,
 }
 
-impl Composition {
-    /// The points at which a ray is on the surface, among those with `t_min <= t +
-    /// shift <= t_max`, in order.
-    ///
-    /// `origin_from` answers with the ray's origin as seen from an anchor. The
-    /// range, `shift` and the direction are as for
-    /// [`ConvexSolid::first`](crate::solid::ConvexSolid::first).
-    pub fn meetings(
-        &self,
-        origin_from: impl Fn(DVec3) -> DVec3,
-        direction: DVec3,
-        shift: f64,
-        [t_min, t_max]: [f64; 2],
-        mut keep: impl FnMut(ComposedMeeting),
-    ) {
-        let range = [t_min, t_max];
-        self.each_meeting(origin_from, direction, shift, range, |met| {
-            keep(met);
-            false
-        });
-    }
-
-    /// The first of [`Composition::meetings`].
-    #[must_use]
-    pub fn first(
-        &self,
-        origin_from: impl Fn(DVec3) -> DVec3,
-        direction: DVec3,
-        shift: f64,
-        range: [f64; 2],
-    ) -> Option<ComposedMeeting> {
-        let mut first = None;
-        self.each_meeting(origin_from, direction, shift, range, |met| {
-            first = Some(met);
-            true
-        });
-        first
-    }
-
-    /// Hands on the meetings until it is told that it is enough.
-    fn each_meeting(
-        &self,
-        origin_from: impl Fn(DVec3) -> DVec3,
-        direction: DVec3,
-        shift: f64,
-        [t_min, t_max]: [f64; 2],
-        mut is_enough: impl FnMut(ComposedMeeting) -> bool,
-    ) {
-        let mut line = Line::new(self, origin_from, direction);
-        let stations = line.find_stations(direction);
-        let mut rank = 0;
-        let mut passed = f64::NEG_INFINITY;
-        for station in 0..stations {
-            let change = line.change(self, station);
-            let (leaf, crossings) = match change.mark {
-                Some(leaf) => (leaf, line.leaves[leaf as usize].crossings(change, station)),
-                None => (0, SmallVec::new()),
-            };
-            let begins = line.range_of(station);
-            // A line within the surface is on it all the way.
-            if change.before == Location::Boundary
-                && passed < t_min - shift
-                && t_min - shift < begins.start
-                && t_min <= t_max
-                && let Some((leaf, met)) = line.start_within(station, shift, t_min)
-            {
-                let met = ComposedMeeting {
-                    meeting: met,
-                    leaf,
-                    rank: 0,
-                };
-                if is_enough(met) {
-                    return;
-                }
-            }
-            for (crossing, end) in crossings {
-                rank += 1;
-                let t = end.t + shift;
-                let met = ComposedMeeting {
-                    meeting: Meeting {
-                        t,
-                        t_local: end.t,
-                        part: end.part,
-                        crossing,
-                    },
-                    leaf,
-                    rank,
-                };
-                if t_min <= t && t <= t_max && is_enough(met) {
-                    return;
-                }
-            }
-            passed = begins.end;
-        }
-    }
-}
-
-/// A leaf and where the line is inside it.
-struct Leaf<'a> {
-    solid: &'a AnySolid,
-    from_anchor: DVec3,
-    chord: Option<Chord>,
-    /// The stations of the chord's two ends.
-    stations: [usize; 2],
-}
-
-impl Leaf<'_> {
-    fn end(&self, is_exit: bool) -> Option<&ChordEnd> {
-        let chord = self.chord.as_ref()?;
-        Some(if is_exit { &chord.leave } else { &chord.enter })
-    }
-
-    /// What of the leaf the line is in, between the ends of the chord.
-    fn within(chord: &Chord) -> Location {
-        match chord.lies_on {
-            Some(_) => Location::Boundary,
-            None => Location::Inside,
-        }
-    }
-
-    fn change(&self, leaf: u32, station: usize) -> Change {
-        let [enter, leave] = self.stations;
-        let within = self.chord.as_ref().map(Self::within);
-        let Some(within) = within.filter(|_| (enter..=leave).contains(&station)) else {
-            return Change::NONE;
-        };
-        let at = |is_within| {
-            if is_within { within } else { Location::Outside }
-        };
-        let is_end = station == enter || station == leave;
-        Change {
-            before: at(station > enter),
-            after: at(station < leave),
-            mark: is_end.then_some(leaf),
-        }
-    }
-
-    /// The crossings of the surface that a change makes, at the ends of the chord.
-    fn crossings(&self, change: Change, station: usize) -> SmallVec<[(Crossing, ChordEnd); 2]> {
-        let mut is_held = change.before.is_held();
-        if !change.is_touched() && is_held == change.after.is_held() {
-            // From the surface to the inside.
-            return SmallVec::new();
-        }
-        let ends = [false, true].into_iter().filter_map(|is_exit| {
-            let is_here = self.stations[usize::from(is_exit)] == station;
-            self.end(is_exit).filter(|_| is_here).copied()
-        });
-        ends.map(|end| {
-            is_held = !is_held;
-            let crossing = if is_held {
-                Crossing::Enter
-            } else {
-                Crossing::Leave
-            };
-            (crossing, end)
-        })
-        .collect()
-    }
-
-    /// Bounds how far solid and line may be displaced.
-    fn displacement(&self) -> f64 {
-        let anchor = self.solid.anchor().length();
-        SOLVER_DISPLACEMENT * (self.from_anchor.length() + anchor + self.solid.size())
-    }
-
-    /// `|n·d|` at one of the chord's ends.
-    fn steepness(&self, end: &ChordEnd, direction: DVec3) -> f64 {
-        let from_anchor = self.from_anchor + direction * end.t;
-        let surface = self.solid.surface_point(end.part, from_anchor);
-        surface.normal.dot(direction).abs()
-    }
-}
-
-/// An end of a leaf's chord.
-#[derive(Clone, Copy)]
-struct Event {
-    t: f64,
-    leaf: u32,
-    is_exit: bool,
+impl Stretch {
+    /// Before the first station and behind the last.
+    pub const OUTSIDE: Self = Self {
+        location: Location::Outside,
+        within: None,
+    };
 }
 
 /// The line through all leaves.
-struct Line<'a> {
+pub(super) struct Line<'a> {
+    composition: &'a Composition,
+    direction: DVec3,
     leaves: SmallVec<[Leaf<'a>; 8]>,
     /// In order of `t`.
     events: SmallVec<[Event; 16]>,
     /// The events of each station.
     stations: SmallVec<[Range<usize>; 16]>,
+    /// Whether the line runs within the surface of a leaf.
+    has_within: bool,
 }
 
 impl<'a> Line<'a> {
-    fn new(
+    pub fn new(
         composition: &'a Composition,
         origin_from: impl Fn(DVec3) -> DVec3,
         direction: DVec3,
     ) -> Self {
         let mut line = Self {
+            composition,
+            direction,
             leaves: SmallVec::new(),
             events: SmallVec::new(),
             stations: SmallVec::new(),
+            has_within: false,
         };
         composition.for_each_leaf(false, &mut |solid, _| {
             let from_anchor = origin_from(solid.anchor());
             let chord = solid.chord(from_anchor, direction);
             let leaf = line.leaves.len() as u32;
             if let Some(chord) = &chord {
-                for (t, is_exit) in [(chord.enter.t, false), (chord.leave.t, true)] {
-                    line.events.push(Event { t, leaf, is_exit });
+                line.has_within |= chord.lies_on.is_some();
+                for (t, what) in [(chord.enter.t, What::Enter), (chord.leave.t, What::Leave)] {
+                    line.events.push(Event { t, leaf, what });
                 }
             }
             line.leaves.push(Leaf {
@@ -276,29 +104,66 @@ impl<'a> Line<'a> {
                 stations: [0; 2],
             });
         });
+        if line.has_within {
+            line.add_osculations();
+        }
+        line.find_stations();
         line
     }
 
-    /// Puts the ends in order and finds out which are one station; answers with the
-    /// number of stations.
-    fn find_stations(&mut self, direction: DVec3) -> usize {
+    /// Adds the points where two walls along the line have the same curvature.
+    fn add_osculations(&mut self) {
+        let rulings: SmallVec<[u32; 8]> = (0..self.leaves.len() as u32)
+            .filter(|&leaf| self.leaves[leaf as usize].lies_on() == Some(Part::Side))
+            .collect();
+        for (position, &one) in rulings.iter().enumerate() {
+            for &other in &rulings[position + 1..] {
+                if let Some(t) = self.osculation([one, other]) {
+                    let what = What::Osculation;
+                    self.events.push(Event { t, leaf: one, what });
+                }
+            }
+        }
+    }
+
+    /// Where the linear radii of two walls are the same.
+    fn osculation(&self, leaves: [u32; 2]) -> Option<f64> {
+        let [one, other] = leaves.map(|leaf| &self.leaves[leaf as usize]);
+        let chords = [one.chord.as_ref()?, other.chord.as_ref()?];
+        let start = chords[0].enter.t.max(chords[1].enter.t);
+        let end = chords[0].leave.t.min(chords[1].leave.t);
+        let difference = |share: f64| {
+            let t = start + share * (end - start);
+            let radius = |leaf: &Leaf, index| leaf.ruling_radius(index, self.direction, t);
+            Some(radius(one, leaves[0])? - radius(other, leaves[1])?)
+        };
+        let [first, second] = [difference(0.25)?, difference(0.75)?];
+        let share = 0.25 + 0.5 * first / (first - second);
+        (start < end && 0.0 < share && share < 1.0).then_some(start + share * (end - start))
+    }
+
+    /// Puts the events in order and finds out which are one station.
+    fn find_stations(&mut self) {
         self.events
             .sort_unstable_by(|one, other| one.t.total_cmp(&other.t));
         for position in 0..self.events.len() {
-            let is_same = position > 0 && self.are_one(position - 1, position, direction);
+            let is_same = position > 0 && self.are_one(position - 1, position);
             match self.stations.last_mut() {
                 Some(station) if is_same => station.end = position + 1,
                 _ => self.stations.push(position..position + 1),
             }
             let event = self.events[position];
-            self.leaves[event.leaf as usize].stations[usize::from(event.is_exit)] =
-                self.stations.len() - 1;
+            let stations = &mut self.leaves[event.leaf as usize].stations;
+            match event.what {
+                What::Enter => stations[0] = self.stations.len() - 1,
+                What::Leave => stations[1] = self.stations.len() - 1,
+                What::Osculation => {}
+            }
         }
-        self.stations.len()
     }
 
-    /// Whether (1) holds for two events.
-    fn are_one(&self, one: usize, other: usize, direction: DVec3) -> bool {
+    /// Whether (1) is true for two events.
+    fn are_one(&self, one: usize, other: usize) -> bool {
         let events = [one, other].map(|position| self.events[position]);
         let apart = events[1].t - events[0].t;
         if apart == 0.0 {
@@ -307,49 +172,189 @@ impl<'a> Line<'a> {
         let leaves = events.map(|event| &self.leaves[event.leaf as usize]);
         let [one, other] = leaves.map(Leaf::displacement);
         let allowed = 2.0 * one.max(other);
-        if apart * direction.length() > allowed * power_of_two(26) {
+        if apart * self.direction.length() > allowed * power_of_two(26) {
             return false;
         }
-        let steepest = events
-            .iter()
-            .zip(leaves)
-            .filter_map(|(event, leaf)| Some(leaf.steepness(leaf.end(event.is_exit)?, direction)))
-            .fold(0.0, f64::max);
-        apart * steepest <= allowed
+        let ends = events.iter().zip(leaves).filter_map(|(event, leaf)| {
+            let chord = leaf.chord.as_ref()?;
+            let end = match event.what {
+                What::Enter => &chord.enter,
+                What::Leave => &chord.leave,
+                What::Osculation => return None,
+            };
+            Some(leaf.steepness(end, self.direction))
+        });
+        apart * ends.fold(0.0, f64::max) <= allowed
+    }
+
+    pub fn stations(&self) -> usize {
+        self.stations.len()
     }
 
     /// The least and the greatest `t` of a station.
-    fn range_of(&self, station: usize) -> Range<f64> {
+    pub fn range_of(&self, station: usize) -> Range<f64> {
         let Range { start, end } = self.stations[station];
         self.events[start].t..self.events[end - 1].t
     }
 
-    /// What of the composition the line is in before and behind a station.
-    fn change(&self, composition: &Composition, station: usize) -> Change {
-        let mut next = 0;
-        Change::of(composition, &mut || {
-            let leaf = next;
-            next += 1;
-            self.leaves[leaf as usize].change(leaf, station)
+    /// The ends of a leaf's chord that are at a station.
+    pub fn ends_at(&self, leaf: u32, station: usize) -> SmallVec<[ChordEnd; 2]> {
+        self.leaves[leaf as usize].ends_at(station)
+    }
+
+    /// The one leaf that changes at a station, with the end of its chord and whether the line is
+    /// in it behind the station; `None` where more is to be considered.
+    pub fn only_change_at(&self, station: usize) -> Option<(u32, ChordEnd, bool)> {
+        let range = self.stations[station].clone();
+        if self.has_within || range.len() > 1 {
+            return None;
+        }
+        let Event { leaf, what, .. } = self.events[range.start];
+        let chord = self.leaves[leaf as usize].chord.as_ref()?;
+        let enters = what == What::Enter;
+        let end = if enters { chord.enter } else { chord.leave };
+        Some((leaf, end, enters))
+    }
+
+    /// Whether a closed leaf contains the line behind a station.
+    pub fn has_behind(&self, leaf: u32, station: usize) -> bool {
+        self.leaves[leaf as usize].has_behind(station)
+    }
+
+    /// The part of a leaf within which the line runs between the ends of the chord.
+    pub fn lies_on(&self, leaf: u32) -> Option<Part> {
+        self.leaves[leaf as usize].lies_on()
+    }
+
+    /// The leaves on whose surface the line is at a station, in order.
+    pub fn touched_at(&self, station: usize) -> SmallVec<[u32; 8]> {
+        let mut touched: SmallVec<[u32; 8]> = self.events[self.stations[station].clone()]
+            .iter()
+            .filter(|event| event.what != What::Osculation)
+            .map(|event| event.leaf)
+            .collect();
+        if self.has_within {
+            touched.extend(self.running_behind(station));
+        }
+        touched.sort_unstable();
+        touched.dedup();
+        touched
+    }
+
+    /// The leaves within whose surface the line runs behind a station.
+    fn running_behind(&self, station: usize) -> impl Iterator<Item = u32> + '_ {
+        (0..).zip(&self.leaves).filter_map(move |(index, leaf)| {
+            (leaf.lies_on().is_some() && leaf.has_behind(station)).then_some(index)
         })
     }
 
-    /// The meeting where the range of a ray starts that runs within the surface
-    /// up to a station: with the first leaf in whose surface it runs.
-    fn start_within(&self, station: usize, shift: f64, t_min: f64) -> Option<(u32, Meeting)> {
-        let mut leaves = self.leaves.iter().enumerate();
-        leaves.find_map(|(index, leaf)| {
-            let [enter, leave] = leaf.stations;
-            let part = leaf.chord.as_ref()?.lies_on?;
-            (enter < station && station <= leave).then_some((
-                index as u32,
-                Meeting {
-                    t: t_min,
-                    t_local: t_min - shift,
-                    part,
-                    crossing: Crossing::Enter,
-                },
-            ))
-        })
+    /// Whether each closed leaf contains the line behind a station.
+    fn leaves_behind(&self, station: usize) -> SmallVec<[bool; 8]> {
+        let leaves = self.leaves.iter();
+        leaves.map(|leaf| leaf.has_behind(station)).collect()
+    }
+
+    /// What the composition has behind a station, up to the next.
+    pub fn behind(&self, station: usize) -> Stretch {
+        let mut leaves = self.leaves_behind(station);
+        if self.has_within {
+            let running: SmallVec<[u32; 8]> = self.running_behind(station).collect();
+            if !running.is_empty() {
+                let within = self.around_stretch(station, &running, &mut leaves);
+                return Stretch {
+                    location: within.location(),
+                    within: Some(within),
+                };
+            }
+        }
+        let location = if self.composition.holds(&leaves) {
+            Location::Inside
+        } else {
+            Location::Outside
+        };
+        Stretch {
+            location,
+            within: None,
+        }
+    }
+
+    /// What is around a point of the stretch behind a station, which runs within the surface
+    /// of some leaves.
+    fn around_stretch(
+        &self,
+        station: usize,
+        running: &[u32],
+        leaves: &mut [bool],
+    ) -> Neighbourhood {
+        let holds = |leaves: &[bool]| self.composition.holds(leaves);
+        if let &[leaf] = running {
+            return Neighbourhood::of_one_leaf(leaf, self.lies_on(leaf), leaves, holds);
+        }
+        let (start, end) = (self.range_of(station).end, self.range_of(station + 1).start);
+        let distance = self.distance(running);
+        let mut pieces = Pieces::new();
+        for &index in running {
+            self.view(
+                index,
+                0.5 * (start + end),
+                distance,
+                self.lies_on(index).as_slice(),
+            )
+            .add_pieces(&mut pieces);
+        }
+        // Those that the line crosses are near the middle of a short stretch too.
+        let half = self.direction * (0.5 * (end - start));
+        pieces.retain(|piece| {
+            piece.normal.dot(half).abs() <= distance || self.lies_on(piece.leaf) == Some(piece.part)
+        });
+        Neighbourhood::of_pieces(&pieces, leaves, holds)
+    }
+
+    /// What is around the point of a station, where the line is on the surfaces of the leaves
+    /// `touched`.
+    pub fn around_station(&self, station: usize, touched: &[u32]) -> Neighbourhood {
+        // A leaf that ends at the station is replaced by its pieces.
+        let mut leaves = self.leaves_behind(station);
+        let holds = |leaves: &[bool]| self.composition.holds(leaves);
+        if let &[leaf] = touched {
+            let ends = self.ends_at(leaf, station);
+            let parts = ends.iter().map(|end| end.part);
+            return Neighbourhood::of_one_leaf(leaf, parts, &mut leaves, holds);
+        }
+        let distance = self.distance(touched);
+        let mut pieces = Pieces::new();
+        for &index in touched {
+            let ends = self.ends_at(index, station);
+            let on_rim = ends.iter().any(|end| end.on_rim).then_some(Part::Side);
+            let named: SmallVec<[Part; 4]> = ends
+                .iter()
+                .map(|end| end.part)
+                .chain(on_rim)
+                .chain(self.lies_on(index))
+                .collect();
+            let t = ends
+                .first()
+                .map_or(self.range_of(station).start, |end| end.t);
+            self.view(index, t, distance, &named)
+                .add_pieces(&mut pieces);
+        }
+        Neighbourhood::of_pieces(&pieces, &mut leaves, holds)
+    }
+
+    /// How near a piece passes the points of leaves that it counts for.
+    fn distance(&self, leaves: &[u32]) -> f64 {
+        let leaves = leaves.iter().map(|&leaf| &self.leaves[leaf as usize]);
+        2.0 * leaves.map(Leaf::displacement).fold(0.0, f64::max)
+    }
+
+    fn view<'b>(&'b self, index: u32, t: f64, distance: f64, named: &'b [Part]) -> Viewed<'b> {
+        let leaf = &self.leaves[index as usize];
+        Viewed {
+            leaf: index,
+            solid: leaf.solid,
+            from_anchor: leaf.at(self.direction, t),
+            displacement: leaf.displacement(),
+            nearness: Nearness::Within { distance, named },
+        }
     }
 }

@@ -1,27 +1,42 @@
-//! Solids composed of others by set operations.
+//! Solids composed of others by set operations, regularised.
 //!
-//! **The set.** A leaf is a closed solid. A point is inside, on the boundary or outside
-//! of each leaf, exactly ([`ConvexSolid::locate`](super::ConvexSolid::locate)). With
-//! outside < boundary < inside an intersection has the least of what its operands
-//! have, a union the greatest, and the complement swaps inside and outside. A
-//! difference is the first operand and the complement of each other one. What is not
-//! outside belongs to the composition. So a difference takes away the *open* inside of
-//! what is subtracted: the wall of a drilled hole belongs to the block.
+//! **The set.** A leaf is a closed solid with an open interior. The operations are a
+//! formula over the interiors: a point that is on no leaf's boundary satisfies it or not. The
+//! composition is the closure of the points that do (Requicha's regularised
+//! operations): a point belongs to it if every neighbourhood has an open piece in which the
+//! formula is true. So a solid without itself is empty, solids that only touch have nothing
+//! in common, solids that touch in a face are one without a face between them, and what
+//! ends in the plane of another face leaves no film there.
 //!
-//! **What a line meets** is in `line.rs`.
+//! A point is *inside* if the formula is true in all open pieces around it, *outside* if
+//! in none, and otherwise on the *boundary*. All queries follow from that:
+//!
+//! - `neighbourhood.rs`, with `across.rs`, decides what is around a point that is on the
+//!   surfaces of several leaves; `piece.rs` and `bend.rs` say what these are there;
+//! - `locate` below uses it for points as stated;
+//! - `line.rs` orders the points where a line changes and classifies what is between them, and
+//!   `crossings.rs` turns that into hits.
 
-mod change;
+mod across;
+mod bend;
+mod crossings;
+mod leaf;
 mod line;
+mod neighbourhood;
+mod piece;
 
 use glam::DVec3;
+use smallvec::SmallVec;
 
-use super::spawn::SpawnMargin;
-use super::{AnySolid, Location, Part, SolidKind, SurfacePoint};
+use super::spawn::{SOLVER_DISPLACEMENT, SpawnMargin};
+use super::{AnySolid, Location, SolidKind, SurfacePoint};
 use crate::math::Bounds;
-pub use line::ComposedMeeting;
+pub use crossings::ComposedMeeting;
+use neighbourhood::Neighbourhood;
+use piece::{Nearness, Pieces, Viewed};
 
-/// A solid that is composed of others by set operations. Its points are those
-/// that the operations say, its surface their boundary.
+/// A solid that is composed of others by set operations: the closure of what the
+/// operations say of the operands' interiors. Its surface is the boundary of that.
 ///
 /// What a scene file states has no open ends, no disks and no operation without
 /// an operand. An operation without an operand is empty, and a solid with open ends
@@ -44,7 +59,8 @@ pub struct Operand {
     /// The solid.
     pub solid: AnySolid,
     /// Whether it is taken away: then the composition is on the other side of its
-    /// surface. What is taken away from something that is taken away is not.
+    /// surface, where no other leaf has one too. What is taken away from something that
+    /// is taken away is not.
     pub is_subtracted: bool,
 }
 
@@ -135,30 +151,74 @@ impl Composition {
         }
     }
 
-    /// Where a point is, exactly.
-    #[must_use]
-    pub fn locate(&self, point: DVec3) -> Location {
-        let located = |parts: &[Self]| {
-            let parts = parts.iter();
-            parts.map(|part| part.locate(point)).collect::<Vec<_>>()
-        };
-        let located = match self {
-            Self::Solid(solid) => return solid.locate(point),
-            Self::Union(parts) => located(parts).into_iter().max(),
-            Self::Intersection(parts) => located(parts).into_iter().min(),
-            Self::Difference(parts) => {
-                let operands = located(parts).into_iter().enumerate();
-                let operands = operands.map(|(position, location)| match position {
-                    0 => location,
-                    _ => location.of_complement(),
-                });
-                operands.min()
-            }
-        };
-        located.unwrap_or(Location::Outside)
+    /// Whether the formula is true where `is_within` says of each leaf whether the place is
+    /// inside of it.
+    fn holds(&self, is_within: &[bool]) -> bool {
+        self.holds_for(&mut is_within.iter().copied())
     }
 
-    /// Whether it holds a point. The boundary belongs to it.
+    /// The same; takes one of `leaves` for each of its own, whatever the others are.
+    fn holds_for(&self, leaves: &mut impl Iterator<Item = bool>) -> bool {
+        match self {
+            Self::Solid(_) => leaves.next().unwrap_or(false),
+            Self::Union(parts) => parts
+                .iter()
+                .fold(false, |any, part| any | part.holds_for(leaves)),
+            Self::Intersection(parts) => {
+                let all = parts
+                    .iter()
+                    .fold(true, |all, part| all & part.holds_for(leaves));
+                all && !parts.is_empty()
+            }
+            Self::Difference(parts) => {
+                let mut parts = parts.iter();
+                let first = parts.next().is_some_and(|part| part.holds_for(leaves));
+                parts.fold(first, |rest, part| rest & !part.holds_for(leaves))
+            }
+        }
+    }
+
+    /// Where a point is, as stated.
+    #[must_use]
+    pub fn locate(&self, point: DVec3) -> Location {
+        let mut solids = SmallVec::<[&AnySolid; 8]>::new();
+        self.for_each_leaf(false, &mut |solid, _| solids.push(solid));
+        let located: SmallVec<[Location; 8]> =
+            solids.iter().map(|solid| solid.locate(point)).collect();
+        let mut is_within: SmallVec<[bool; 8]> = located
+            .iter()
+            .map(|location| *location == Location::Inside)
+            .collect();
+        let touched: SmallVec<[u32; 8]> = (0..)
+            .zip(&located)
+            .filter_map(|(leaf, location)| (*location == Location::Boundary).then_some(leaf))
+            .collect();
+        let holds = |is_within: &[bool]| self.holds(is_within);
+        match touched.as_slice() {
+            [] if holds(&is_within) => Location::Inside,
+            [] => Location::Outside,
+            &[leaf] => Neighbourhood::of_one_leaf(leaf, [], &mut is_within, holds).location(),
+            several => {
+                let mut pieces = Pieces::new();
+                for &leaf in several {
+                    let solid = solids[leaf as usize];
+                    let from_anchor = point - solid.anchor();
+                    let sizes = point.length() + solid.anchor().length() + solid.size();
+                    Viewed {
+                        leaf,
+                        solid,
+                        from_anchor,
+                        displacement: SOLVER_DISPLACEMENT * sizes,
+                        nearness: Nearness::Exactly(point),
+                    }
+                    .add_pieces(&mut pieces);
+                }
+                Neighbourhood::of_pieces(&pieces, &mut is_within, holds).location()
+            }
+        }
+    }
+
+    /// Whether it contains a point. The boundary belongs to it.
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {
         self.locate(point).is_held()
@@ -173,16 +233,13 @@ impl Composition {
     #[must_use]
     pub fn surface(
         &self,
-        leaf: u32,
-        part: Part,
+        met: &ComposedMeeting,
         from_anchor: impl FnOnce(DVec3) -> DVec3,
     ) -> (SurfacePoint, SpawnMargin) {
-        let Operand {
-            solid,
-            is_subtracted,
-        } = self.operands()[leaf as usize];
+        let Operand { solid, .. } = self.operands()[met.leaf as usize];
+        let part = met.meeting.part;
         let mut surface = solid.surface_point(part, from_anchor(solid.anchor()));
-        if is_subtracted {
+        if met.is_reversed {
             surface.normal = -surface.normal;
         }
         let margin = solid.spawn_margin(&surface);

@@ -94,6 +94,17 @@ impl Cone {
     pub fn caps(&self) -> Caps {
         self.caps
     }
+
+    /// Whether a point of the boundary is on the surface of a part, exactly.
+    pub(super) fn is_on(&self, part: Part, point: DVec3) -> bool {
+        let limit = match part {
+            Part::Cap0 => Limit::Disc0,
+            Part::Cap1 => Limit::Disc1,
+            _ => Limit::Wall,
+        };
+        let cone = self;
+        exact::sign(&Beyond { cone, point, limit }).is_eq()
+    }
 }
 
 impl ConvexSolid for Cone {

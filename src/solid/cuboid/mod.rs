@@ -185,6 +185,18 @@ impl ConvexSolid for Cuboid {
 }
 
 impl Cuboid {
+    /// Whether a point is in the plane of a face, exactly.
+    pub(super) fn is_on(&self, part: Part, point: DVec3) -> bool {
+        let (axis, is_upper) = face(part);
+        sign(&Height {
+            cuboid: self,
+            axis,
+            side: if is_upper { 1.0 } else { -1.0 },
+            point,
+        })
+        .is_eq()
+    }
+
     /// Whether a point is between the planes of an axis. Rounded numbers, which are
     /// off by less than 6 u of their terms, decide where they do by 2^-48.
     fn locate_along(&self, axis: usize, point: DVec3) -> Location {

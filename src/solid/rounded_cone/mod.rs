@@ -65,6 +65,24 @@ impl RoundedCone {
     pub fn radius1(&self) -> f64 {
         self.ends.radius1
     }
+
+    /// Whether a point of the boundary is on the surface of a part, exactly: a seam is on
+    /// that of its sphere and of the wall. Neither ball contains the other.
+    pub(super) fn is_on(&self, part: Part, point: DVec3) -> bool {
+        let beyond = |limit| {
+            let solid = self;
+            exact::sign(&Beyond {
+                solid,
+                point,
+                limit,
+            })
+        };
+        match part {
+            Part::Cap0 => beyond(Limit::Seam0).is_ge(),
+            Part::Cap1 => beyond(Limit::Seam1).is_ge(),
+            _ => beyond(Limit::Seam0).is_le() && beyond(Limit::Seam1).is_le(),
+        }
+    }
 }
 
 impl ConvexSolid for RoundedCone {
