@@ -6,9 +6,9 @@
 use std::sync::atomic::AtomicBool;
 
 use assert_cmd::Command;
-use cyltrace::cases::{AnyFamily, Family, Inputs};
+use cyltrace::cases::{AnyFamily, ComposedFamily, Family, Inputs};
 use cyltrace::solid::formulations::Precision;
-use cyltrace::stress::{Cell, Contender, Promise, Settings, run, to_word};
+use cyltrace::stress::{Cell, Contender, Promise, Settings, StressFamily, run, to_word};
 use serde_json::Value;
 
 const SEED: u64 = 11;
@@ -17,7 +17,7 @@ fn cases() -> u64 {
     std::env::var("CYLTRACE_CASES").map_or(5_000, |count| count.parse().expect("a number"))
 }
 
-fn stressed(cases: u64, families: &[AnyFamily], own: bool) -> Vec<Cell> {
+fn stressed(cases: u64, families: &[StressFamily], own: bool) -> Vec<Cell> {
     let contenders = Contender::all().into_iter();
     let settings = Settings {
         families: families.to_vec(),
@@ -29,7 +29,7 @@ fn stressed(cases: u64, families: &[AnyFamily], own: bool) -> Vec<Cell> {
     run(&settings, &|_| {}, &AtomicBool::new(false)).expect("nobody stopped it")
 }
 
-fn family(name: &str) -> AnyFamily {
+fn family(name: &str) -> StressFamily {
     name.parse().expect("a family")
 }
 
@@ -41,7 +41,7 @@ fn worst(cell: &Cell) -> String {
 
 #[test]
 fn promises_on_every_family_are_kept() {
-    let cells = stressed(cases(), &AnyFamily::all(), true);
+    let cells = stressed(cases(), &StressFamily::all(), true);
     let mut promised = 0;
     for cell in &cells {
         for promise in Promise::about(cell) {
@@ -71,7 +71,7 @@ fn promises_on_every_family_are_kept() {
 #[test]
 fn known_failures_of_the_textbook_form_are_found() {
     let families = [Family::Far, Family::Thin, Family::Tangent, Family::Cross];
-    let families = families.map(AnyFamily::Cylinder);
+    let families = families.map(|one| AnyFamily::Cylinder(one).into());
     let cells = stressed(1_000, &families, false);
     let textbook = cells.iter().filter(|cell| {
         cell.formulation == "centre-dot"
@@ -86,7 +86,7 @@ fn known_failures_of_the_textbook_form_are_found() {
 
 #[test]
 fn run_on_any_number_of_threads_gives_the_same_figures() {
-    let families = ["rim", "tangent", "cone-rim", "cuboid-corner"].map(family);
+    let families = ["rim", "tangent", "cone-rim", "composed-stacks"].map(family);
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)

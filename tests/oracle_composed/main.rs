@@ -3,6 +3,10 @@
 //! The expected values are those of regularised set operations: the closure of the
 //! interior. Each line states the solid, and the hits as parameters and directions.
 
+mod random;
+#[path = "../support/mod.rs"]
+mod support;
+
 use cyltrace::math::{Orientation, Ray};
 use cyltrace::oracle::{ComposedTruth, to_f64};
 use cyltrace::solid::{
@@ -430,7 +434,7 @@ fn closed(composition: &Composition, point: DVec3) -> Location {
     located.unwrap_or(Outside)
 }
 
-/// The planted fault: closed sets keep films, which the oracle does not.
+/// Closed sets keep films, which the oracle does not.
 #[test]
 fn closed_sets_are_told_from_regularised_ones() {
     let half = half();
