@@ -62,7 +62,7 @@ const DERIVED: &str = "derived, (3) to (6)";
 const MEASURED: &str = "measured, 20 families of 10^6";
 const CERTIFIED: &str = "certified by construction";
 const EXACT_SIGNS: &str = "signs decided exactly, section 8";
-const NEIGHBOURHOOD: &str = "regularised; numbers of families are exact multiples";
+const NEIGHBOURHOOD: &str = "neighbourhoods classified exactly";
 const SPAWN: &str = "derived, section 5";
 
 const fn promise(
@@ -142,13 +142,6 @@ pub const PROMISES: &[Promise] = &[
     ),
     promise(SET_OPERATIONS, Inputs::F32, ROUNDED_TO_F32, EXACT_SIGNS),
     promise(SET_OPERATIONS, Inputs::F32, Claim::Finite, EXACT_SIGNS),
-    promise(SET_OPERATIONS, Inputs::F64, Claim::Right, NEIGHBOURHOOD),
-    promise(
-        SET_OPERATIONS,
-        Inputs::F64,
-        Claim::EveryCrossing,
-        NEIGHBOURHOOD,
-    ),
     promise(
         SET_OPERATIONS,
         Inputs::F64,

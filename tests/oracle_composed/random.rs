@@ -12,7 +12,7 @@ use cyltrace::solid::{Crossing, Location};
 use glam::DVec3;
 
 use super::closed;
-use super::support::trees::holds;
+use super::trees::holds;
 
 const SEED: u64 = 5;
 /// Displacements: far above the rounding of points, far below the grid.

@@ -24,7 +24,7 @@ pub(super) fn draw(random: &mut Random, shapes: &[Shape], is_special: bool) -> R
         }
     };
     let through = match (is_special, random.below(3)) {
-        (false, _) => whole(random, 4) * 0.5,
+        (false, _) => through + whole(random, 2) * 0.25,
         (_, 0) => (through + special(random, shapes)) * 0.5,
         _ => through,
     };

@@ -11,7 +11,7 @@
 //! ```
 //!
 //! in exact numbers. Witnesses come in pairs on the two sides of one sheet, or of
-//! several that coincide there; `smooth.rs` and `apex.rs` choose them. That a pair is
+//! several that coincide there; `smooth.rs`, `edge.rs` and `apex.rs` choose them. That a pair is
 //! one is verified by its signs: they differ in these sheets only. So every cell and
 //! every face that is reported exists, whatever the choice. That none is left out rests
 //! on the choice: each cell around the point is bounded by a sheet, and each piece of a
@@ -184,14 +184,22 @@ impl Survey<'_> {
             let Some(part) = active.sheet.part else {
                 continue;
             };
-            if one.leaves[active.leaf] != other.leaves[active.leaf] {
-                let face = Face {
-                    leaf: active.leaf as u32,
-                    part,
-                    is_outward: one.leaves[active.leaf] == one.is_inside,
-                    normal: None,
-                };
-                note(&mut self.faces, face, &active.gradient);
+            if one.leaves[active.leaf] == other.leaves[active.leaf] {
+                continue;
+            }
+            let face = |part| Face {
+                leaf: active.leaf as u32,
+                part,
+                is_outward: one.leaves[active.leaf] == one.is_inside,
+                normal: None,
+            };
+            note(&mut self.faces, face(part), &active.gradient);
+            if active.gradient.is_zero() {
+                // The disc or ball of no size at an apex is named as well as the wall.
+                let same = self.active.iter().filter(|one| one.leaf == active.leaf);
+                for part in same.filter_map(|one| one.sheet.part) {
+                    note(&mut self.faces, face(part), &active.gradient);
+                }
             }
         }
         true

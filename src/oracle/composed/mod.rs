@@ -19,10 +19,11 @@
 //! those equal to second order coincide.
 //!
 //! Operands are polynomials (`sheet.rs`, `leaf.rs`); points are exact (`place.rs`,
-//! `ring.rs`); what is around them is in `around.rs`, `smooth.rs` and `apex.rs`.
+//! `ring.rs`); what is around them is in `around.rs`, `smooth.rs`, `edge.rs` and `apex.rs`.
 
 mod apex;
 mod around;
+mod edge;
 mod face;
 mod leaf;
 mod line;

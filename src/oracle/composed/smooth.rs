@@ -15,8 +15,8 @@
 //! between heights. The vectors `v` are in T exactly; where in its sector and between
 //! heights a witness is does not matter, so angles and middles are rounded.
 //!
-//! A cell that is between two sheets of one group and at the same time between two of
-//! another one, without being beside the rest of T, has no volume to second order.
+//! Cells and faces with a cusp, along a line that several planes have in common, are in
+//! `edge.rs`.
 
 use std::cmp::Ordering;
 use std::f64::consts::TAU;
@@ -25,6 +25,7 @@ use crate::math::power_of_two;
 use crate::oracle::number::{Exact, exact};
 
 use super::around::{Curve, Survey};
+use super::edge;
 use super::ring::{Number, Vector};
 
 /// Sectors of less are taken for none. Where numbers are whole and below 2^10, lines
@@ -46,7 +47,8 @@ struct Member {
 }
 
 pub(super) fn survey(survey: &mut Survey) {
-    for group in groups(survey) {
+    let groups = groups(survey);
+    for group in &groups {
         let members: Vec<Member> = group
             .members
             .iter()
@@ -59,6 +61,15 @@ pub(super) fn survey(survey: &mut Survey) {
         let lines = group.lines(survey, &members);
         for (angle, width) in sectors(lines) {
             group.climb(survey, &members, angle, width);
+        }
+    }
+    for (position, one) in groups.iter().enumerate() {
+        for other in &groups[..position] {
+            let v = one.n.cross(&other.n);
+            let back = v.times(&exact(-1.0));
+            for v in [v, back] {
+                edge::survey_along(survey, &v, [&one.n, &other.n]);
+            }
         }
     }
 }
