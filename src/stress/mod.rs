@@ -38,7 +38,7 @@ use crate::cases::{AnyFamily, Case, ComposedFamily, Inputs};
 /// count, few enough that threads end together.
 const BLOCK: u64 = 500;
 
-/// The same of set operations, about which the oracle thinks longer.
+/// The same of set operations, about which the oracle takes longer.
 const COMPOSED_BLOCK: u64 = 20;
 
 /// What to run.

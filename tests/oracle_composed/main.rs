@@ -462,7 +462,7 @@ fn closed(composition: &Composition, point: DVec3) -> Location {
 
 /// Closed sets keep films, which the oracle does not.
 #[test]
-fn closed_sets_are_told_from_regularised_ones() {
+fn closed_sets_differ_from_regularised_ones() {
     let half = half();
     for (point, is_wrong) in [
         (at(1.0, 2.0, 0.0), true),
