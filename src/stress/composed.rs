@@ -7,7 +7,7 @@
 use crate::cases::{ComposedCase, ComposedFamily, Inputs};
 use crate::math::{DoubleDouble, Ray};
 use crate::oracle::{self, ComposedHit, ComposedTruth, Face};
-use crate::solid::{ComposedMeeting, Composition, Location};
+use crate::solid::{ComposedMeeting, Composition, Location, Part};
 
 use super::cell::Figures;
 use super::witness::TrueAnswer;
@@ -158,10 +158,12 @@ impl TrueAnswer {
     pub(super) fn of_composed(hit: &ComposedHit) -> Self {
         let high = oracle::to_f64(&hit.t);
         let low = oracle::to_f64(&(&hit.t - oracle::exact(high)));
+        // Without a face any answer counts as one of a wrong part.
+        let face = hit.faces.first();
         Self {
             t: DoubleDouble { high, low },
-            part: hit.faces[0].part,
-            normal: hit.faces[0].normal,
+            part: face.map_or(Part::Side, |face| face.part),
+            normal: face.and_then(|face| face.normal),
             t_bound: None,
         }
     }
