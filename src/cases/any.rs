@@ -131,7 +131,7 @@ fn case_of<S: Into<AnySolid>>((solid, ray): (S, Ray)) -> Case {
 }
 
 /// `-exact-rim` of `ExactRim`.
-fn with_hyphens(name: &str) -> String {
+pub(super) fn with_hyphens(name: &str) -> String {
     let mut hyphened = String::new();
     for letter in name.chars() {
         if letter.is_uppercase() {

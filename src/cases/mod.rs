@@ -8,6 +8,7 @@
 
 mod aiming;
 mod any;
+mod composed;
 mod cuboids;
 mod disks;
 mod families;
@@ -16,12 +17,14 @@ mod spheres;
 mod tapers;
 
 pub use any::{AnyFamily, Case};
+pub use composed::{ComposedCase, ComposedFamily};
 pub use cuboids::CuboidFamily;
 pub use disks::DiskFamily;
 pub use families::{Family, UnknownFamily};
 pub use spheres::SphereFamily;
 pub use tapers::{TaperCase, TaperFamily, TaperSolid};
 
+use any::with_hyphens;
 use glam::DVec3;
 
 /// What the numbers of a case are rounded to.

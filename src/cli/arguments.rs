@@ -4,7 +4,7 @@ use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use cyltrace::cases::{AnyFamily, Family, Inputs};
+use cyltrace::cases::{Family, Inputs};
 use cyltrace::check::{Class, Replay};
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{
@@ -12,6 +12,7 @@ use cyltrace::scene::{
     GREATEST_THREADS, Integrator, TableFormat,
 };
 use cyltrace::solid::tessellation::{GREATEST_SEGMENTS, LEAST_SEGMENTS};
+use cyltrace::stress::StressFamily;
 
 mod bench;
 
@@ -218,8 +219,9 @@ pub struct TessellateArguments {
 pub struct StressArguments {
     /// Only this family; may be repeated [default: all]
     #[arg(long, value_name = "NAME")]
-    pub family: Vec<AnyFamily>,
-    /// Cases of each family and kind of inputs
+    pub family: Vec<StressFamily>,
+    /// Cases of each family and kind of inputs; of set operations all up to 1000, then a
+    /// hundredth
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..=GREATEST_CASES))]
     pub cases: u64,
     /// Chooses the cases

@@ -8,6 +8,7 @@ mod affine;
 mod any;
 mod change;
 mod chord;
+mod composed;
 mod cone;
 mod cuboid;
 mod cylinder;
@@ -28,6 +29,7 @@ pub use any::{
     first_hit_of_any, gap_of_any, hits_of_any, outward_normal_of_any, placed_hits_of_any,
 };
 pub use chord::TrueChord;
+pub use composed::{ComposedHit, ComposedTruth, Face};
 pub use cone::{cone_gap, cone_hits};
 pub use cuboid::{cuboid_chord, cuboid_gap, cuboid_holds};
 pub use cylinder::{CylinderTruth, TrueHit, first_hit, placed_first_hit};

@@ -119,16 +119,32 @@ impl Surd {
         self.sign_of_line(&-exact(x), &exact(1.0))
     }
 
-    /// Compares with a number that is a quotient, or has the same `s`.
+    /// Compares with another number: the sign of `p + q √s - q' √s'`, where the
+    /// greater square wins if there are two roots.
     pub fn cmp_exact(&self, other: &Self) -> Ordering {
-        let s = if sign(&other.q) == Ordering::Equal {
-            &self.s
-        } else {
-            &other.s
-        };
         let p = &self.p * &other.r - &other.p * &self.r;
-        let q = &self.q * &other.r - &other.q * &self.r;
-        sign_with_root(&p, &q, s)
+        let (q, taken) = (&self.q * &other.r, &other.q * &self.r);
+        if sign(&taken) == Ordering::Equal {
+            return sign_with_root(&p, &q, &self.s);
+        }
+        if sign(&q) == Ordering::Equal {
+            return sign_with_root(&p, &-taken, &other.s);
+        }
+        if self.s == other.s {
+            return sign_with_root(&p, &(q - taken), &self.s);
+        }
+        let root_sign = |q: &Exact, s: &Exact| sign_with_root(&zero(), q, s);
+        let left = sign_with_root(&p, &q, &self.s);
+        let right = root_sign(&taken, &other.s);
+        if left != right {
+            return left.cmp(&right);
+        }
+        let squares = &p * &p + &q * &q * &self.s - &taken * &taken * &other.s;
+        let by_square = sign_with_root(&squares, &(exact(2.0) * &p * &q), &self.s);
+        match left {
+            Ordering::Less => by_square.reverse(),
+            _ => by_square,
+        }
     }
 
     /// The number to [`LONG`] bits less what cancels.
@@ -264,5 +280,33 @@ mod tests {
             Ordering::Less
         );
         assert_eq!(to_f64(&root_two.value()), std::f64::consts::SQRT_2);
+    }
+
+    /// `1 + √2 < √6`, and `1 + √2 = √(3 + √8)` where that is stated with whole numbers:
+    /// `√18 - √8 = √2`.
+    #[test]
+    fn surds_of_different_roots_compare() {
+        let surd = |p: f64, q: f64, s: f64| Surd {
+            p: exact(p),
+            q: exact(q),
+            s: exact(s),
+            r: exact(1.0),
+        };
+        let cases = [
+            (surd(1.0, 1.0, 2.0), surd(0.0, 1.0, 6.0), Ordering::Less),
+            (surd(1.0, 1.0, 2.0), surd(0.0, 1.0, 5.0), Ordering::Greater),
+            (surd(0.0, 2.0, 2.0), surd(0.0, 1.0, 8.0), Ordering::Equal),
+            (surd(3.0, -2.0, 2.0), surd(3.0, -1.0, 8.0), Ordering::Equal),
+            (
+                surd(0.0, -1.0, 3.0),
+                surd(1.0, -2.0, 2.0),
+                Ordering::Greater,
+            ),
+            (surd(0.0, -1.0, 3.0), surd(1.0, 2.0, 2.0), Ordering::Less),
+        ];
+        for (one, other, order) in cases {
+            assert_eq!(one.cmp_exact(&other), order, "{one:?} {other:?}");
+            assert_eq!(other.cmp_exact(&one), order.reverse());
+        }
     }
 }

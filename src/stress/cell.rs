@@ -10,10 +10,12 @@
 //! - the normal's angle to the true one, up to its sign, where the part is
 //!   right.
 
-use crate::cases::{AnyFamily, Inputs};
+use crate::cases::Inputs;
 use crate::math::power_of_two;
 use crate::solid::formulations::{Answer, Precision};
 
+use super::composed::Verdict;
+use super::family::StressFamily;
 use super::quantiles::Quantiles;
 use super::witness::{TrueAnswer, Witness};
 
@@ -21,7 +23,7 @@ use super::witness::{TrueAnswer, Witness};
 #[derive(Clone, Debug)]
 pub struct Cell {
     /// The family.
-    pub family: AnyFamily,
+    pub family: StressFamily,
     /// The kind of inputs.
     pub inputs: Inputs,
     /// The name of the formulation, or of the kind of solid.
@@ -71,6 +73,10 @@ pub struct Figures {
     pub wrong_part_outside: u64,
     /// Wrong hits and parts of cases that the library promises.
     pub wrong_decided: u64,
+    /// Cases of set operations with a wrong crossing anywhere on the ray.
+    pub wrong_crossing: u64,
+    /// Cases of set operations with a point in the wrong place.
+    pub wrong_point: u64,
     /// Answers with a NaN or an infinity.
     pub non_finite: u64,
     /// Errors of `t` rounded to f32, in f32 ulps.
@@ -150,6 +156,40 @@ impl Figures {
         }
     }
 
+    /// Counts a verdict on set operations.
+    pub(super) fn count(&mut self, verdict: &Verdict, index: u64) {
+        self.cases += 1;
+        self.hits += u64::from(verdict.is_hit);
+        self.wrong_hit += u64::from(verdict.is_wrong_hit);
+        self.wrong_hit_outside += u64::from(verdict.is_wrong_hit);
+        self.wrong_part += u64::from(verdict.is_wrong_part);
+        self.wrong_part_outside += u64::from(verdict.is_wrong_part);
+        self.wrong_crossing += u64::from(verdict.is_wrong_crossing);
+        self.wrong_point += u64::from(verdict.is_wrong_point);
+        self.non_finite += u64::from(verdict.is_not_finite);
+        let class = match verdict {
+            Verdict {
+                is_not_finite: true,
+                ..
+            } => 3,
+            Verdict {
+                is_wrong_hit: true, ..
+            } => 2,
+            _ => u8::from(verdict.is_wrong()),
+        };
+        let mut size = 0.0;
+        if let Some((truth, t)) = verdict.first {
+            let error = truth.error_of(t);
+            let f32_error = truth.error_of(f64::from(t as f32));
+            size = in_ulps(error, &truth, Precision::F64);
+            self.t_f32_ulps
+                .push(in_ulps(f32_error, &truth, Precision::F32));
+            self.t_f64_ulps.push(size);
+            self.position.push(error / verdict.half_size);
+        }
+        self.note(class, if class > 0 { 0.0 } else { size }, index);
+    }
+
     /// Counts the errors of a hit and answers with that of `t` in ulps.
     fn compare(
         &mut self,
@@ -203,6 +243,8 @@ impl Figures {
         self.wrong_part += other.wrong_part;
         self.wrong_part_outside += other.wrong_part_outside;
         self.wrong_decided += other.wrong_decided;
+        self.wrong_crossing += other.wrong_crossing;
+        self.wrong_point += other.wrong_point;
         self.non_finite += other.non_finite;
         self.t_f32_ulps.merge(other.t_f32_ulps);
         self.t_f64_ulps.merge(other.t_f64_ulps);

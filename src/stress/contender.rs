@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use super::family::StressFamily;
 use crate::cases::Case;
 use crate::math::Ray;
 use crate::solid::formulations::{self, Answer, Formulation, Precision, Problem};
@@ -14,6 +15,8 @@ pub enum Contender {
     Formulation(Box<dyn Formulation>),
     /// The library's solver of another kind.
     Solver(SolidKind),
+    /// The library's solver of set operations, which `composed.rs` judges.
+    Composition,
 }
 
 impl Contender {
@@ -28,7 +31,10 @@ impl Contender {
             SolidKind::Disk,
         ];
         let formulations = formulations::all().into_iter().map(Self::Formulation);
-        formulations.chain(solvers.map(Self::Solver)).collect()
+        formulations
+            .chain(solvers.map(Self::Solver))
+            .chain([Self::Composition])
+            .collect()
     }
 
     /// The name in tables and on the command line.
@@ -37,6 +43,7 @@ impl Contender {
         match self {
             Self::Formulation(formulation) => formulation.name(),
             Self::Solver(kind) => kind.name(),
+            Self::Composition => "set_operations",
         }
     }
 
@@ -45,16 +52,26 @@ impl Contender {
     pub fn precision(&self) -> Precision {
         match self {
             Self::Formulation(formulation) => formulation.precision(),
-            Self::Solver(_) => Precision::F64,
+            Self::Solver(_) | Self::Composition => Precision::F64,
         }
     }
 
-    /// The kind of solids that it knows.
+    /// The kind of single solids that it knows.
     #[must_use]
-    pub fn kind(&self) -> SolidKind {
+    pub fn kind(&self) -> Option<SolidKind> {
         match self {
-            Self::Formulation(_) => SolidKind::Cylinder,
-            Self::Solver(kind) => *kind,
+            Self::Formulation(_) => Some(SolidKind::Cylinder),
+            Self::Solver(kind) => Some(*kind),
+            Self::Composition => None,
+        }
+    }
+
+    /// Whether it answers the cases of a family.
+    #[must_use]
+    pub fn answers_about(&self, family: StressFamily) -> bool {
+        match family {
+            StressFamily::Solid(family) => self.kind() == Some(family.kind()),
+            StressFamily::Composed(_) => matches!(self, Self::Composition),
         }
     }
 
@@ -71,14 +88,15 @@ impl Contender {
             Self::Formulation(formulation) => {
                 formulation.precision() == Precision::F64 && own.contains(&formulation.name())
             }
-            Self::Solver(_) => true,
+            Self::Solver(_) | Self::Composition => true,
         }
     }
 
     /// The first hit of each case, which are of its kind.
     ///
     /// # Panics
-    /// When a formulation is given another solid than a cylinder.
+    /// When a formulation is given another solid than a cylinder, or set operations
+    /// a single solid.
     #[must_use]
     pub fn answers(&self, cases: &[Case]) -> Vec<Option<Answer>> {
         let problem = |case: &Case| match case.solid {
@@ -94,6 +112,7 @@ impl Contender {
                 formulation.answers(&problems)
             }
             Self::Solver(_) => cases.iter().map(first_answer).collect(),
+            Self::Composition => unreachable!("set operations were given single solids"),
         }
     }
 }

@@ -31,6 +31,10 @@ pub enum Claim {
     RightBeyondRounding,
     /// The share of 0.999 of `t` rounded to f32 is within so many f32 ulps.
     ThousandthF32Ulps(f64),
+    /// Every crossing of every ray is the true one.
+    EveryCrossing,
+    /// Every point is located where it is.
+    PointsLocated,
     /// Every `t` is within so many f64 ulps.
     EveryF64Ulps(f64),
     /// Every promised `t` is within the bound of `docs/derivations.md`.
@@ -50,11 +54,15 @@ const EXACT_ROUNDED: &[&str] = &["exact-rounded"];
 /// The solvers of the solids that are no cylinders, by their kinds.
 const SOLVERS: &[&str] = &["cone", "rounded_cone", "sphere", "cuboid", "disk"];
 
+/// The solver of set operations.
+const SET_OPERATIONS: &[&str] = &["set_operations"];
+
 /// (3) to (6) are those of `docs/derivations.md`, section 2.
 const DERIVED: &str = "derived, (3) to (6)";
 const MEASURED: &str = "measured, 20 families of 10^6";
 const CERTIFIED: &str = "certified by construction";
 const EXACT_SIGNS: &str = "signs decided exactly, section 8";
+const NEIGHBOURHOOD: &str = "neighbourhoods classified exactly";
 const SPAWN: &str = "derived, section 5";
 
 const fn promise(
@@ -119,6 +127,28 @@ pub const PROMISES: &[Promise] = &[
     ),
     promise(SOLVERS, Inputs::F64, Claim::Finite, EXACT_SIGNS),
     promise(SOLVERS, Inputs::F64, Claim::NoSelfHit, SPAWN),
+    promise(SET_OPERATIONS, Inputs::F32, Claim::Right, NEIGHBOURHOOD),
+    promise(
+        SET_OPERATIONS,
+        Inputs::F32,
+        Claim::EveryCrossing,
+        NEIGHBOURHOOD,
+    ),
+    promise(
+        SET_OPERATIONS,
+        Inputs::F32,
+        Claim::PointsLocated,
+        NEIGHBOURHOOD,
+    ),
+    promise(SET_OPERATIONS, Inputs::F32, ROUNDED_TO_F32, EXACT_SIGNS),
+    promise(SET_OPERATIONS, Inputs::F32, Claim::Finite, EXACT_SIGNS),
+    promise(
+        SET_OPERATIONS,
+        Inputs::F64,
+        Claim::PointsLocated,
+        NEIGHBOURHOOD,
+    ),
+    promise(SET_OPERATIONS, Inputs::F64, Claim::Finite, EXACT_SIGNS),
 ];
 
 impl Promise {
@@ -145,6 +175,8 @@ impl Promise {
             Claim::Right => figures.wrong_hit == 0 && figures.wrong_part == 0,
             Claim::RightWhereDecided | Claim::RightBeyondRounding => figures.wrong_decided == 0,
             Claim::ThousandthF32Ulps(most) => figures.t_f32_ulps.at(0.999) <= most,
+            Claim::EveryCrossing => figures.wrong_crossing == 0,
+            Claim::PointsLocated => figures.wrong_point == 0,
             Claim::EveryF64Ulps(most) => figures.t_f64_ulps.greatest() <= most,
             Claim::WithinBound => figures.t_bound_used <= 1.0,
             Claim::Finite => figures.non_finite == 0,
@@ -157,6 +189,8 @@ impl fmt::Display for Claim {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Right => f.write_str("no wrong hit, miss or part"),
+            Self::EveryCrossing => f.write_str("no wrong crossing"),
+            Self::PointsLocated => f.write_str("no wrong point"),
             Self::RightWhereDecided => f.write_str(
                 "no wrong hit, miss or part where wall gap > 20 u (1 + |x|/r + k) and gap > 64 u",
             ),

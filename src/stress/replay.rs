@@ -8,7 +8,8 @@
 
 use glam::DVec3;
 
-use crate::cases::{AnyFamily, Case, Inputs};
+use super::family::StressFamily;
+use crate::cases::{AnyFamily, Case, ComposedCase, Inputs};
 use crate::math::Ray;
 use crate::solid::formulations::Problem;
 use crate::solid::{Caps, Cylinder, CylinderError};
@@ -45,27 +46,44 @@ pub enum ReplayError {
 
 /// The word for case `index` of a family.
 #[must_use]
-pub fn to_word(family: AnyFamily, inputs: Inputs, seed: u64, index: u64) -> String {
+pub fn to_word(family: StressFamily, inputs: Inputs, seed: u64, index: u64) -> String {
     match family {
-        AnyFamily::Cylinder(family) => to_bits(&family.case(seed, index, inputs)),
+        StressFamily::Solid(AnyFamily::Cylinder(family)) => {
+            to_bits(&family.case(seed, index, inputs))
+        }
         _ => format!("{}:{}:{seed}:{index}", family.name(), inputs.name()),
     }
+}
+
+/// A case of a single solid or of set operations.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StressCase {
+    /// Of a single solid.
+    Solid(Case),
+    /// Of set operations.
+    Composed(ComposedCase),
 }
 
 /// The case that a word of [`to_word`] stands for.
 ///
 /// # Errors
 /// When the word is malformed or stands for no cylinder and ray.
-pub fn from_word(word: &str) -> Result<Case, ReplayError> {
+pub fn from_word(word: &str) -> Result<StressCase, ReplayError> {
     let parts: Vec<&str> = word.trim().split(':').collect();
     if let [family, inputs, seed, index] = parts[..]
-        && let Ok(family) = family.parse::<AnyFamily>()
+        && let Ok(family) = family.parse::<StressFamily>()
         && let Some(inputs) = Inputs::ALL.into_iter().find(|one| one.name() == inputs)
         && let (Ok(seed), Ok(index)) = (seed.parse(), index.parse::<u32>())
     {
-        return Ok(family.case(seed, index.into(), inputs));
+        let index = u64::from(index);
+        return Ok(match family {
+            StressFamily::Solid(family) => StressCase::Solid(family.case(seed, index, inputs)),
+            StressFamily::Composed(family) => {
+                StressCase::Composed(family.case(seed, index, inputs))
+            }
+        });
     }
-    from_bits(word).map(Case::from)
+    from_bits(word).map(|problem| StressCase::Solid(problem.into()))
 }
 
 /// The word for a cylinder and a ray.
@@ -120,14 +138,19 @@ fn from_bits(word: &str) -> Result<Problem, ReplayError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cases::Family;
+    use crate::cases::{ComposedFamily, Family};
 
     #[test]
     fn word_read_back_is_the_same_case() {
         for family in AnyFamily::all() {
             let case = family.case(1, 2, Inputs::F64);
-            let word = to_word(family, Inputs::F64, 1, 2);
-            assert_eq!(from_word(&word), Ok(case), "{word}");
+            let word = to_word(family.into(), Inputs::F64, 1, 2);
+            assert_eq!(from_word(&word), Ok(StressCase::Solid(case)), "{word}");
+        }
+        for family in ComposedFamily::ALL {
+            let case = family.case(1, 2, Inputs::F64);
+            let word = to_word(family.into(), Inputs::F64, 1, 2);
+            assert_eq!(from_word(&word), Ok(StressCase::Composed(case)), "{word}");
         }
     }
 

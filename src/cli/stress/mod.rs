@@ -1,5 +1,6 @@
 //! `cyltrace stress`.
 
+mod composed;
 mod map;
 mod replay;
 mod tables;
@@ -7,8 +8,8 @@ mod tables;
 use std::time::Instant;
 
 use anyhow::bail;
-use cyltrace::cases::{AnyFamily, Inputs};
-use cyltrace::stress::{self, Cell, Contender, Promise, Settings};
+use cyltrace::cases::Inputs;
+use cyltrace::stress::{self, Cell, Contender, Promise, Settings, StressFamily};
 use serde_json::{Value, json};
 
 use super::arguments::StressArguments;
@@ -40,7 +41,7 @@ pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
 
     let settings = Settings {
         families: match arguments.family.as_slice() {
-            [] => AnyFamily::all(),
+            [] => StressFamily::all(),
             some => some.to_vec(),
         },
         inputs: arguments
@@ -122,6 +123,8 @@ fn row(cell: &Cell) -> Value {
         "wrong_hit_outside_band": figures.wrong_hit_outside,
         "wrong_part": figures.wrong_part,
         "wrong_part_outside_band": figures.wrong_part_outside,
+        "wrong_crossing": figures.wrong_crossing,
+        "wrong_point": figures.wrong_point,
         "non_finite": figures.non_finite,
         "t_ulp_of": cell.ulp_of().name(),
         "median_t_ulp": t.at(0.5),

@@ -5,14 +5,18 @@ use cyltrace::math::UNIT_ROUNDOFF;
 use cyltrace::oracle;
 use cyltrace::report::Table;
 use cyltrace::solid::AnySolid;
-use cyltrace::stress::{Contender, from_word};
+use cyltrace::stress::{Contender, StressCase, from_word};
 use glam::DVec3;
 
+use super::composed;
 use crate::cli::print::print;
 
 /// Prints the case of a word and the answers to it.
 pub fn run(word: &str, contenders: &[Contender]) -> anyhow::Result<()> {
-    let case = from_word(word)?;
+    let case = match from_word(word)? {
+        StressCase::Solid(case) => case,
+        StressCase::Composed(case) => return composed::run(&case),
+    };
     let Case { solid, ray } = &case;
     let mut text = match solid {
         AnySolid::Cylinder(cylinder) => format!(
@@ -58,7 +62,10 @@ pub fn run(word: &str, contenders: &[Contender]) -> anyhow::Result<()> {
         (hit.part.name(), hit.t_f64(), normal.unwrap_or(DVec3::NAN))
     });
     table.push(row("oracle", "", exact));
-    for contender in contenders.iter().filter(|one| one.kind() == solid.kind()) {
+    for contender in contenders
+        .iter()
+        .filter(|one| one.kind() == Some(solid.kind()))
+    {
         let answer = contender.answers(&[case])[0];
         let found = answer.map(|answer| (answer.part.name(), answer.t, answer.normal));
         table.push(row(contender.name(), contender.precision().name(), found));
@@ -67,6 +74,6 @@ pub fn run(word: &str, contenders: &[Contender]) -> anyhow::Result<()> {
 }
 
 /// A line with the digits of a vector.
-fn row_of(name: &str, vector: DVec3) -> String {
+pub(super) fn row_of(name: &str, vector: DVec3) -> String {
     format!("{name:<10}{:?} {:?} {:?}\n", vector.x, vector.y, vector.z)
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use cyltrace::report::{Table, figure};
-use cyltrace::stress::{Cell, PROMISES, Promise, Settings, to_word};
+use cyltrace::stress::{Cell, PROMISES, Promise, Settings, StressFamily, to_word};
 
 /// The table of promises.
 pub fn promises() -> String {
@@ -37,6 +37,14 @@ pub fn all(
             settings.seed
         );
         let _ = writeln!(text, "{}", errors(of_inputs()));
+        if of_inputs().any(is_composed) {
+            let _ = writeln!(text, "set operations, all crossings and points");
+            let _ = writeln!(
+                text,
+                "{}",
+                composed(of_inputs().filter(|one| is_composed(one)))
+            );
+        }
         let _ = writeln!(text, "worst cases, for --replay");
         let _ = writeln!(text, "{}", worst(of_inputs()));
     }
@@ -101,6 +109,29 @@ fn errors<'a>(cells: impl Iterator<Item = &'a Cell>) -> Table {
     table
 }
 
+fn is_composed(cell: &Cell) -> bool {
+    matches!(cell.family, StressFamily::Composed(_))
+}
+
+fn composed<'a>(cells: impl Iterator<Item = &'a Cell>) -> Table {
+    let headings = [
+        "family",
+        "cases",
+        "hit %",
+        "wrong crossings %",
+        "wrong points %",
+    ];
+    let mut table = Table::new(&headings, 1);
+    for cell in cells {
+        let figures = &cell.figures;
+        let percent = |count: u64| figure(100.0 * count as f64 / figures.cases as f64);
+        let shares = [figures.hits, figures.wrong_crossing, figures.wrong_point].map(percent);
+        let named = [cell.family.name(), figures.cases.to_string()];
+        table.push(named.into_iter().chain(shares).collect());
+    }
+    table
+}
+
 fn worst<'a>(cells: impl Iterator<Item = &'a Cell>) -> Table {
     let mut table = Table::new(&["family", "formulation", "in", "what", "case"], 5);
     for cell in cells {
@@ -111,6 +142,7 @@ fn worst<'a>(cells: impl Iterator<Item = &'a Cell>) -> Table {
         let what = match worst.class {
             3 => String::from("not finite"),
             2 => format!("wrong hit, gap {size}"),
+            1 if is_composed(cell) => String::from("wrong part, crossing or point"),
             1 => format!("wrong part, gap {size}"),
             _ => format!("t off {size} ulp"),
         };
