@@ -39,7 +39,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::math::Bounds;
+use crate::math::{Bounds, power_of_two};
 use crate::tracer::frame::BOX_GROWTH;
 
 /// The least number of callbacks that another frame spares a ray.
@@ -59,6 +59,9 @@ const CENTRES: usize = 32;
 /// The least part of a sample that is trusted: a few boxes that are close by chance
 /// stand for thousands.
 const LEAST_SHARE: f64 = 1.0 / 32.0;
+
+/// The octaves around a cube that are looked at in one pass over the boxes.
+const OCTAVES: u32 = 64;
 
 /// Growth matters to a box whose area it multiplies by more than this.
 const NOTABLE: f64 = 1.25;
@@ -84,6 +87,11 @@ pub(super) struct Cube {
 }
 
 impl Cube {
+    /// Half the side of the cube doubled some times.
+    fn side_after(&self, octaves: u32) -> f64 {
+        self.half_side * power_of_two(octaves as i32)
+    }
+
     /// Whether a box is inside.
     pub fn contains(&self, bounds: &Bounds) -> bool {
         reach(self.centre, bounds) <= self.half_side
@@ -210,23 +218,33 @@ impl<'a, B: Boxed> Rest<'a, B> {
     }
 
     /// The cube doubled until the next octave is empty, or it is the greatest.
-    fn widened(&self, mut cube: Cube) -> Cube {
-        let inside = |cube: &Cube| self.with(|bounds| cube.contains(bounds)).len();
-        let mut count = inside(&cube);
-        loop {
-            let wider = Cube {
-                half_side: 2.0 * cube.half_side,
-                ..cube
-            };
-            if wider.half_side > self.greatest() {
-                return cube;
-            }
-            let more = inside(&wider);
-            if more == count {
-                return cube;
-            }
-            (cube, count) = (wider, more);
+    fn widened(&self, cube: Cube) -> Cube {
+        let most = (1..=OCTAVES).take_while(|&octaves| cube.side_after(octaves) <= self.greatest());
+        let occupied = self.octaves_around(&cube).trailing_ones();
+        let octaves = occupied.min(most.count() as u32);
+        let widened = Cube {
+            half_side: cube.side_after(octaves),
+            ..cube
+        };
+        match octaves {
+            OCTAVES => self.widened(widened),
+            _ => widened,
         }
+    }
+
+    /// Which of the octaves around a cube have a box: bit k is set if one reaches beyond the
+    /// cube doubled k times, but not beyond it doubled once more.
+    fn octaves_around(&self, cube: &Cube) -> u64 {
+        let positions = (0..self.len()).into_par_iter().with_min_len(1 << 10);
+        let bits = positions.map(|position| {
+            let reach = reach(cube.centre, &self.all.bounds(self.number(position)));
+            let octave = (0..=OCTAVES).find(|&octaves| reach <= cube.side_after(octaves));
+            match octave {
+                None | Some(0) => 0,
+                Some(octave) => 1 << (octave - 1),
+            }
+        });
+        bits.reduce(|| 0, |one, other| one | other)
     }
 }
 

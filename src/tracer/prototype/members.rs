@@ -201,12 +201,9 @@ impl<'a> Boxes<'a> {
         if cubes.is_empty() {
             return vec![(everything, whole)];
         }
-        let groups = (0..=cubes.len()).map(|group| {
-            let members = self.group(&cubes, group);
-            let bounds = self.around(&members);
-            (members, bounds)
-        });
-        groups.filter(|(_, bounds)| !bounds.is_empty()).collect()
+        let mut groups = self.divided(&cubes);
+        groups.retain(|(_, bounds)| !bounds.is_empty());
+        groups
     }
 
     /// The box around all but the further groups of what is placed.
@@ -219,20 +216,58 @@ impl<'a> Boxes<'a> {
         self.around(&Members { lists })
     }
 
-    /// The members of the group with a number.
-    fn group(&self, cubes: &[Cube], group: usize) -> Members {
-        let lists = self.lens.iter().enumerate();
-        let lists = lists.map(|(position, &len)| {
-            let (all, list) = (Numbers::All(len), List::at(position));
-            let some = all.filtered(|number| {
-                let bounds = self.entry(list, number);
-                let cube = cubes.iter().position(|cube| cube.contains(&bounds));
-                cube.unwrap_or(cubes.len()) == group
-            });
-            if some.len() == len { all } else { some }
+    /// The groups that cubes make, from one pass over all boxes.
+    fn divided(&self, cubes: &[Cube]) -> Vec<(Members, Bounds)> {
+        let nothing = Members { lists: Vec::new() };
+        let mut groups = vec![(nothing, Bounds::EMPTY); cubes.len() + 1];
+        for (position, &len) in self.lens.iter().enumerate() {
+            let parts = self.divided_list(List::at(position), len, cubes);
+            for ((members, bounds), part) in groups.iter_mut().zip(parts) {
+                members.lists.push(match part.numbers.len() as u32 {
+                    all if all == len => Numbers::All(len),
+                    _ => Numbers::These(part.numbers.into()),
+                });
+                *bounds = bounds.union(&part.bounds);
+            }
+        }
+        groups
+    }
+
+    /// What each group has of a list.
+    fn divided_list(&self, list: List, len: u32, cubes: &[Cube]) -> Vec<Part> {
+        let nothing = || vec![Part::default(); cubes.len() + 1];
+        let numbers = (0..len).into_par_iter().with_min_len(1 << 10);
+        let parts = numbers.fold(nothing, |mut parts, number| {
+            let bounds = self.entry(list, number);
+            let cube = cubes.iter().position(|cube| cube.contains(&bounds));
+            let part = &mut parts[cube.unwrap_or(cubes.len())];
+            part.numbers.push(number);
+            part.bounds = part.bounds.union(&bounds);
+            parts
         });
-        Members {
-            lists: lists.collect(),
+        parts.reduce(nothing, |mut parts, next| {
+            for (part, next) in parts.iter_mut().zip(next) {
+                part.numbers.extend(next.numbers);
+                part.bounds = part.bounds.union(&next.bounds);
+            }
+            parts
+        })
+    }
+}
+
+/// What a group has of a list.
+#[derive(Clone)]
+struct Part {
+    /// In ascending order.
+    numbers: Vec<u32>,
+    bounds: Bounds,
+}
+
+impl Default for Part {
+    fn default() -> Self {
+        Self {
+            numbers: Vec::new(),
+            bounds: Bounds::EMPTY,
         }
     }
 }
