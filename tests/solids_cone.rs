@@ -8,11 +8,11 @@ use cyltrace::cases::{Inputs, TaperCase, TaperFamily, TaperSolid};
 use cyltrace::math::Ray;
 use cyltrace::oracle::{
     Exact, ExactRay, TrueHit, cone_gap, cone_hits, cone_holds, distance_to_cone,
-    distance_to_rounded_cone, exact, rounded_cone_gap, rounded_cone_hits, rounded_cone_holds,
-    to_f64,
+    distance_to_rounded_cone, exact, hits_of_any, rounded_cone_gap, rounded_cone_hits,
+    rounded_cone_holds, to_f64,
 };
 use cyltrace::solid::{
-    Caps, Chord, Cone, ConvexSolid, Cylinder, Meeting, surface_point, triple_product,
+    AnySolid, Caps, Chord, Cone, ConvexSolid, Cylinder, Meeting, surface_point, triple_product,
 };
 use glam::DVec3;
 
@@ -356,4 +356,40 @@ fn cone_with_equal_radii_is_the_cylinder() {
         }
     }
     assert!(hits > cases(), "{hits}");
+}
+
+/// A line that only touches the rim of an open end is an entry and an exit of the wall, as
+/// every tangent is. Whole numbers meet the rim to the last bit.
+#[test]
+fn lines_that_touch_the_rim_of_an_open_end_enter_and_leave_there() {
+    let axis = DVec3::new(2.25, 0.0, 0.5);
+    let rim = DVec3::Y;
+    let ways = [DVec3::Z, DVec3::NEG_Z];
+    for caps in [Caps::None, Caps::P0, Caps::P1, Caps::Both] {
+        let cylinder = Cylinder::new(DVec3::ZERO, axis, 1.0, caps).unwrap();
+        let cone = Cone::new(DVec3::ZERO, axis, 1.0, 0.0, caps).unwrap();
+        let swapped = Cone::new(axis, DVec3::ZERO, 0.0, 1.0, caps).unwrap();
+        let far_rim = Cylinder::new(-axis, DVec3::ZERO, 1.0, caps).unwrap();
+        let solids: [AnySolid; 4] = [cylinder.into(), cone.into(), swapped.into(), far_rim.into()];
+        for (solid, way) in solids.iter().flat_map(|solid| ways.map(|way| (solid, way))) {
+            // Of a cylinder this line runs through the rim into the solid or out of it.
+            let tilted = way + DVec3::Y * 0.5 * way.z;
+            for direction in [way, tilted] {
+                let ray = Ray::new(rim - direction * 8.0, direction);
+                let truth = hits_of_any(solid, &ray);
+                let x = ray.origin - solid.anchor();
+                let found = solid.chord(x, direction).map_or(Vec::new(), |chord| {
+                    chord.meetings(caps, 0.0, 0.0, f64::INFINITY).collect()
+                });
+                let keys = |met: &Meeting| (met.part, met.crossing, met.t);
+                let found: Vec<_> = found.iter().map(keys).collect();
+                let expected = truth
+                    .iter()
+                    .map(|hit| (hit.part, hit.crossing, hit.t_f64()));
+                let expected: Vec<_> = expected.collect();
+                assert_eq!(found, expected, "{solid:?} {ray:?}");
+                assert!(!found.is_empty(), "{solid:?} {ray:?}");
+            }
+        }
+    }
 }

@@ -205,13 +205,14 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
             (height <= slab.height, ChordEnd { t, part, on_rim })
         } else {
             let leave = self.wall.leave();
-            let at_disc = slab.at(discs.near);
+            let (to_leave, at_disc) = (slab.beyond_near(discs, leave), slab.at(discs.near));
             let end = ChordEnd {
                 t: at_most(if at_disc < t { t } else { at_disc }, leave),
                 part: discs.near_part(),
-                on_rim: height == S::ZERO,
+                // A line that leaves where it enters only touches the rim.
+                on_rim: (height == S::ZERO) | (to_leave == S::ZERO),
             };
-            (slab.beyond_near(discs, leave) >= S::ZERO, end)
+            (to_leave >= S::ZERO, end)
         }
     }
 
@@ -233,7 +234,8 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
             ChordEnd {
                 t: at_most(slab.at(discs.far), t),
                 part: discs.far_part(),
-                on_rim: height == slab.height,
+                // A line that enters at the far disc's height only touches the rim.
+                on_rim: (height == slab.height) | (slab.beyond_near(discs, enter) == slab.height),
             }
         };
         // At an edge the two may come out in the wrong order by a rounding, and of a line

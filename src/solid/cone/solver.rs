@@ -127,13 +127,15 @@ fn oblique(heights: &Heights, inside: Inside) -> Option<Chord> {
         },
         on_rim: is_at_other,
     };
+    // A line that leaves where it enters only touches a rim; both ends are on it.
+    let (touches_near, touches_far) = (leave(near) == Equal, enter(far) == Equal);
     let enter = match enter(near) {
-        Greater => on_wall(inside.enter, far, enter(far) == Equal),
-        to_rim => on_disc(near, to_rim == Equal),
+        Greater => on_wall(inside.enter, far, touches_far),
+        to_rim => on_disc(near, to_rim == Equal || touches_near),
     };
     let leave = match leave(far) {
-        Less => on_wall(inside.leave, near, leave(near) == Equal),
-        to_rim => on_disc(far, to_rim == Equal),
+        Less => on_wall(inside.leave, near, touches_near),
+        to_rim => on_disc(far, to_rim == Equal || touches_far),
     };
     Some(Chord {
         enter,
