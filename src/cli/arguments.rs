@@ -1,6 +1,6 @@
 //! The arguments, as clap reads them.
 
-use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -8,15 +8,16 @@ use cyltrace::cases::{Family, Inputs};
 use cyltrace::check::{Class, Replay};
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{
-    Decimal, Delimiter, Film, GREATEST_CASES, GREATEST_PIXELS, GREATEST_RAYS, GREATEST_SAMPLES,
-    GREATEST_THREADS, Integrator, TableFormat,
+    Decimal, Delimiter, Film, GREATEST_CASES, GREATEST_RAYS, GREATEST_SAMPLES, GREATEST_THREADS,
+    Integrator, TableFormat,
 };
-use cyltrace::solid::tessellation::{GREATEST_SEGMENTS, LEAST_SEGMENTS};
 use cyltrace::stress::StressFamily;
 
 mod bench;
+mod numbers;
 
 pub use bench::{AccuracyArguments, Bench, BenchArguments, ScaleArguments, TraversalArguments};
+use numbers::{count_up_to, parse_length, parse_seed, parse_segments, parse_size};
 
 use super::limit::MemoryArguments;
 use super::memory;
@@ -344,24 +345,6 @@ pub fn integrator_name(integrator: Integrator) -> &'static str {
     }
 }
 
-/// Reads a whole number from 1 to `greatest`.
-fn count_up_to<N: TryFrom<NonZeroU64>>(
-    greatest: u64,
-) -> impl Fn(&str) -> Result<N, String> + Clone + Send + Sync + 'static {
-    move |text| {
-        let count = text.parse().ok();
-        count
-            .filter(|count: &NonZeroU64| count.get() <= greatest)
-            .and_then(|count| N::try_from(count).ok())
-            .ok_or_else(|| format!("it must be a whole number from 1 to {greatest}"))
-    }
-}
-
-fn parse_seed(text: &str) -> Result<u64, String> {
-    let seed = text.parse();
-    seed.map_err(|_| format!("it must be a whole number from 0 to {}", u64::MAX))
-}
-
 /// A whole number is a count, the name of a file that is there a table.
 fn parse_rays(text: &str) -> Result<Rays, String> {
     let count: Option<u64> = text.parse().ok();
@@ -372,39 +355,6 @@ fn parse_rays(text: &str) -> Result<Rays, String> {
             "it is neither a whole number from 1 to 10^9 nor a file that is there",
         )),
     }
-}
-
-/// A number that is not negative.
-fn parse_length(text: &str) -> Result<f64, String> {
-    let length = text.parse();
-    length
-        .ok()
-        .filter(|length: &f64| length.is_finite() && *length >= 0.0)
-        .ok_or_else(|| "it must be a finite number from 0".to_owned())
-}
-
-fn parse_size(text: &str) -> Result<Film, String> {
-    let size = text.split_once(['x', 'X']).and_then(|(width, height)| {
-        let width: NonZeroU32 = width.parse().ok()?;
-        let height: NonZeroU32 = height.parse().ok()?;
-        let pixels = u64::from(width.get()) * u64::from(height.get());
-        (pixels <= GREATEST_PIXELS).then_some(Film {
-            width: width.get(),
-            height: height.get(),
-        })
-    });
-    size.ok_or_else(|| {
-        format!("it must be two whole numbers above 0, such as 1280x720, and at most {GREATEST_PIXELS} pixels")
-    })
-}
-
-fn parse_segments(text: &str) -> Result<u32, String> {
-    let segments = text.parse().ok();
-    segments
-        .filter(|segments| (LEAST_SEGMENTS..=GREATEST_SEGMENTS).contains(segments))
-        .ok_or_else(|| {
-            format!("it must be a whole number from {LEAST_SEGMENTS} to {GREATEST_SEGMENTS}")
-        })
 }
 
 fn parse_inputs(text: &str) -> Result<Inputs, String> {

@@ -7,7 +7,8 @@ use clap::{Args, Subcommand};
 use cyltrace::bench::traversal::SceneName;
 use cyltrace::scene::{GREATEST_CASES, GREATEST_ROUNDS, GREATEST_TIMED_RAYS};
 
-use super::{Common, count_up_to};
+use super::Common;
+use super::numbers::count_up_to;
 use crate::cli::memory;
 
 /// Measure run times and errors
