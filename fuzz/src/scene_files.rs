@@ -6,6 +6,7 @@
 //! without Embree and with it.
 
 use std::io::{Cursor, Write};
+use std::num::NonZeroUsize;
 use std::path::{Component, Path};
 use std::sync::Arc;
 
@@ -201,7 +202,11 @@ pub fn said(error: &impl std::error::Error) {
 }
 
 fn trace(scene: &Arc<Scene>) {
-    let tracer = match Tracer::new(scene.clone(), &Options::default()) {
+    let options = Options {
+        threads: NonZeroUsize::new(1),
+        ..Options::default()
+    };
+    let tracer = match Tracer::new(scene.clone(), &options) {
         Ok(tracer) => tracer,
         Err(error) => return said(&error),
     };

@@ -17,6 +17,19 @@ pub(super) fn quoted(text: &str) -> String {
     }
 }
 
+/// A message of a library, which may repeat characters of a file, with control
+/// characters escaped: a terminal would obey them.
+pub(super) fn printable(message: &str) -> String {
+    let mut text = String::new();
+    for c in message.chars() {
+        match c.is_control() {
+            true => text.extend(c.escape_default()),
+            false => text.push(c),
+        }
+    }
+    text
+}
+
 /// What to say after "there is no such name": the nearest of the names, and
 /// all of them. `what` is their plural.
 pub(super) fn suggestion<'n>(

@@ -13,7 +13,7 @@ use zip::result::ZipError;
 use super::limits;
 use crate::scene::error::SceneError;
 use crate::scene::limits::{MOST_PART_BYTES, MOST_XML_NODES};
-use crate::scene::names::quoted;
+use crate::scene::names::{printable, quoted};
 use crate::scene::source::Source;
 
 const RELATIONSHIPS: &str = "_rels/.rels";
@@ -68,6 +68,7 @@ pub(super) fn parsed(part: &Part) -> Result<Document<'_>, SceneError> {
     };
     Document::parse_with_options(&part.text, options).map_err(|wrong| {
         let line = u64::from(wrong.pos().row);
+        let wrong = printable(&wrong.to_string());
         error(line, format!("this is no XML: {wrong}"))
     })
 }
