@@ -9,6 +9,7 @@ mod composed;
 mod drawing;
 mod drawn_scene;
 mod meshes;
+mod number_tables;
 mod scene_files;
 mod traced_scene;
 mod truth;
@@ -17,6 +18,7 @@ use arbitrary::Unstructured;
 pub use command_line::numbers as command_line_numbers;
 use drawn_scene::DrawnScene;
 pub use meshes::{obj, ply, stl};
+pub use number_tables::{hits, points, rays};
 pub use scene_files::{cylinder_table, scene_file, swc, three_mf_model, three_mf_package};
 
 /// All targets by their names, which are those of their files in `fuzz/targets` and of
@@ -24,8 +26,11 @@ pub use scene_files::{cylinder_table, scene_file, swc, three_mf_model, three_mf_
 pub const TARGETS: &[(&str, fn(&[u8]))] = &[
     ("command_line_numbers", command_line_numbers),
     ("cylinder_table", cylinder_table),
+    ("hits", hits),
     ("obj", obj),
     ("ply", ply),
+    ("points", points),
+    ("rays", rays),
     ("scene_file", scene_file),
     ("stl", stl),
     ("swc", swc),
