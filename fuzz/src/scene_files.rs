@@ -43,13 +43,17 @@ pub fn scene_file(bytes: &[u8]) {
 /// # Panics
 /// When something is wrong with what it becomes.
 pub fn cylinder_table(bytes: &[u8]) {
-    const SCENES: [&str; 4] = [
+    const SCENES: [&str; 6] = [
         "[[cylinder_table]]\nfile = \"table\"\n\
          columns = { p0 = [\"x0\", \"y0\", \"z0\"], p1 = [\"x1\", \"y1\", \"z1\"], radius = \"r\" }",
         "records = \"f32\"\n[[cylinder_table]]\nfile = \"table\"\ndegenerate = \"skip\"\n\
          columns = { p0 = [\"x0\", \"y0\", \"z0\"], p1 = [\"x1\", \"y1\", \"z1\"], radius = \"r\" }",
         "[[cylinder_table]]\nfile = \"table\"\ncaps = \"none\"\ndegenerate = \"skip\"\n\
          columns = { p0 = [\"x0\", \"y0\", \"z0\"], p1 = [\"x1\", \"y1\", \"z1\"], diameter = \"r\" }",
+        "[[cylinder_table]]\nfile = \"table\"\ndelimiter = \";\"\ndecimal = \",\"\n\
+         columns = { p0 = [\"x0\", \"y0\", \"z0\"], p1 = [\"x1\", \"y1\", \"z1\"], radius = \"r\" }",
+        "[[cylinder_table]]\nfile = \"table\"\ndegenerate = \"skip\"\n\
+         columns = { p0 = [0, 1, 2], p1 = [3, 4, 5], radius = 6 }",
         "[[prototype]]\nname = \"a\"\n[[prototype.sphere]]\ncenter = [0, 0, 0]\nradius = 1\n\
          [[instance_table]]\nof = \"a\"\nfile = \"table\"\n\
          columns = { position = [\"x\", \"y\", \"z\"], quaternion = [\"qx\", \"qy\", \"qz\", \"qw\"], \
@@ -63,10 +67,11 @@ pub fn cylinder_table(bytes: &[u8]) {
 /// # Panics
 /// When something is wrong with what it becomes.
 pub fn swc(bytes: &[u8]) {
-    const SCENES: [&str; 3] = [
+    const SCENES: [&str; 4] = [
         "[[swc]]\nfile = \"neuron.swc\"",
         "[[swc]]\nfile = \"neuron.swc\"\njoints = \"round\"\ndegenerate = \"skip\"",
         "[[swc]]\nfile = \"neuron.swc\"\njoints = \"flat\"\ndegenerate = \"skip\"",
+        "[[swc]]\nfile = \"neuron.swc\"\nsoma = \"none\"\njoints = \"round\"",
     ];
     of_file(bytes, "neuron.swc", &SCENES);
 }
