@@ -6,7 +6,11 @@ use std::num::NonZeroUsize;
 use cyltrace::scene::{GREATEST_PIXELS, GREATEST_THREADS};
 use cyltrace::solid::tessellation::{GREATEST_SEGMENTS, LEAST_SEGMENTS};
 
-#[allow(dead_code, reason = "most of it is about memory, not numbers")]
+#[allow(
+    dead_code,
+    unused_imports,
+    reason = "most of it is about memory, not numbers"
+)]
 #[path = "../../src/cli/memory.rs"]
 mod memory;
 #[path = "../../src/cli/arguments/numbers.rs"]

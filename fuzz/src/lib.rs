@@ -21,9 +21,12 @@ pub use meshes::{obj, ply, stl};
 pub use number_tables::{hits, points, rays};
 pub use scene_files::{cylinder_table, scene_file, swc, three_mf_model, three_mf_package};
 
+/// What a target does with its bytes.
+pub type Target = fn(&[u8]);
+
 /// All targets by their names, which are those of their files in `fuzz/targets` and of
 /// their folders in `fuzz/corpus`.
-pub const TARGETS: &[(&str, fn(&[u8]))] = &[
+pub const TARGETS: &[(&str, Target)] = &[
     ("command_line_numbers", command_line_numbers),
     ("cylinder_table", cylinder_table),
     ("hits", hits),
