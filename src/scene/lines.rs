@@ -13,14 +13,23 @@ pub(super) fn lines(path: &Path) -> io::Result<u64> {
     }
     let mut file = File::open(path)?;
     let mut bytes = vec![0; 1 << 16];
-    let (mut feeds, mut returns) = (0_u64, 0_u64);
+    // Lines end with LF, CR LF or CR, in one file maybe with each of them.
+    let (mut lines, mut is_after_return) = (1, false);
     loop {
         match file.read(&mut bytes) {
-            // Lines end with LF, CR LF or CR.
-            Ok(0) => return Ok(feeds.max(returns) + 1),
+            Ok(0) => return Ok(lines),
             Ok(read) => {
-                feeds += count(&bytes[..read], b'\n');
-                returns += count(&bytes[..read], b'\r');
+                let bytes = &bytes[..read];
+                let returns = count(bytes, b'\r');
+                lines += count(bytes, b'\n') + returns;
+                if is_after_return && bytes[0] == b'\n' {
+                    lines -= 1;
+                }
+                if returns > 0 {
+                    let pairs = bytes.windows(2).filter(|pair| *pair == b"\r\n");
+                    lines -= pairs.count() as u64;
+                }
+                is_after_return = bytes[read - 1] == b'\r';
             }
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
             Err(error) => return Err(error),
@@ -36,4 +45,31 @@ fn count(bytes: &[u8], one: u8) -> u64 {
         .chunks(128)
         .map(|share| u64::from(in_share(share)))
         .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_all_ends_are_counted() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table");
+        // At the end of what is read at a time, too.
+        let long = "x".repeat((1 << 16) - 1);
+        for (text, expected) in [
+            ("", 1),
+            ("a", 1),
+            ("a\nb", 2),
+            ("a\r\nb\r\n", 3),
+            ("a\rb\rc", 3),
+            ("a\rb\nc\r\nd", 4),
+            ("\n\r", 3),
+            (&format!("{long}\r\nb\rc"), 3),
+            (&format!("{long}\rb"), 2),
+        ] {
+            fs::write(&path, text).unwrap();
+            assert_eq!(lines(&path).unwrap(), expected, "{}", text.len());
+        }
+    }
 }

@@ -8,13 +8,14 @@ use toml::Spanned;
 use super::beam_lattice::counted;
 use super::contents::{Contents, OtherSolids, mark_used};
 use super::description::{PrototypeIndex, Scene};
-use super::document::{Body, Document};
+use super::document::{Body, Document, ThreeColumns};
 use super::error::SceneError;
 use super::lines::lines;
 use super::load::{lower, records};
 use super::set_operations::operand_count;
 use super::source::Source;
 use super::swc::{Joints, SAMPLE_BYTES, Shape};
+use super::table::ColumnKey;
 use super::values::Keys;
 use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
 
@@ -78,7 +79,11 @@ impl SceneFile {
             let single = body.instance.iter();
             let single = single.map(|Keys(keys)| (of(&keys.of), 1));
             let tables = body.instance_table.iter();
-            let tables = tables.map(|Keys(keys)| (of(&keys.of), self.rows(&keys.file)));
+            let tables = tables.map(|Keys(keys)| {
+                let Keys(columns) = keys.columns.get_ref();
+                let rows = self.table_rows(&keys.file, &columns.position);
+                (of(&keys.of), rows)
+            });
             let mut placed: Vec<_> = single.chain(tables).collect();
             // Where loading refuses to count on, it makes nothing.
             let mut total: u64 = placed.iter().map(|(_, count)| count).sum();
@@ -110,10 +115,17 @@ impl SceneFile {
         rows.max().unwrap_or(0).saturating_mul(SAMPLE_BYTES)
     }
 
-    /// The rows of a table; none of what cannot be read.
+    /// The most rows of a table; none of what cannot be read. One whose columns have
+    /// numbers may have no header.
+    fn table_rows(&self, file: &Spanned<String>, columns: &ThreeColumns) -> u64 {
+        let is_numbered = matches!(columns.0[0].get_ref(), ColumnKey::Number(_));
+        self.rows(file) + u64::from(is_numbered)
+    }
+
+    /// The lines of a table but the first, which is the header, or a comment, or a sample
+    /// without a parent; none of what cannot be read.
     fn rows(&self, file: &Spanned<String>) -> u64 {
         let lines = lines(&self.source.resolve(file.get_ref()));
-        // The first line is the header, or a comment, or a sample without a parent.
         lines.map_or(0, |lines| lines.saturating_sub(1))
     }
 
@@ -127,7 +139,9 @@ impl SceneFile {
             .and::<RoundedCone>(body.rounded_cone.len() as u64)
             .and::<Disk>(body.disk.len() as u64);
         for Keys(keys) in body.cylinder_table {
-            cylinders = cylinders.saturating_add(self.rows(&keys.file));
+            let Keys(columns) = keys.columns.get_ref();
+            let rows = self.table_rows(&keys.file, &columns.p0);
+            cylinders = cylinders.saturating_add(rows);
         }
         for Keys(keys) in body.swc {
             let rows = self.rows(&keys.file);
