@@ -11,7 +11,7 @@ use std::path::{Component, Path};
 use std::sync::Arc;
 
 use cyltrace::math::Ray;
-use cyltrace::scene::{Scene, SceneFile};
+use cyltrace::scene::{Contents, Scene, SceneFile};
 use cyltrace::tracer::{Options, Tracer};
 use glam::DVec3;
 use tempfile::TempDir;
@@ -182,9 +182,11 @@ fn load(folder: &TempDir) {
         Err(error) => return said(&error),
     };
     for (counted, held) in counted.iter().zip(&scene.contents()) {
-        let is_enough = counted.cylinders >= held.cylinders
-            && counted.others.count >= held.others.count
-            && counted.placements() >= held.placements();
+        // A neuron's segments and somata are counted together: which are balls is not
+        // known by its lines.
+        let solids = |contents: &Contents| contents.cylinders + contents.others.count;
+        let is_enough =
+            solids(counted) >= solids(held) && counted.placements() >= held.placements();
         assert!(is_enough, "counted {counted:?}, loaded {held:?}");
     }
     trace(&scene);
