@@ -3,13 +3,13 @@
 //! With whole numbers every crossing has to be the true one. With others, turned faces
 //! that are meant to coincide do so up to a rounding, and what is thinner than the
 //! roundings may be there or not (`src/solid/composition/line.rs`). So a point between
-//! two crossings is compared only if exact arithmetic locates all of a ball around it
-//! alike.
+//! two crossings is compared only if it is farther than the roundings from the surface of
+//! each operand.
 
 use cyltrace::math::{Ray, UNIT_ROUNDOFF, power_of_two};
 use cyltrace::oracle::{ComposedTruth, to_f64};
 use cyltrace::scene::CompositionRecord;
-use cyltrace::solid::{Composition, Crossing, Location};
+use cyltrace::solid::{AnySolid, Composition, Crossing, Location, Part, RoundedCone};
 use cyltrace::tracer::{Containing, Hit};
 use glam::DVec3;
 
@@ -92,12 +92,12 @@ impl<'a> Compositions<'a> {
         for pair in stops.windows(2) {
             let t = 0.5 * (pair[0] + pair[1]);
             let radius = 8.0 * displacement(line, t, &record.solid);
-            if radius > 0.1 * least_size(&record.solid) {
+            let point = line.at(t);
+            let mut operands = record.solid.solids().into_iter();
+            if operands.any(|operand| is_near_surface(&operand, point, radius)) {
                 continue;
             }
-            let Some(location) = located(truth, line.at(t), radius) else {
-                continue;
-            };
+            let location = truth.locate(point);
             let last = found.iter().rfind(|hit| hit.t < t);
             let is_inside = last.is_some_and(|hit| hit.crossing == Crossing::Enter);
             assert_eq!(
@@ -132,15 +132,25 @@ fn displacement(line: &Ray, t: f64, solid: &Composition) -> f64 {
     32.0 * UNIT_ROUNDOFF * (way + sizes.fold(0.0, f64::max))
 }
 
-fn least_size(solid: &Composition) -> f64 {
-    let sizes = solid.solids().into_iter().map(|solid| solid.size());
-    sizes.fold(f64::INFINITY, f64::min)
+/// Whether a point may be within a distance of a solid's surface.
+fn is_near_surface(solid: &AnySolid, point: DVec3, distance: f64) -> bool {
+    use Part::{Cap0, Cap1, Side, XMax, XMin, YMax, YMin, ZMax, ZMin};
+    let parts: &[Part] = match solid {
+        AnySolid::Sphere(_) | AnySolid::Disk(_) => &[Side],
+        AnySolid::Cuboid(_) => &[XMin, XMax, YMin, YMax, ZMin, ZMax],
+        // One ball in the other leaves no wall between them, or one too narrow to matter.
+        AnySolid::RoundedCone(one) if has_no_wall(one) => &[Cap0, Cap1],
+        _ => &[Side, Cap0, Cap1],
+    };
+    let from_anchor = point - solid.anchor();
+    let mut nearest = parts
+        .iter()
+        .map(|&part| solid.surface_point(part, from_anchor).point);
+    // NaN is near.
+    !nearest.all(|surface| surface.distance(point) > distance)
 }
 
-/// Where a point and a ball around it are, if it is in one place.
-fn located(truth: &ComposedTruth, point: DVec3, radius: f64) -> Option<Location> {
-    let location = truth.locate(point);
-    let mut steps = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
-    let is_everywhere = steps.all(|step| truth.locate(point + step * radius) == location);
-    (is_everywhere && location != Location::Boundary).then_some(location)
+fn has_no_wall(cone: &RoundedCone) -> bool {
+    let taper = (cone.radius0() - cone.radius1()).abs();
+    (cone.p1() - cone.p0()).length() <= taper * (1.0 + power_of_two(-40))
 }
