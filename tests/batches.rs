@@ -229,6 +229,29 @@ fn bundles_at_nested_placements() {
 /// Copies of each cylinder, whose numbers do not go with their places.
 const COPIES: u32 = 3;
 
+/// Rays along an axis, but for roundings as placements make them: components of all sizes
+/// around 1e-18, below which Embree forgets the sign, with either sign.
+#[test]
+fn bundles_with_tiny_components_of_either_sign() {
+    let cylinders = cylinders_in_a_box(SEED + 7, 100);
+    let scene = scene_of_cylinders(cylinders.clone());
+    assert_same_answers("tiny components", &scene, |random| {
+        let axis = random.below(3) as usize;
+        let sign = [-1.0, 1.0][random.below(2) as usize];
+        let count = 4 + random.below(13);
+        (0..count)
+            .map(|_| {
+                let cylinder = cylinders[random.below(cylinders.len() as u64) as usize].cylinder();
+                let target = cylinder.p0().lerp(cylinder.p1(), random.unit());
+                let mut tiny = || random.direction() * random.log_uniform(1e-21, 1e-15);
+                let mut direction = tiny();
+                direction[axis] = sign;
+                Ray::new(target - direction * 3.0, direction)
+            })
+            .collect()
+    });
+}
+
 /// Cylinders that each stand there three times.
 fn copies() -> Vec<CylinderRecord> {
     let cylinders = cylinders_in_a_box(SEED, 50);

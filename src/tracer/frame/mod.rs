@@ -22,7 +22,9 @@ pub(crate) use packet::{Enter, IntoChild, PacketEntry, PacketLevel, PacketRays, 
 pub(crate) use rays::{Level, LocalRay, Window};
 
 use crate::embree::{Box32, Ray32};
-use crate::math::{Bounds, DoubleDouble, UNIT_ROUNDOFF, f32_above, f32_below, power_of_two_below};
+use crate::math::{
+    Bounds, DoubleDouble, UNIT_ROUNDOFF, f32_above, f32_below, power_of_two, power_of_two_below,
+};
 
 /// By how much boxes are grown on every side, in radii of the bounding sphere.
 /// The proof needs 18 · 2^-24 of it for single rays and 22 · 2^-24 for packets; the
@@ -245,7 +247,7 @@ impl Frame {
             window,
             ray32: Ray32 {
                 origin: [start.x as f32, start.y as f32, start.z as f32],
-                direction: [direction.x as f32, direction.y as f32, direction.z as f32],
+                direction: direction.to_array().map(without_tiny),
                 t_near: 0.0,
                 t_far: window.length_to(end),
             },
@@ -280,6 +282,24 @@ impl Frame {
         let enter = enter.x.max(enter.y).max(enter.z).max(0.0);
         let leave = leave.x.min(leave.y).min(leave.z).min(length);
         enter <= leave * (1.0 + 16.0 * UNIT_ROUNDOFF)
+    }
+}
+
+/// Below this, a component of a direction whose largest is from 1 to 2 is zero to Embree:
+/// the least power of two above the 1e-18 of its `rcp_safe`.
+const LEAST_COMPONENT: f64 = power_of_two(-59);
+
+/// A component of a direction for Embree, which takes one of at most 1e-18 in size for
+/// +1e-18, whatever its sign. For coherent packets it picks rays that go the same way by
+/// the signs of their components, and then relies on the signs of the inverses: so one ray
+/// with -1e-19 beside one with -1e-17 makes the packet miss boxes. Zero has one sign. It
+/// moves a ray by less than 2^-56 on its way of at most 4 through the sphere.
+#[inline(always)]
+fn without_tiny(component: f64) -> f32 {
+    if component.abs() < LEAST_COMPONENT {
+        0.0
+    } else {
+        component as f32
     }
 }
 
