@@ -17,7 +17,8 @@ use crate::scene::names::{quoted, suggestion};
 /// A column as a user names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ColumnKey {
-    /// By its name in the header, upper and lower case included.
+    /// By its name in the header; in upper or lower case where no name is the same to the
+    /// letter.
     Name(String),
     /// By its place, from 0.
     Number(u64),
@@ -79,6 +80,20 @@ impl From<&str> for ColumnKey {
     }
 }
 
+/// Where a header has a name, else where it has it in other cases.
+fn places(header: &[String], name: &str) -> Vec<usize> {
+    let with = |is_same: &dyn Fn(&str) -> bool| -> Vec<usize> {
+        let all = header.iter().enumerate();
+        all.filter_map(|(index, cell)| is_same(cell).then_some(index))
+            .collect()
+    };
+    let same = with(&|cell| cell == name);
+    match same.is_empty() {
+        true => with(&|cell| cell.eq_ignore_ascii_case(name)),
+        false => same,
+    }
+}
+
 impl Beginning<'_> {
     /// The layout that the first row shows, and whether that row is the header.
     pub fn layout(&self, first: &str) -> (Layout, bool) {
@@ -104,7 +119,7 @@ impl Beginning<'_> {
     fn wanted_names(&self, names: &[String]) -> usize {
         let wanted = self.wanted.iter().filter_map(ColumnKey::name);
         wanted
-            .filter(|name| names.iter().any(|cell| cell == name))
+            .filter(|name| !places(names, name).is_empty())
             .count()
     }
 
@@ -234,14 +249,13 @@ impl Layout {
                 };
             }
         };
-        let mut places = (0..self.header.len()).filter(|&index| self.header[index] == *name);
-        match (places.next(), places.next()) {
-            (Some(index), None) => Ok(Column(index + names)),
-            (Some(_), Some(_)) => Err((
+        match places(&self.header, name)[..] {
+            [index] => Ok(Column(index + names)),
+            [_, _, ..] => Err((
                 format!("has more than one column {}", quoted(name)),
                 "give each column a name of its own".to_owned(),
             )),
-            (None, _) => Err((
+            [] => Err((
                 format!("has no column {}", quoted(name)),
                 self.missing_help(name),
             )),
@@ -250,8 +264,8 @@ impl Layout {
 
     /// Whether any column has that name.
     pub(in crate::scene) fn names(&self, key: &ColumnKey) -> bool {
-        let name = key.name();
-        self.header.iter().any(|cell| Some(cell.as_str()) == name)
+        key.name()
+            .is_some_and(|name| !places(&self.header, name).is_empty())
     }
 
     fn missing_help(&self, name: &str) -> String {

@@ -86,6 +86,16 @@ impl Block {
     }
 }
 
+/// The mark that a line begins with if it is a comment. A line that begins with what Excel
+/// writes for no value is a row.
+fn comment_mark(line: &[u8]) -> Option<&'static [u8]> {
+    let is_row = line
+        .strip_prefix(b"#N/A")
+        .is_some_and(|rest| rest.first().is_none_or(|next| b",;\t".contains(next)));
+    let mut marks = COMMENT_MARKS.into_iter();
+    marks.find(|mark| line.starts_with(mark) && !is_row)
+}
+
 impl<R: Read> Records<R> {
     /// The rows of a table, which errors call `path`.
     pub fn new(input: R, path: &Path) -> Self {
@@ -127,7 +137,7 @@ impl<R: Read> Records<R> {
                 return Ok(false);
             }
             let content = block.text[start..].trim_ascii();
-            if let Some(mark) = COMMENT_MARKS.iter().find(|mark| content.starts_with(mark)) {
+            if let Some(mark) = comment_mark(content) {
                 self.keep_comment(&block.text[start..], mark);
             } else if !content.is_empty() {
                 break;
@@ -213,6 +223,10 @@ impl<R: Read> Records<R> {
         }
         if text.starts_with(BYTE_ORDER_MARK) {
             text.drain(..BYTE_ORDER_MARK.len());
+        }
+        if text.contains(&0) {
+            let message = "the first line has a zero byte, so this is no text in UTF-8: save the table as UTF-8, not as UTF-16 or as a workbook";
+            return Err(self.error(1, message));
         }
         Ok(())
     }

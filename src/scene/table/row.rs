@@ -182,10 +182,10 @@ impl Row<'_> {
     }
 }
 
-/// Whether a cell says that there is no value, in the words of pandas, R and others.
+/// Whether a cell says that there is no value, in the words of pandas, R, Excel and others.
 pub(super) fn is_missing(cell: &str) -> bool {
-    const WORDS: [&str; 9] = [
-        "", "na", "n/a", "<na>", "nan", "-nan", "+nan", "null", "none",
+    const WORDS: [&str; 10] = [
+        "", "na", "n/a", "#n/a", "<na>", "nan", "-nan", "+nan", "null", "none",
     ];
     cell.len() <= 4 && WORDS.iter().any(|word| cell.eq_ignore_ascii_case(word))
 }

@@ -52,6 +52,9 @@ fn table_in_any_layout_gives_the_same_numbers() {
         // R: names of rows, without a header or with an empty one.
         "\"x\" \"y\"\n\"1\" 1 2\n\"2\" 3 4\n",
         "\"\",\"x\",\"y\"\n\"1\",1,2\n\"2\",3,4\n",
+        // CloudCompare: a header in a comment, in upper case.
+        "//X Y Z\n1 2 0\n3 4 0\n",
+        "X,Y\n1,2\n3,4\n",
         // numpy.savetxt: names behind #, separated like the rows or not.
         "# x y\n1.0e+00 2\n3 4\n",
         "# x,y\n1 2\n3 4\n",
@@ -163,7 +166,7 @@ fn tables_that_say_something_else_are_refused() {
         ("# x,y\n\n", "t.csv:3: the table is empty"),
         ("1,2\n", "its first line holds numbers"),
         ("x,x,y\n1,2,3\n", "more than one column \"x\""),
-        ("x,Y\n1,2\n", "no column \"y\"; did you mean \"Y\"?"),
+        ("X,Z\n1,2\n", "no column \"y\""),
         (
             "x,y\n1,2\n1\n",
             "t.csv:3: the row has 1 cells, the header has 2",
@@ -227,5 +230,30 @@ fn columns_that_nobody_reads_are_named() {
     assert_eq!(
         unread("\"x\"\n\"1\" 2\n").as_deref(),
         Some("t.csv: columns that are not read: 1 without a name")
+    );
+}
+
+#[test]
+fn name_to_the_letter_wins_over_other_cases() {
+    assert_eq!(of_x_and_y("X,x,y\n9,1,2\n"), Ok(vec![vec![1.0, 2.0]]));
+    assert_eq!(of_x_and_y("x,y,Y\n1,2,3\n"), Ok(vec![vec![1.0, 2.0]]));
+    let error = of_x_and_y("X,y,X\n1,2,3\n").unwrap_err();
+    assert!(error.contains("more than one column \"x\""), "{error}");
+}
+
+#[test]
+fn row_that_begins_with_no_value_is_no_comment() {
+    let error = of_x_and_y("x,y\n#N/A,2\n").unwrap_err();
+    assert!(error.starts_with("t.csv:2: column \"x\""), "{error}");
+    let commented = of_x_and_y("x,y\n#N/A is a word here\n1,2\n");
+    assert_eq!(commented, Ok(vec![vec![1.0, 2.0]]));
+}
+
+#[test]
+fn zero_byte_in_the_first_line_is_refused() {
+    let error = of_x_and_y("x\0,\0y\0\n\0").unwrap_err();
+    assert!(
+        error.starts_with("t.csv:1: the first line has a zero byte"),
+        "{error}"
     );
 }
