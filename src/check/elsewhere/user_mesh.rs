@@ -15,6 +15,7 @@ use rayon::join;
 use rayon::prelude::*;
 
 use super::agreement::Agreement;
+use super::deviation::Deviation;
 use super::nearness::ROUNDING;
 use super::surfaces::Surfaces;
 use super::tolerance::Tolerance;
@@ -206,23 +207,27 @@ fn node(mesh: &Mesh, items: &mut [Item], first: usize) -> Node {
 }
 
 /// Compares what rays meet of a mesh with the exact hits, on the rays of a class of that name,
-/// in the rayon pool that this is called in. The mesh may be `deviation` off (scene units), and
-/// by the share `rounding` of the coordinates of a solid. `None` when `progress` asked to stop.
+/// in the rayon pool that this is called in. The mesh may be off by
+/// `deviation`, and by the share `rounding` of the coordinates of a solid. `None` when `progress` asked to stop.
 #[must_use]
 pub fn compare_mesh(
     tracer: &Tracer,
     mesh: &TracedMesh,
     (class, rays): (&'static str, &[Ray]),
-    (deviation, rounding): (f64, f64),
+    (deviation, rounding): (Deviation, f64),
     most_listed: usize,
     progress: &Progress,
 ) -> Option<Agreement> {
-    let tolerance = Tolerance {
-        fixed: deviation,
-        of_way: ROUNDING,
-        of_extent: rounding,
+    let of_placing = match deviation {
+        Deviation::Everywhere(_) => 0.0,
+        Deviation::Tessellated { .. } => ROUNDING,
     };
-    let surfaces = Surfaces::new(tracer.scene());
+    let tolerance = Tolerance {
+        deviation,
+        of_way: ROUNDING,
+        of_extent: rounding + of_placing,
+    };
+    let surfaces = Surfaces::new(tracer.scene(), deviation);
     in_blocks(
         Agreement::new(class, Witness::UserMesh, tolerance, &surfaces),
         rays.len() as u64,
