@@ -19,11 +19,10 @@
 //!   odd does not change, and it was one. It is the same with a disk, as long as the
 //!   ray, within `δ` of its plane, stays farther than `δ` from the rim.
 //!
-//! A mesh of one fit is on one side of the surface: then `δ` is another one inside of the surface
-//! than outside of it (`deviation`). The displaced surface lies between both, so that the ray must
-//! pass from deeper than the one to farther out than the other.
+//! Of a mesh of one fit more is known: it lies between two solids (`deviation`), and what is said
+//! of the surface here is said of both, with a `δ` that is a rounding.
 //!
-//! The told `t` itself is given `δ/|d|` on the way through. `nearness` bounds
+//! The told `t` itself is given the part of `δ/|d|` that does not depend on the solid. `nearness` bounds
 //! depths and distances in placed solids. Every solid has a `δ` of its own, which
 //! `tolerance` derives. A solid thinner than `δ` is never passed through: a ray whose
 //! exact hit is on one is *coarse*, and a comparison with such a ray fails.
@@ -285,12 +284,13 @@ fn judge(
     let own = met.first();
     let own_distance = own.map_or(0.0, |own| own.in_world(own.margin(allowance)));
     let along = own_distance / speed;
-    if offset <= along {
+    let is_beside = |t: f64| own.is_some_and(|own| own.is_far(ray.at(t), own.margin(allowance)));
+    if offset <= along && !told.is_some_and(is_beside) {
         return Verdict::Agrees(offset / along);
     }
     let is_passed = |met: &Met| {
         let margin = met.margin(allowance);
-        let along = met.in_world(margin) / speed;
+        let along = margin.length / speed;
         let (start, end) = (ray.t_min + along, told.unwrap_or(ray.t_max) - along);
         met.is_crossed(ray, (start, end), margin)
     };
@@ -314,7 +314,7 @@ fn judge(
     if !(point.length() <= 1.001 * (greatest + farthest_off)) {
         return Verdict::Disagrees;
     }
-    if own.is_some_and(|own| own.is_near(point, own.margin(allowance))) {
+    if own.is_some_and(|own| own.is_near(point, own.margin(allowance))) && !is_beside(told) {
         return Verdict::Agrees(offset / along);
     }
     if surfaces.may_be_near(point, allowance) {

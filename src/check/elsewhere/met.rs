@@ -49,7 +49,7 @@ impl<'a> Met<'a> {
         Self {
             solid: (hit.instance.clone(), hit.primitive),
             extent: extents.fold(0.0, f64::max),
-            spare_radius: frame.least_length(least_radius(parts) - slack.inward),
+            spare_radius: frame.least_length(slack.spare_radius(least_radius(parts))),
             slack,
             frame,
             found,
@@ -86,6 +86,15 @@ impl<'a> Met<'a> {
                 let placed = PlacedComposition { solid, frame };
                 placed.is_crossed(ray, (start, end), margin, &self.at)
             }
+        }
+    }
+
+    /// Whether a point is proven to be farther from its surface than a margin.
+    pub fn is_far(&self, point: DVec3, margin: Margin) -> bool {
+        let frame = &self.frame;
+        match self.found {
+            Found::Single(solid) => PlacedSolid { solid, frame }.is_far(point, margin),
+            Found::Composed(_) => false,
         }
     }
 

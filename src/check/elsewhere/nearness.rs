@@ -11,8 +11,9 @@
 //! through it that goes from one side of the slab of half thickness `δ` about its plane
 //! to the other, and is nearer to the axis than the rim by `δ` all the way in between.
 //!
-//! A disk's mesh is in its plane, and may lack a part of it at the rim: what a mesh may be off inward
-//! is what it may lack there, and what it may reach beyond the rim is irrelevant to a crossing.
+//! The mesh of a solid lies between an inner and an outer one (`deviation`). A ray crosses it that
+//! passes from outside of the outer one to inside of the inner one, by `δ` each. A disk is crossed
+//! within the rim of the inner one.
 //!
 //! What f64 rounds on the way there is below `64 ε |M| |M⁻¹|` of the lengths that
 //! are added; it is added to `δ`.
@@ -67,7 +68,7 @@ impl Frame {
 
     /// At least what a margin is in the world.
     pub fn in_world(&self, margin: Margin) -> f64 {
-        margin.length + self.stretch * margin.slack.greatest()
+        margin.length + self.stretch * margin.slack.greatest
     }
 
     /// At least what a length there is in the world.
@@ -135,24 +136,25 @@ impl PlacedSolid<'_> {
     /// Whether a point of the world is proven to be farther than a margin from
     /// the surface.
     pub fn is_far(&self, point: DVec3, margin: Margin) -> bool {
-        surface_distance(&self.solid, self.frame.local(point)) > self.local(margin, point)
+        let (solid, Margin { length, slack }) = (&self.solid, margin);
+        let place = self.frame.local(point);
+        let length = self.frame.local_length(length, point, extent(solid));
+        surface_distance(solid, place) > length + slack.greatest
+            || depth(&slack.inner(solid), place) > length + slack.inward
+            || depth(&slack.outer(solid), place) < -(length + slack.outward)
     }
 
     /// As [`PlacedSolid::is_far`], with discs at open ends.
     pub fn is_far_from_closed(&self, point: DVec3, margin: Margin) -> bool {
-        depth(&self.solid, self.frame.local(point)).abs() > self.local(margin, point)
-    }
-
-    /// A margin in the solid's own space, on either side of the surface.
-    fn local(&self, margin: Margin, point: DVec3) -> f64 {
         let extent = extent(&self.solid);
-        self.frame.local_length(margin.length, point, extent) + margin.slack.greatest()
+        let length = self.frame.local_length(margin.length, point, extent);
+        depth(&self.solid, self.frame.local(point)).abs() > length + margin.slack.greatest
     }
 
     /// Whether a point of the world is proven to be within a margin of the surface.
     pub fn is_near(&self, point: DVec3, margin: Margin) -> bool {
         let distance = surface_distance(&self.solid, self.frame.local(point));
-        (distance - margin.slack.greatest()) * self.frame.stretch <= margin.length
+        (distance - margin.slack.greatest) * self.frame.stretch <= margin.length
     }
 
     /// Whether a ray is proven to pass, between `start` and `end`, from farther outside of the
@@ -163,9 +165,11 @@ impl PlacedSolid<'_> {
         let length = self
             .frame
             .local_length(margin.length, ray.origin, extent(solid));
-        let deep = length + margin.slack.greatest();
-        let (inside, outside) = (length + margin.slack.inward, length + margin.slack.outward);
-        let reach = solid.size() + 4.0 * deep;
+        let slack = margin.slack;
+        let (inner, outer) = (slack.inner(solid), slack.outer(solid));
+        let (inside, outside) = (length + slack.inward, length + slack.outward);
+        let deep = inside.max(outside);
+        let reach = outer.size() + 4.0 * deep;
         let mut way = self.frame.way(ray, (start, end), (solid.centre(), reach));
         for (end, inward) in open_ends(solid) {
             // Where room + slope t > 0 the end is far enough.
@@ -182,14 +186,15 @@ impl PlacedSolid<'_> {
         if way.is_empty() {
             return false;
         }
-        if let AnySolid::Disk(disk) = solid {
+        if let AnySolid::Disk(disk) = &inner {
             return is_disk_crossed(disk, way.at(way.low), way.at(way.high), inside);
         }
-        let depth = |t: f64| depth(solid, way.at(t));
         let (mut low, mut high) = (way.low, way.high);
-        if !(depth(low).min(depth(high)) < -outside) {
+        let outer_depth = |t: f64| depth(&outer, way.at(t));
+        if !(outer_depth(low).min(outer_depth(high)) < -outside) {
             return false;
         }
+        let depth = |t: f64| depth(&inner, way.at(t));
         for _ in 0..SECTIONS {
             let third = (high - low) / 3.0;
             let (left, right) = (low + third, high - third);
@@ -230,7 +235,7 @@ impl PlacedComposition<'_> {
         }
         let extents = self.solid.solids().iter().map(extent).fold(0.0, f64::max);
         let length = self.frame.local_length(margin.length, ray.origin, extents);
-        let deep = length + margin.slack.greatest();
+        let deep = length + margin.slack.greatest;
         let reach = 0.5 * bounds.extent().length() + 4.0 * deep;
         let way = self.frame.way(ray, (start, end), (bounds.centre(), reach));
         if way.is_empty() {
@@ -278,7 +283,7 @@ mod tests {
         };
         let margin = Margin {
             length: 0.1,
-            slack: Slack::default(),
+            slack: Slack::NONE,
         };
         let is_crossed = |x: f64, direction: DVec3, range: (f64, f64)| {
             let ray = Ray::new(DVec3::new(x, 0.0, -5.0), direction);

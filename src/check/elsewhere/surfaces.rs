@@ -106,8 +106,8 @@ impl<'a> Surfaces<'a> {
         for solid in singles.chain(leaves) {
             let (radius, slack) = (solid.radius(), self.deviation.slack(&solid));
             whole.radius = whole.radius.min(radius);
-            whole.deviation = whole.deviation.max(slack.greatest());
-            whole.is_lost |= slack.inward >= radius;
+            whole.deviation = whole.deviation.max(slack.greatest);
+            whole.is_lost |= slack.spare_radius(radius) <= 0.0;
         }
         for placement in &prototype.placements {
             let child = self.reach(placement.of);
