@@ -87,7 +87,7 @@ impl Strut {
         let mut map = DAffine3::IDENTITY;
         while prototype.cylinders.iter().count() < 1000 {
             let placement = &prototype.placements[0];
-            map = map * placement.parent_from_child;
+            map *= placement.parent_from_child;
             prototype = &scene.prototypes[placement.of.0 as usize];
         }
         let strut: Cylinder = prototype
@@ -116,7 +116,7 @@ impl Strut {
     }
 
     /// The way from the axis to a point, where the point is no farther than the rim.
-    fn from_axis(&self, point: DVec3) -> Option<DVec3> {
+    fn away_from_axis(&self, point: DVec3) -> Option<DVec3> {
         let axis = self.ends[1] - self.ends[0];
         let share = ((point - self.ends[0]).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
         let away = point - (self.ends[0] + share * axis);
@@ -126,14 +126,14 @@ impl Strut {
     /// Whether a triangle is of its mesh.
     fn contains(&self, mesh: &Mesh, corners: &[u32; 3]) -> bool {
         let mut points = corners.iter().map(|&corner| mesh.vertices[corner as usize]);
-        points.all(|point| self.from_axis(point).is_some())
+        points.all(|point| self.away_from_axis(point).is_some())
     }
 
     /// The mesh with all vertices of the strut moved.
     fn moved(&self, mesh: &Mesh, by: impl Fn(DVec3) -> DVec3) -> Mesh {
         let mut moved = mesh.clone();
         for point in &mut moved.vertices {
-            if let Some(away) = self.from_axis(*point) {
+            if let Some(away) = self.away_from_axis(*point) {
                 *point += by(away);
             }
         }
