@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use cyltrace::check::{
-    Agreement, F32_TOLERANCE, TracedMesh, compare_hits, compare_mesh, rays_around,
+    Agreement, Deviation, F32_TOLERANCE, TracedMesh, compare_hits, compare_mesh, rays_around,
 };
 use cyltrace::math::{Orientation, Ray};
 use cyltrace::scene::{MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, SolidRecord};
@@ -208,7 +208,7 @@ fn verdict(tracer: &Tracer, meshes: &[Mesh], deviation: f64) -> Agreement {
         tracer,
         &mesh,
         ("around", &rays),
-        (deviation, 0.0),
+        (Deviation::Everywhere(deviation), 0.0),
         3,
         &go_on,
     )

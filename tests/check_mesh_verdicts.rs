@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
-use cyltrace::check::{Agreement, TracedMesh, compare_hits, compare_mesh, rays_around};
+use cyltrace::check::{Agreement, Deviation, TracedMesh, compare_hits, compare_mesh, rays_around};
 use cyltrace::scene::{Scene, load};
 use cyltrace::solid::tessellation::{Fit, Mesh, deviation_of, mesh_of};
 use cyltrace::tracer::{Options, Tracer};
@@ -43,7 +43,7 @@ fn verdict(tracer: &Tracer, meshes: &[Mesh], seed: u64, deviation: f64) -> Agree
         tracer,
         &mesh,
         ("around", &rays),
-        (deviation, 0.0),
+        (Deviation::Everywhere(deviation), 0.0),
         3,
         &go_on,
     )

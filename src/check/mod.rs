@@ -37,6 +37,7 @@ mod telling;
 
 pub use compare::{Progress, compare, compare_with};
 pub use elsewhere::agreement::{Agreement, Disagreement};
+pub use elsewhere::deviation::Deviation;
 pub use elsewhere::tolerance::F32_TOLERANCE;
 pub use elsewhere::user_hits::compare_hits;
 pub use elsewhere::user_mesh::{TracedMesh, TriangleHit, compare_mesh, rays_around};

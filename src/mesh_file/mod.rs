@@ -18,8 +18,8 @@ use std::path::Path;
 
 pub use plan::Plan;
 pub use read::{
-    MeshError, MeshFile, MeshPlace, MeshReadError, parse_obj, parse_ply, parse_stl, read_mesh,
-    read_mesh_within,
+    Made, MeshError, MeshFile, MeshPlace, MeshReadError, parse_obj, parse_ply, parse_stl,
+    read_mesh, read_mesh_within,
 };
 
 use crate::scene::Scene;

@@ -19,7 +19,10 @@
 //!   odd does not change, and it was one. It is the same with a disk, as long as the
 //!   ray, within `δ` of its plane, stays farther than `δ` from the rim.
 //!
-//! The told `t` itself is given `δ/|d|` on the way through. `nearness` bounds
+//! Of a mesh of one fit more is known: it lies between two solids (`deviation`), and what is said
+//! of the surface here is said of both, with a `δ` that is a rounding.
+//!
+//! The told `t` itself is given the part of `δ/|d|` that does not depend on the solid. `nearness` bounds
 //! depths and distances in placed solids. Every solid has a `δ` of its own, which
 //! `tolerance` derives. A solid thinner than `δ` is never passed through: a ray whose
 //! exact hit is on one is *coarse*, and a comparison with such a ray fails.
@@ -36,6 +39,7 @@
 //! or another solid and neither proven right nor wrong: it is counted, as the
 //! *silhouette band*.
 
+use super::deviation::Deviation;
 use super::met::{Found, Met, find};
 use super::surfaces::Surfaces;
 use super::tolerance::{Allowance, Tolerance, way};
@@ -72,8 +76,11 @@ pub struct Agreement {
     pub coarse: u64,
     /// The greatest allowance of any ray, as a length.
     pub max_allowance: f64,
-    /// The part of all allowances that does not depend on the ray: a mesh's deviation.
+    /// The part of all allowances that depends neither on the ray nor on the solid: a mesh's
+    /// deviation where one is stated for all solids.
     pub fixed_allowance: f64,
+    /// Whether the mesh of some solid may lack as much as its radius.
+    pub is_any_lost: bool,
     /// The least radius of the scene's solids; infinite where there are none.
     pub least_radius: f64,
     /// The greatest distance, along a ray, of a hit that agrees from the exact
@@ -128,8 +135,9 @@ impl Agreement {
             disagreements: 0,
             coarse: 0,
             max_allowance: 0.0,
-            fixed_allowance: tolerance.fixed,
+            fixed_allowance: tolerance.deviation.everywhere(),
             least_radius: surfaces.least_radius(),
+            is_any_lost: surfaces.is_any_lost(),
             max_offset: 0.0,
             listed: Vec::new(),
         }
@@ -153,16 +161,25 @@ impl Agreement {
             return;
         };
         let allowance = self.tolerance.along(ray, way);
-        let first = exact.as_ref().map(|hit| Met::new(tracer.scene(), hit));
+        let first = exact
+            .as_ref()
+            .map(|hit| Met::new(tracer.scene(), hit, self.tolerance.deviation));
         let near = match &first {
-            Some(first) => allowance.of(first.extent),
+            Some(first) => {
+                let margin = first.margin(&allowance);
+                self.coarse += u64::from(!(margin.length < first.spare_radius));
+                first.in_world(margin)
+            }
             None => allowance.of(way.min(surfaces.greatest_coordinate())),
         };
         self.max_allowance = self.max_allowance.max(near);
-        if first.is_some_and(|first| !(near < first.radius)) {
-            self.coarse += 1;
-        }
-        match judge((tracer, surfaces), ray, told, exact.as_ref(), &allowance) {
+        match judge(
+            (tracer, surfaces, self.tolerance.deviation),
+            ray,
+            told,
+            exact.as_ref(),
+            &allowance,
+        ) {
             Verdict::Agrees(offset) => self.max_offset = self.max_offset.max(offset),
             Verdict::Silhouette => self.silhouette += 1,
             Verdict::Disagrees => {
@@ -181,6 +198,12 @@ impl Agreement {
         }
     }
 
+    /// What a mesh may be off; 0 everywhere for hits.
+    #[must_use]
+    pub fn deviation(&self) -> Deviation {
+        self.tolerance.deviation
+    }
+
     /// Rays whose answer is proven right or wrong. A coarse ray may be in the band as well.
     #[must_use]
     pub fn judged(&self) -> u64 {
@@ -193,7 +216,7 @@ impl Agreement {
         if self.rays == 0 {
             return Some(String::from("there is no ray to compare"));
         }
-        if self.fixed_allowance >= self.least_radius || self.coarse > 0 {
+        if self.is_any_lost || self.coarse > 0 {
             return Some(format!(
                 "the tolerance reaches the radius of a solid, which no answer could then be proven wrong about: it is {} at most, the least radius is {}, and {} of {} rays hit such a solid",
                 figure(self.max_allowance.max(self.fixed_allowance)),
@@ -230,7 +253,7 @@ impl Agreement {
 
 /// Whether an answer is right within an allowance: see the head of this file.
 fn judge(
-    (tracer, surfaces): (&Tracer, &Surfaces),
+    (tracer, surfaces, deviation): (&Tracer, &Surfaces, Deviation),
     ray: &Ray,
     told: Option<f64>,
     exact: Option<&Hit>,
@@ -254,21 +277,22 @@ fn judge(
     for hit in tracer.all_hits(ray, DEFAULT_BATCH).take(MOST_HITS) {
         match met.iter_mut().find(|met| met.is_of(&hit)) {
             Some(known) => known.at.push(hit.t),
-            None => met.push(Met::new(tracer.scene(), &hit)),
+            None => met.push(Met::new(tracer.scene(), &hit, deviation)),
         }
     }
     // The first that is met is the solid of the exact hit.
     let own = met.first();
-    let own_distance = own.map_or(0.0, |own| allowance.of(own.extent));
+    let own_distance = own.map_or(0.0, |own| own.in_world(own.margin(allowance)));
     let along = own_distance / speed;
-    if offset <= along {
+    let is_beside = |t: f64| own.is_some_and(|own| own.is_far(ray.at(t), own.margin(allowance)));
+    if offset <= along && !told.is_some_and(is_beside) {
         return Verdict::Agrees(offset / along);
     }
     let is_passed = |met: &Met| {
-        let distance = allowance.of(met.extent);
-        let along = distance / speed;
+        let margin = met.margin(allowance);
+        let along = margin.length / speed;
         let (start, end) = (ray.t_min + along, told.unwrap_or(ray.t_max) - along);
-        met.is_crossed(ray, (start, end), distance)
+        met.is_crossed(ray, (start, end), margin)
     };
     if met.iter().any(is_passed) {
         return Verdict::Disagrees;
@@ -277,19 +301,20 @@ fn judge(
         return Verdict::Silhouette;
     };
     let point = ray.at(told);
+    let greatest = surfaces.greatest_coordinate();
+    let farthest_off = allowance.of(greatest) + surfaces.greatest_deviation();
     let beyond = match own {
         Some(_) => along,
-        None => allowance.of(surfaces.greatest_coordinate()) / speed,
+        None => farthest_off / speed,
     };
     if !(ray.t_min - beyond..=ray.t_max + beyond).contains(&told) {
         return Verdict::Disagrees;
     }
     // Beyond all surfaces; also if it is so far that it is no number.
-    let greatest = surfaces.greatest_coordinate();
-    if !(point.length() <= 1.001 * (greatest + allowance.of(greatest))) {
+    if !(point.length() <= 1.001 * (greatest + farthest_off)) {
         return Verdict::Disagrees;
     }
-    if own.is_some_and(|own| own.is_near(point, own_distance)) {
+    if own.is_some_and(|own| own.is_near(point, own.margin(allowance))) && !is_beside(told) {
         return Verdict::Agrees(offset / along);
     }
     if surfaces.may_be_near(point, allowance) {

@@ -2,8 +2,9 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::deviation::{Deviation, Slack};
 use super::nearness::{Frame, PlacedComposition, PlacedSolid};
-use super::tolerance::{farthest, least_radius};
+use super::tolerance::{Allowance, Margin, farthest, least_radius};
 use crate::math::Ray;
 use crate::scene::{PrototypeIndex, Scene};
 use crate::solid::{AnySolid, Composition};
@@ -17,14 +18,16 @@ pub(super) struct Met<'a> {
     found: Found<'a>,
     /// How far its box reaches from the world's origin, or those of its leaves.
     pub extent: f64,
-    /// At most its least radius in the world.
-    pub radius: f64,
+    /// At most its least radius in the world, less what its mesh may lack.
+    pub spare_radius: f64,
+    /// What its mesh may be off.
+    slack: Slack,
     /// Where the ray meets it, rising.
     pub at: Vec<f64>,
 }
 
 impl<'a> Met<'a> {
-    pub fn new(scene: &'a Scene, hit: &Hit) -> Self {
+    pub fn new(scene: &'a Scene, hit: &Hit, deviation: Deviation) -> Self {
         let (placements, found) = find(scene, &hit.instance, hit.primitive);
         let whole = placements
             .iter()
@@ -34,13 +37,20 @@ impl<'a> Met<'a> {
             Found::Single(solid) => vec![*solid],
             Found::Composed(solid) => solid.solids(),
         };
+        let slack = match (&found, &parts[..]) {
+            (Found::Single(solid), _) => deviation.slack(solid),
+            (Found::Composed(_), parts) => {
+                Slack::of_parts(parts.iter().map(|part| deviation.slack(part)))
+            }
+        };
         let extents = parts
             .iter()
             .map(|one| farthest(&one.bounds().transformed(&whole)));
         Self {
             solid: (hit.instance.clone(), hit.primitive),
             extent: extents.fold(0.0, f64::max),
-            radius: frame.least_length(least_radius(parts)),
+            spare_radius: frame.least_length(slack.spare_radius(least_radius(parts))),
+            slack,
             frame,
             found,
             at: vec![hit.t],
@@ -52,25 +62,47 @@ impl<'a> Met<'a> {
         self.solid.1 == hit.primitive && self.solid.0 == hit.instance
     }
 
+    /// What an answer about it may be off.
+    pub fn margin(&self, allowance: &Allowance) -> Margin {
+        Margin {
+            length: allowance.of(self.extent),
+            slack: self.slack,
+        }
+    }
+
+    /// At least what a margin is in the world.
+    pub fn in_world(&self, margin: Margin) -> f64 {
+        self.frame.in_world(margin)
+    }
+
     /// Whether the ray is proven to pass through its surface between two `t`.
-    pub fn is_crossed(&self, ray: &Ray, (start, end): (f64, f64), distance: f64) -> bool {
+    pub fn is_crossed(&self, ray: &Ray, (start, end): (f64, f64), margin: Margin) -> bool {
         let frame = &self.frame;
         match self.found {
             Found::Single(solid) => {
-                PlacedSolid { solid, frame }.is_crossed(ray, (start, end), distance)
+                PlacedSolid { solid, frame }.is_crossed(ray, (start, end), margin)
             }
             Found::Composed(solid) => {
                 let placed = PlacedComposition { solid, frame };
-                placed.is_crossed(ray, (start, end), distance, &self.at)
+                placed.is_crossed(ray, (start, end), margin, &self.at)
             }
         }
     }
 
-    /// Whether a point is proven to be near its surface.
-    pub fn is_near(&self, point: DVec3, distance: f64) -> bool {
+    /// Whether a point is proven to be farther from its surface than a margin.
+    pub fn is_far(&self, point: DVec3, margin: Margin) -> bool {
         let frame = &self.frame;
         match self.found {
-            Found::Single(solid) => PlacedSolid { solid, frame }.is_near(point, distance),
+            Found::Single(solid) => PlacedSolid { solid, frame }.is_far(point, margin),
+            Found::Composed(_) => false,
+        }
+    }
+
+    /// Whether a point is proven to be near its surface.
+    pub fn is_near(&self, point: DVec3, margin: Margin) -> bool {
+        let frame = &self.frame;
+        match self.found {
+            Found::Single(solid) => PlacedSolid { solid, frame }.is_near(point, margin),
             // Near one of the surfaces that it is made of, there may be nothing of it.
             Found::Composed(_) => false,
         }

@@ -3,6 +3,7 @@
 
 pub(in crate::check) mod agreement;
 mod depth;
+pub(in crate::check) mod deviation;
 mod met;
 mod nearness;
 mod surfaces;

@@ -11,12 +11,17 @@
 //! through it that goes from one side of the slab of half thickness `δ` about its plane
 //! to the other, and is nearer to the axis than the rim by `δ` all the way in between.
 //!
+//! The mesh of a solid lies between an inner and an outer one (`deviation`). A ray crosses it that
+//! passes from outside of the outer one to inside of the inner one, by `δ` each. A disk is crossed
+//! within the rim of the inner one.
+//!
 //! What f64 rounds on the way there is below `64 ε |M| |M⁻¹|` of the lengths that
 //! are added; it is added to `δ`.
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::depth::{beside_disk, depth, depth_in_composed, open_ends, surface_distance};
+use super::tolerance::Margin;
 use crate::math::Ray;
 use crate::solid::{AnySolid, Composition, Disk};
 
@@ -59,6 +64,16 @@ impl Frame {
     fn local_length(&self, length: f64, point: DVec3, extent: f64) -> f64 {
         let size = self.squeeze * (point.length() + self.translation) + extent;
         self.squeeze * length + ROUNDING * self.squeeze * self.stretch * size
+    }
+
+    /// At least what a margin is in the world.
+    pub fn in_world(&self, margin: Margin) -> f64 {
+        margin.length + self.stretch * margin.slack.greatest
+    }
+
+    /// At least what a length there is in the world.
+    pub fn greatest_length(&self, length: f64) -> f64 {
+        self.stretch * length
     }
 
     /// At most what a length there is in the world.
@@ -118,36 +133,43 @@ fn norm_bound(matrix: &DMat3) -> f64 {
 }
 
 impl PlacedSolid<'_> {
-    /// Whether a point of the world is proven to be farther than `distance` from
+    /// Whether a point of the world is proven to be farther than a margin from
     /// the surface.
-    pub fn is_far(&self, point: DVec3, distance: f64) -> bool {
-        surface_distance(&self.solid, self.frame.local(point))
-            > self
-                .frame
-                .local_length(distance, point, extent(&self.solid))
+    pub fn is_far(&self, point: DVec3, margin: Margin) -> bool {
+        let (solid, Margin { length, slack }) = (&self.solid, margin);
+        let place = self.frame.local(point);
+        let length = self.frame.local_length(length, point, extent(solid));
+        surface_distance(solid, place) > length + slack.greatest
+            || depth(&slack.inner(solid), place) > length + slack.inward
+            || depth(&slack.outer(solid), place) < -(length + slack.outward)
     }
 
     /// As [`PlacedSolid::is_far`], with discs at open ends.
-    pub fn is_far_from_closed(&self, point: DVec3, distance: f64) -> bool {
-        depth(&self.solid, self.frame.local(point)).abs()
-            > self
-                .frame
-                .local_length(distance, point, extent(&self.solid))
+    pub fn is_far_from_closed(&self, point: DVec3, margin: Margin) -> bool {
+        let extent = extent(&self.solid);
+        let length = self.frame.local_length(margin.length, point, extent);
+        depth(&self.solid, self.frame.local(point)).abs() > length + margin.slack.greatest
     }
 
-    /// Whether a point of the world is proven to be within `distance` of the
-    /// surface.
-    pub fn is_near(&self, point: DVec3, distance: f64) -> bool {
-        surface_distance(&self.solid, self.frame.local(point)) * self.frame.stretch <= distance
+    /// Whether a point of the world is proven to be within a margin of the surface.
+    pub fn is_near(&self, point: DVec3, margin: Margin) -> bool {
+        let distance = surface_distance(&self.solid, self.frame.local(point));
+        (distance - margin.slack.greatest) * self.frame.stretch <= margin.length
     }
 
-    /// Whether a ray is proven to pass, between `start` and `end`, from more than
-    /// `distance` on one side of the surface to more than that on its other side, all
-    /// the way more than that from an open end.
-    pub fn is_crossed(&self, ray: &Ray, (start, end): (f64, f64), distance: f64) -> bool {
+    /// Whether a ray is proven to pass, between `start` and `end`, from farther outside of the
+    /// surface than a margin to farther inside than that, or the other way, and all the way
+    /// farther than that from an open end.
+    pub fn is_crossed(&self, ray: &Ray, (start, end): (f64, f64), margin: Margin) -> bool {
         let solid = &self.solid;
-        let deep = self.frame.local_length(distance, ray.origin, extent(solid));
-        let reach = solid.size() + 4.0 * deep;
+        let length = self
+            .frame
+            .local_length(margin.length, ray.origin, extent(solid));
+        let slack = margin.slack;
+        let (inner, outer) = (slack.inner(solid), slack.outer(solid));
+        let (inside, outside) = (length + slack.inward, length + slack.outward);
+        let deep = inside.max(outside);
+        let reach = outer.size() + 4.0 * deep;
         let mut way = self.frame.way(ray, (start, end), (solid.centre(), reach));
         for (end, inward) in open_ends(solid) {
             // Where room + slope t > 0 the end is far enough.
@@ -164,19 +186,20 @@ impl PlacedSolid<'_> {
         if way.is_empty() {
             return false;
         }
-        if let AnySolid::Disk(disk) = solid {
-            return is_disk_crossed(disk, way.at(way.low), way.at(way.high), deep);
+        if let AnySolid::Disk(disk) = &inner {
+            return is_disk_crossed(disk, way.at(way.low), way.at(way.high), inside);
         }
-        let depth = |t: f64| depth(solid, way.at(t));
         let (mut low, mut high) = (way.low, way.high);
-        if !(depth(low).min(depth(high)) < -deep) {
+        let outer_depth = |t: f64| depth(&outer, way.at(t));
+        if !(outer_depth(low).min(outer_depth(high)) < -outside) {
             return false;
         }
+        let depth = |t: f64| depth(&inner, way.at(t));
         for _ in 0..SECTIONS {
             let third = (high - low) / 3.0;
             let (left, right) = (low + third, high - third);
             let (at_left, at_right) = (depth(left), depth(right));
-            if at_left.max(at_right) > deep {
+            if at_left.max(at_right) > inside {
                 return true;
             }
             if at_left < at_right {
@@ -203,7 +226,7 @@ impl PlacedComposition<'_> {
         &self,
         ray: &Ray,
         (start, end): (f64, f64),
-        distance: f64,
+        margin: Margin,
         met: &[f64],
     ) -> bool {
         let bounds = self.solid.bounds();
@@ -211,7 +234,8 @@ impl PlacedComposition<'_> {
             return false;
         }
         let extents = self.solid.solids().iter().map(extent).fold(0.0, f64::max);
-        let deep = self.frame.local_length(distance, ray.origin, extents);
+        let length = self.frame.local_length(margin.length, ray.origin, extents);
+        let deep = length + margin.slack.greatest;
         let reach = 0.5 * bounds.extent().length() + 4.0 * deep;
         let way = self.frame.way(ray, (start, end), (bounds.centre(), reach));
         if way.is_empty() {
@@ -248,6 +272,7 @@ fn is_disk_crossed(disk: &Disk, start: DVec3, end: DVec3, deep: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::check::elsewhere::deviation::Slack;
 
     #[test]
     fn disk_is_crossed_from_side_to_side_and_away_from_its_rim() {
@@ -256,9 +281,13 @@ mod tests {
             solid: disk.into(),
             frame: &Frame::new(&DAffine3::IDENTITY),
         };
+        let margin = Margin {
+            length: 0.1,
+            slack: Slack::NONE,
+        };
         let is_crossed = |x: f64, direction: DVec3, range: (f64, f64)| {
             let ray = Ray::new(DVec3::new(x, 0.0, -5.0), direction);
-            disk.is_crossed(&ray, range, 0.1)
+            disk.is_crossed(&ray, range, margin)
         };
         assert!(is_crossed(0.0, DVec3::Z, (0.0, 10.0)));
         assert!(is_crossed(0.85, DVec3::Z, (4.8, 5.2)));

@@ -6,8 +6,9 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::deviation::{Deviation, Slack};
 use super::nearness::{Frame, PlacedSolid, ROUNDING};
-use super::tolerance::{Allowance, farthest, least_radius};
+use super::tolerance::{Allowance, Margin, farthest};
 use crate::math::Bounds;
 use crate::scene::{PrototypeIndex, Scene};
 use crate::solid::AnySolid;
@@ -15,14 +16,40 @@ use crate::solid::AnySolid;
 /// All surfaces of a scene.
 pub(super) struct Surfaces<'a> {
     scene: &'a Scene,
-    /// The box and the least radius of each prototype that the root contains.
-    reached: Vec<Option<(Bounds, f64)>>,
+    deviation: Deviation,
+    /// What is known of each prototype that the root contains.
+    reached: Vec<Option<Reached>>,
+}
+
+/// The solids of a prototype with all that it places, in its own space.
+#[derive(Clone, Copy)]
+struct Reached {
+    bounds: Bounds,
+    /// At most the least radius; infinite where there are none.
+    radius: f64,
+    /// At least by how much the mesh of any of them may be off, beyond what is the same
+    /// everywhere.
+    deviation: f64,
+    /// Whether the mesh of any of them may lack as much as its radius.
+    is_lost: bool,
+}
+
+impl Default for Reached {
+    fn default() -> Self {
+        Self {
+            bounds: Bounds::EMPTY,
+            radius: f64::INFINITY,
+            deviation: 0.0,
+            is_lost: false,
+        }
+    }
 }
 
 impl<'a> Surfaces<'a> {
-    pub fn new(scene: &'a Scene) -> Self {
+    pub fn new(scene: &'a Scene, deviation: Deviation) -> Self {
         let mut surfaces = Self {
             scene,
+            deviation,
             reached: vec![None; scene.prototypes.len()],
         };
         surfaces.reach(PrototypeIndex::ROOT);
@@ -31,19 +58,30 @@ impl<'a> Surfaces<'a> {
 
     /// At most the least radius of a solid in the world; infinite where there are none.
     pub fn least_radius(&self) -> f64 {
-        self.root().1
+        self.root().radius
+    }
+
+    /// Whether the mesh of any solid may lack as much as its radius.
+    pub fn is_any_lost(&self) -> bool {
+        self.deviation.everywhere() >= self.least_radius() || self.root().is_lost
+    }
+
+    /// At least by how much the mesh of any solid may be off, in the world, beyond what is the
+    /// same everywhere.
+    pub fn greatest_deviation(&self) -> f64 {
+        self.root().deviation
     }
 
     /// The distance of the farthest corner of the scene's box from the origin.
     pub fn greatest_coordinate(&self) -> f64 {
-        farthest(&self.root().0)
+        farthest(&self.root().bounds)
     }
 
-    fn root(&self) -> (Bounds, f64) {
-        self.reached[PrototypeIndex::ROOT.0 as usize].unwrap_or((Bounds::EMPTY, f64::INFINITY))
+    fn root(&self) -> Reached {
+        self.reached[PrototypeIndex::ROOT.0 as usize].unwrap_or_default()
     }
 
-    fn reach(&mut self, index: PrototypeIndex) -> (Bounds, f64) {
+    fn reach(&mut self, index: PrototypeIndex) -> Reached {
         let number = index.0 as usize;
         if let Some(known) = self.reached[number] {
             return known;
@@ -61,13 +99,26 @@ impl<'a> Surfaces<'a> {
             .iter()
             .fold(own, |all, leaf| all.union(&leaf.bounds()));
         let singles = prototype.singles().map(|(_, solid)| solid);
-        let mut whole = (own, least_radius(singles.chain(leaves)));
+        let mut whole = Reached {
+            bounds: own,
+            ..Reached::default()
+        };
+        for solid in singles.chain(leaves) {
+            let (radius, slack) = (solid.radius(), self.deviation.slack(&solid));
+            whole.radius = whole.radius.min(radius);
+            whole.deviation = whole.deviation.max(slack.greatest);
+            whole.is_lost |= slack.spare_radius(radius) <= 0.0;
+        }
         for placement in &prototype.placements {
-            let (child, radius) = self.reach(placement.of);
-            if !child.is_empty() {
+            let child = self.reach(placement.of);
+            if !child.bounds.is_empty() {
                 let map = &placement.parent_from_child;
-                let radius = Frame::new(map).least_length(radius);
-                whole = (whole.0.union(&child.transformed(map)), whole.1.min(radius));
+                let frame = Frame::new(map);
+                let deviation = frame.greatest_length(child.deviation);
+                whole.bounds = whole.bounds.union(&child.bounds.transformed(map));
+                whole.radius = whole.radius.min(frame.least_length(child.radius));
+                whole.deviation = whole.deviation.max(deviation);
+                whole.is_lost |= child.is_lost;
             }
         }
         self.reached[number] = Some(whole);
@@ -94,15 +145,23 @@ impl<'a> Surfaces<'a> {
             1.001 * allowance.of(farthest(&placed))
         };
         // At least that of every solid: most are farther than even this.
-        let greatest = self.reached[index.0 as usize].map_or(0.0, |(whole, _)| distance(&whole));
+        let whole = self.reached[index.0 as usize].unwrap_or_default();
+        let greatest = Margin {
+            length: distance(&whole.bounds),
+            slack: Slack::both(whole.deviation),
+        };
+        let margin = |solid: &AnySolid| Margin {
+            length: distance(&solid.bounds()),
+            slack: self.deviation.slack(solid),
+        };
         let is_near = |solid: AnySolid| {
             let placed = PlacedSolid { solid, frame };
-            !placed.is_far(point, greatest) && !placed.is_far(point, distance(&solid.bounds()))
+            !placed.is_far(point, greatest) && !placed.is_far(point, margin(&solid))
         };
         let is_near_closed = |solid: AnySolid| {
             let placed = PlacedSolid { solid, frame };
             !placed.is_far_from_closed(point, greatest)
-                && !placed.is_far_from_closed(point, distance(&solid.bounds()))
+                && !placed.is_far_from_closed(point, margin(&solid))
         };
         let composed = prototype.solids.compositions.iter();
         let mut leaves = composed.flat_map(|record| record.solid.solids());
@@ -110,12 +169,14 @@ impl<'a> Surfaces<'a> {
             || leaves.any(is_near_closed)
             || prototype.placements.iter().any(|placement| {
                 let world_from_child = *world_from_here * placement.parent_from_child;
-                let Some((bounds, _)) = self.reached[placement.of.0 as usize] else {
+                let Some(child) = self.reached[placement.of.0 as usize] else {
                     return false;
                 };
-                let placed = bounds.transformed(&world_from_child);
-                let reach = 1.001 * allowance.of(farthest(&placed)) + ROUNDING * point.length();
-                !bounds.is_empty()
+                let placed = child.bounds.transformed(&world_from_child);
+                let deviation = Frame::new(&world_from_child).greatest_length(child.deviation);
+                let length = allowance.of(farthest(&placed)) + deviation;
+                let reach = 1.001 * length + ROUNDING * point.length();
+                !child.bounds.is_empty()
                     && placed.grown(reach).meets(&Bounds::at(point))
                     && self.may_be_near_in(placement.of, &world_from_child, point, allowance)
             })

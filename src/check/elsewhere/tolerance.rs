@@ -1,6 +1,6 @@
 //! How far an answer from elsewhere may be from a solid.
 //!
-//! The allowance is a sum of a fixed length (a mesh's deviation), a share of the way that
+//! The allowance is a sum of a mesh's deviation (`deviation`), a share of the way that
 //! arithmetic sees (the ray's origin and the way to the hit), and a share of what the solid in
 //! question reaches from the world's origin. All of it is about this ray and this solid: a far
 //! solid elsewhere in the scene, or a far vertex elsewhere in a mesh, changes nothing.
@@ -10,6 +10,7 @@
 //! on what it passed. A reported hit without an exact one may be anywhere: its way counts up to
 //! where the ray has left the scene, `|o| + 2 R` with `R` the scene's greatest coordinate.
 
+use super::deviation::{Deviation, Slack};
 use crate::math::{Bounds, Ray};
 use crate::solid::AnySolid;
 
@@ -28,8 +29,8 @@ pub const F32_TOLERANCE: f64 = F32_ROUNDINGS * UNIT_ROUNDOFF_32;
 /// What answers may be off.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tolerance {
-    /// A length.
-    pub fixed: f64,
+    /// What a mesh may be off.
+    pub deviation: Deviation,
     /// A share of the distances of a ray's origin from the world's and of the hit from it.
     pub of_way: f64,
     /// A share of a solid's greatest distance from the world's origin.
@@ -42,18 +43,28 @@ pub(super) struct Allowance {
     of_extent: f64,
 }
 
+/// What an answer about a solid may be off: the sum of both.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Margin {
+    /// A length in the world.
+    pub length: f64,
+    /// Lengths in the solid's own space.
+    pub slack: Slack,
+}
+
 impl Tolerance {
     /// For a ray and the way that counts.
     pub fn along(&self, ray: &Ray, way: f64) -> Allowance {
         Allowance {
-            fixed: self.fixed + self.of_way * (ray.origin.length() + way),
+            fixed: self.deviation.everywhere() + self.of_way * (ray.origin.length() + way),
             of_extent: self.of_extent,
         }
     }
 }
 
 impl Allowance {
-    /// As a length, for a solid or solids within `extent` of the world's origin.
+    /// As a length, for a solid or solids within `extent` of the world's origin, but for what
+    /// depends on the solid itself.
     pub fn of(&self, extent: f64) -> f64 {
         self.fixed + self.of_extent * extent
     }

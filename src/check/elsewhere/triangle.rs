@@ -101,6 +101,7 @@ mod tests {
             let side = random.below(6) as usize;
             let target = middle + (rim[side] - middle) * (0.9 * share);
             let origin = middle + DVec3::new(random.unit(), random.unit(), 4.0) * scale;
+            // Within the sizes that a direction may have.
             let direction = (target - origin) * random.log_uniform(1e-130, 1e130);
             let ray = ShearedRay::new(&Ray::new(origin, direction)).expect("a ray");
             let met = (0..6).filter_map(|side| ray.meets([middle, rim[side], rim[(side + 1) % 6]]));

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use rayon::prelude::*;
 
 use super::agreement::Agreement;
+use super::deviation::Deviation;
 use super::surfaces::Surfaces;
 use super::tolerance::Tolerance;
 use crate::check::{Progress, Witness};
@@ -34,11 +35,11 @@ pub fn compare_hits(
 ) -> Option<Agreement> {
     assert_eq!(rays.len(), told.len(), "one answer a ray");
     let tolerance = Tolerance {
-        fixed: 0.0,
+        deviation: Deviation::Everywhere(0.0),
         of_way: tolerance,
         of_extent: tolerance,
     };
-    let surfaces = Surfaces::new(tracer.scene());
+    let surfaces = Surfaces::new(tracer.scene(), tolerance.deviation);
     in_blocks(
         Agreement::new("given", Witness::UserHits, tolerance, &surfaces),
         rays.len() as u64,

@@ -7,13 +7,15 @@
 //! mesh may be off is its deviation, and what its format rounds of the coordinates of the
 //! solid in question.
 //!
-//! Boxes are split at the median of their triangles' middles along the longest side, so that
-//! the depth of the tree is the logarithm of their number whatever the triangles are.
+//! A box is split at the median of the middles of its triangles, along the longest side of
+//! the box of those middles, so that the depth of the tree is the logarithm of the number of triangles.
 
 use glam::DVec3;
 use rayon::join;
+use rayon::prelude::*;
 
 use super::agreement::Agreement;
+use super::deviation::Deviation;
 use super::nearness::ROUNDING;
 use super::surfaces::Surfaces;
 use super::tolerance::Tolerance;
@@ -70,12 +72,18 @@ impl TracedMesh {
     /// When a triangle names a vertex that is not there.
     #[must_use]
     pub fn new(mesh: &Mesh) -> Self {
-        let vertices = mesh.vertices.clone();
-        let mut triangles: Vec<_> = mesh.triangles.iter().copied().zip(0..).collect();
-        let root = node(&vertices, &mut triangles, 0);
+        let corners = mesh.triangles.par_iter().copied().enumerate();
+        let items = corners.map(|(number, corners)| Item {
+            middle: bounds_of(&mesh.vertices, corners).centre(),
+            number: number as u32,
+        });
+        let mut items: Vec<Item> = items.collect();
+        let root = node(mesh, &mut items, 0);
+        let ordered = items.par_iter().map(|item| item.number);
+        let ordered = ordered.map(|number| (mesh.triangles[number as usize], number));
         Self {
-            vertices,
-            triangles,
+            vertices: mesh.vertices.clone(),
+            triangles: ordered.collect(),
             root,
         }
     }
@@ -150,58 +158,76 @@ fn entry(bounds: &Bounds, ray: &ShearedRay, end: f64) -> Option<f64> {
     (near <= far).then_some(near)
 }
 
-fn node(vertices: &[DVec3], triangles: &mut [([u32; 3], u32)], first: usize) -> Node {
-    let of = |corners: [u32; 3]| {
-        let points = corners.map(|corner| Bounds::at(vertices[corner as usize]));
-        points[0].union(&points[1]).union(&points[2])
-    };
-    let middle = |corners: [u32; 3]| of(corners).centre();
-    let (mut bounds, mut middles) = (Bounds::EMPTY, Bounds::EMPTY);
-    for &(corners, _) in &*triangles {
-        bounds = bounds.union(&of(corners));
-        middles = middles.union(&Bounds::at(middle(corners)));
-    }
-    let count = triangles.len();
+/// A triangle while the tree is built.
+struct Item {
+    /// The middle of its box.
+    middle: DVec3,
+    number: u32,
+}
+
+/// The box of a triangle.
+fn bounds_of(vertices: &[DVec3], corners: [u32; 3]) -> Bounds {
+    let [a, b, c] = corners.map(|corner| Bounds::at(vertices[corner as usize]));
+    a.union(&b).union(&c)
+}
+
+/// The tree of some triangles of a mesh, which are put in its order. `first` is the place of
+/// their first one among those of the whole mesh.
+fn node(mesh: &Mesh, items: &mut [Item], first: usize) -> Node {
+    let count = items.len();
     if count <= LEAF {
+        let corners = items
+            .iter()
+            .map(|item| mesh.triangles[item.number as usize]);
+        let bounds = corners.fold(Bounds::EMPTY, |all, corners| {
+            all.union(&bounds_of(&mesh.vertices, corners))
+        });
         let content = Content::Leaf(first, first + count);
         return Node { bounds, content };
     }
+    let middles = items.iter().fold(Bounds::EMPTY, |all, item| {
+        all.union(&Bounds::at(item.middle))
+    });
     let axis = middles.extent().max_position();
-    let order = |one: &([u32; 3], u32), other: &([u32; 3], u32)| {
-        let along = [one.0, other.0].map(|corners| middle(corners)[axis]);
-        along[0].total_cmp(&along[1]).then(one.1.cmp(&other.1))
-    };
-    triangles.select_nth_unstable_by(count / 2, order);
-    let (left, right) = triangles.split_at_mut(count / 2);
+    items.select_nth_unstable_by(count / 2, |one, other| {
+        let order = one.middle[axis].total_cmp(&other.middle[axis]);
+        order.then(one.number.cmp(&other.number))
+    });
+    let (left, right) = items.split_at_mut(count / 2);
     let right_first = first + left.len();
-    let mut build_left = || node(vertices, left, first);
-    let mut build_right = || node(vertices, right, right_first);
+    let mut build_left = || node(mesh, left, first);
+    let mut build_right = || node(mesh, right, right_first);
     let (one, other) = match count >= WORTH_A_THREAD {
         true => join(build_left, build_right),
         false => (build_left(), build_right()),
     };
+    let bounds = one.bounds.union(&other.bounds);
     let content = Content::Inner(Box::new([one, other]));
     Node { bounds, content }
 }
 
 /// Compares what rays meet of a mesh with the exact hits, on the rays of a class of that name,
-/// in the rayon pool that this is called in. The mesh may be `deviation` off (scene units), and
-/// by the share `rounding` of the coordinates of a solid. `None` when `progress` asked to stop.
+/// in the rayon pool that this is called in. The mesh may be off by
+/// `deviation`, and by the share `rounding` of the coordinates of a solid. `None` when `progress` asked to stop.
 #[must_use]
 pub fn compare_mesh(
     tracer: &Tracer,
     mesh: &TracedMesh,
     (class, rays): (&'static str, &[Ray]),
-    (deviation, rounding): (f64, f64),
+    (deviation, rounding): (Deviation, f64),
     most_listed: usize,
     progress: &Progress,
 ) -> Option<Agreement> {
-    let tolerance = Tolerance {
-        fixed: deviation,
-        of_way: ROUNDING,
-        of_extent: rounding,
+    let of_placing = match deviation {
+        Deviation::Everywhere(_) => 0.0,
+        Deviation::Tessellated { .. } => ROUNDING,
     };
-    let surfaces = Surfaces::new(tracer.scene());
+    let tolerance = Tolerance {
+        deviation,
+        of_way: ROUNDING,
+        of_extent: rounding + of_placing,
+    };
+    let surfaces = Surfaces::new(tracer.scene(), deviation);
     in_blocks(
         Agreement::new(class, Witness::UserMesh, tolerance, &surfaces),
         rays.len() as u64,

@@ -1,7 +1,7 @@
 //! What came of a check as tables and as a page.
 
 use crate::check::elsewhere::agreement::Disagreement;
-use crate::check::{Agreement, ClassRow, Outcome, Pictures, Violation, Witness};
+use crate::check::{Agreement, ClassRow, Deviation, Outcome, Pictures, Violation, Witness};
 use crate::report::{Figure, Mark, Page, Series, Symbol, figure};
 
 /// The columns of [`table_rows`].
@@ -87,8 +87,15 @@ fn dash() -> String {
 /// What answers from elsewhere could be off, and how many were judged.
 #[must_use]
 pub fn tolerance_text(row: &Agreement) -> String {
+    let of_each = match row.deviation() {
+        Deviation::Everywhere(_) => String::new(),
+        Deviation::Tessellated { segments, fit } => {
+            let fit = fit.name();
+            format!(" (derived for each solid: {segments} segments, {fit})")
+        }
+    };
     format!(
-        "tolerance: at most {}, the least radius is {}; {} of {} answers judged\n",
+        "tolerance: at most {}{of_each}, the least radius is {}; {} of {} answers judged\n",
         figure(row.max_allowance.max(row.fixed_allowance)),
         figure(row.least_radius),
         row.judged(),

@@ -1,6 +1,6 @@
 //! The figures of a check, as JSON.
 
-use cyltrace::check::{self, Agreement, percent};
+use cyltrace::check::{self, Agreement, Deviation, percent};
 use cyltrace::tracer::Tracer;
 use serde_json::{Value, json};
 
@@ -92,6 +92,12 @@ fn agreement_figures(row: &Agreement) -> Value {
         "judged": row.judged(),
         "tolerance": row.max_allowance.max(row.fixed_allowance),
         "least_radius": finite(row.least_radius),
+        "tessellated": match row.deviation() {
+            Deviation::Everywhere(_) => Value::Null,
+            Deviation::Tessellated { segments, fit } => {
+                json!({ "segments": segments, "fit": fit.name() })
+            }
+        },
     })
 }
 

@@ -2,7 +2,7 @@
 
 use anyhow::{anyhow, bail};
 use cyltrace::check::{
-    Agreement, F32_TOLERANCE, Outcome, Progress, TracedMesh, compare_hits, compare_mesh,
+    Agreement, Deviation, F32_TOLERANCE, Outcome, Progress, TracedMesh, compare_hits, compare_mesh,
     rays_around,
 };
 use cyltrace::math::Ray;
@@ -18,15 +18,18 @@ use crate::cli::print;
 use crate::cli::trace::for_each_batch;
 
 /// Bytes that a triangle takes with its vertices and in the tree, on the safe side: in STL
-/// each has three vertices of its own, which are stored twice.
-const TRIANGLE_BYTES: u64 = 250;
+/// each has three vertices of its own, which are stored twice. 32 are for building the tree.
+const TRIANGLE_BYTES: u64 = 290;
+
+/// Why the segments and the fit in a file's comments are not used.
+const NOT_AS_STATED: &str = "the mesh is not what `cyltrace tessellate` makes of this scene with the segments and fit in its comments: the one deviation that they state applies to every solid";
 
 /// What is compared.
 pub enum Told {
     /// The rays, and a hit for each.
     Hits(Vec<Ray>, Vec<GivenHit>, String),
-    /// The rays where they are given, the mesh, and what it may be off.
-    Mesh(Option<Vec<Ray>>, MeshFile, f64),
+    /// The rays where they are given, the mesh, and what it may be off where an argument says so.
+    Mesh(Option<Vec<Ray>>, MeshFile, Option<f64>),
 }
 
 impl Told {
@@ -34,12 +37,12 @@ impl Told {
     pub fn read(arguments: &CheckArguments) -> anyhow::Result<Option<Self>> {
         if let Some(path) = &arguments.mesh {
             let file = read_mesh_within(path, arguments.max_memory)?;
-            let Some(deviation) = arguments.deviation.or(file.deviation) else {
+            if arguments.deviation.or(file.deviation).is_none() {
                 bail!(
                     "{}: no comment says its deviation, as those of `cyltrace tessellate` do: give --deviation X",
                     path.display()
                 );
-            };
+            }
             let made_rays = match arguments.rays {
                 Rays::Count(count) => count,
                 Rays::Table(_) => 0,
@@ -54,7 +57,11 @@ impl Told {
                     readable(arguments.max_memory)
                 );
             }
-            return Ok(Some(Self::Mesh(given_rays(arguments)?, file, deviation)));
+            return Ok(Some(Self::Mesh(
+                given_rays(arguments)?,
+                file,
+                arguments.deviation,
+            )));
         }
         let Some(path) = &arguments.hits else {
             return Ok(None);
@@ -130,7 +137,16 @@ impl Told {
                     (None, Rays::Table(_)) => unreachable!("a table of rays has been read"),
                 };
                 let rays = (class, rays.as_slice());
-                let off = (*deviation, file.rounding);
+                let deviation = match deviation {
+                    Some(length) => Deviation::Everywhere(*length),
+                    None => Deviation::stated(file, tracer.scene())
+                        .expect("the argument or the file states a deviation"),
+                };
+                let is_local = matches!(deviation, Deviation::Tessellated { .. });
+                if arguments.deviation.is_none() && file.made.is_some() && !is_local {
+                    print::note(&arguments.common, NOT_AS_STATED);
+                }
+                let off = (deviation, file.rounding);
                 compare_mesh(tracer, &mesh, rays, off, MOST_LISTED, progress)
             }
         };

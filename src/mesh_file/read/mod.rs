@@ -11,6 +11,7 @@ mod obj;
 mod ply;
 mod ply_data;
 mod ply_header;
+mod remarks;
 mod stl;
 mod text;
 
@@ -21,6 +22,7 @@ use std::path::Path;
 pub use self::error::{MeshError, MeshPlace, MeshReadError};
 pub use self::obj::parse_obj;
 pub use self::ply::parse_ply;
+pub use self::remarks::Made;
 pub use self::stl::parse_stl;
 use crate::scene::MOST_MESH_BYTES;
 use crate::solid::tessellation::Mesh;
@@ -33,6 +35,9 @@ pub struct MeshFile {
     /// How far the mesh may be from the solids' surface, in scene units, where a
     /// comment says `deviation X`, as those of `cyltrace tessellate` do.
     pub deviation: Option<f64>,
+    /// How the mesh was made, where comments say so as those of `cyltrace tessellate` do.
+    /// Anybody can write them.
+    pub made: Option<Made>,
     /// How far the format rounds a coordinate, as a share of it: 2^-24 where coordinates are
     /// stored as f32, 0 for f64 and for text.
     pub rounding: f64,
@@ -88,14 +93,6 @@ fn read_bytes(path: &Path, most_bytes: u64) -> io::Result<Option<Vec<u8>>> {
     Ok((bytes.len() as u64 <= most_bytes).then_some(bytes))
 }
 
-/// The number after the word `deviation`.
-fn deviation(comment: &str) -> Option<f64> {
-    let (_, after) = comment.split_once("deviation")?;
-    let mut words = after.split(|c: char| c.is_whitespace() || matches!(c, ':' | '=' | ','));
-    let number: f64 = words.find_map(|word| word.parse().ok())?;
-    (number.is_finite() && number >= 0.0).then_some(number)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -107,14 +104,5 @@ mod tests {
         std::fs::write(&path, "v 0 0 0\n".repeat(200)).expect("a file");
         let message = read_mesh_within(&path, 1000).unwrap_err().to_string();
         assert!(message.contains("more than 1000 bytes"), "{message}");
-    }
-
-    #[test]
-    fn deviation_is_the_number_after_its_word() {
-        assert_eq!(deviation(" scene, deviation: 0.25 units"), Some(0.25));
-        assert_eq!(deviation("deviation = 1e-3"), Some(1e-3));
-        for none in ["nothing", "deviation -1", "deviation inf", "deviation x"] {
-            assert_eq!(deviation(none), None, "{none}");
-        }
     }
 }

@@ -7,10 +7,11 @@
 
 use glam::DVec3;
 
+use super::MeshFile;
 use super::builder::{Builder, too_many_corners};
 use super::error::{MeshError, MeshPlace};
+use super::remarks::Remarks;
 use super::text::{before, lines, number, shown, without_mark, words};
-use super::{MeshFile, deviation};
 use crate::scene::MOST_FACE_CORNERS;
 
 /// Keywords whose geometry is not triangles.
@@ -25,12 +26,12 @@ const FREE_FORM: [&[u8]; 8] = [
 /// exist, or there is no face.
 pub fn parse_obj(bytes: &[u8]) -> Result<MeshFile, MeshError> {
     let mut builder = Builder::default();
-    let mut stated = None;
+    let mut remarks = Remarks::default();
     let mut statement = Statement::default();
     for (line, text) in lines(without_mark(bytes)?) {
         let content = before(text, b"#");
-        if stated.is_none() && content.len() < text.len() {
-            stated = deviation(&String::from_utf8_lossy(&text[content.len()..]));
+        if content.len() < text.len() {
+            remarks.read(&String::from_utf8_lossy(&text[content.len() + 1..]));
         }
         if statement.is_empty() {
             statement.line = line;
@@ -54,7 +55,8 @@ pub fn parse_obj(bytes: &[u8]) -> Result<MeshFile, MeshError> {
     add(&mut builder, statement.line, &statement.text)?;
     Ok(MeshFile {
         mesh: builder.finish()?,
-        deviation: stated,
+        deviation: remarks.deviation,
+        made: remarks.made(),
         rounding: 0.0,
     })
 }

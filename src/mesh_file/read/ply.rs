@@ -72,7 +72,8 @@ pub fn parse_ply(bytes: &[u8]) -> Result<MeshFile, MeshError> {
     let is_single = |at: &usize| vertex.properties[*at].kind == Kind::F32;
     Ok(MeshFile {
         mesh: builder.finish()?,
-        deviation: header.deviation,
+        deviation: header.remarks.deviation,
+        made: header.remarks.made(),
         rounding: match coordinates.iter().any(is_single) {
             true => ROUNDING_32,
             false => 0.0,

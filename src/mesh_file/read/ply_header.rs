@@ -1,7 +1,7 @@
 //! The header of a PLY file: its form, and the elements with their properties.
 
-use super::deviation;
 use super::error::MeshError;
+use super::remarks::Remarks;
 use super::text::{before, shown, words};
 use crate::scene::{MOST_PLY_HEADER_BYTES, MOST_PLY_PROPERTIES};
 
@@ -70,7 +70,7 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub form: Form,
     pub elements: Vec<Element>,
-    pub deviation: Option<f64>,
+    pub remarks: Remarks,
     /// Bytes of the header.
     pub bytes: usize,
     /// Lines of the header.
@@ -120,7 +120,7 @@ impl Header {
         let mut header = Self {
             form: Form::Ascii,
             elements: Vec::new(),
-            deviation: None,
+            remarks: Remarks::default(),
             bytes: 0,
             lines: 0,
         };
@@ -154,9 +154,9 @@ impl Header {
                 Some(b"format") => {
                     form = Some(form_of(words.next().unwrap_or_default()).map_err(wrong)?);
                 }
-                Some(b"comment" | b"obj_info") => {
-                    let text = String::from_utf8_lossy(line);
-                    header.deviation = header.deviation.or_else(|| deviation(&text));
+                Some(key @ (b"comment" | b"obj_info")) => {
+                    let text = &line.trim_ascii_start()[key.len()..];
+                    header.remarks.read(&String::from_utf8_lossy(text));
                 }
                 Some(b"element") => {
                     let element = element(&mut words, header.lines).map_err(wrong)?;

@@ -9,11 +9,12 @@
 
 use glam::DVec3;
 
+use super::MeshFile;
 use super::builder::Builder;
 use super::error::{MeshError, MeshPlace};
 use super::ply::ROUNDING_32;
+use super::remarks::Remarks;
 use super::text::{lines, number, shown, without_mark, words};
-use super::{MeshFile, deviation};
 
 /// Bytes of a binary file before its facets.
 const HEADER: usize = 84;
@@ -68,7 +69,9 @@ fn binary(bytes: &[u8]) -> Result<MeshFile, MeshError> {
         }
         push_facet(&mut builder, place)?;
     }
-    finished(builder, deviation(&String::from_utf8_lossy(&header[..80])))
+    let mut remarks = Remarks::default();
+    remarks.read(&String::from_utf8_lossy(&header[..80]));
+    finished(builder, remarks)
 }
 
 /// What is due next in a text.
@@ -102,7 +105,7 @@ impl Due {
 /// Reads a text, whose words may be in any case.
 fn ascii(text: &[u8]) -> Result<MeshFile, MeshError> {
     let mut builder = Builder::default();
-    let mut stated = None;
+    let mut remarks = Remarks::default();
     let mut due = Due::Solid;
     let mut last = 1;
     for (line, text) in lines(text) {
@@ -114,7 +117,7 @@ fn ascii(text: &[u8]) -> Result<MeshFile, MeshError> {
         let keyword = first.to_ascii_lowercase();
         due = match (due, keyword.as_slice()) {
             (Due::Solid, b"solid") => {
-                stated = stated.or_else(|| deviation(&String::from_utf8_lossy(text)));
+                remarks.read(&String::from_utf8_lossy(text));
                 Due::Facet
             }
             (Due::Facet, b"facet") => Due::Loop,
@@ -143,7 +146,7 @@ fn ascii(text: &[u8]) -> Result<MeshFile, MeshError> {
         let message = format!("the file ends where {} is due", due.name());
         return Err(MeshError::in_line(last, message));
     }
-    finished(builder, stated)
+    finished(builder, remarks)
 }
 
 /// The coordinates after `vertex`.
@@ -164,10 +167,11 @@ fn push_facet(builder: &mut Builder, place: MeshPlace) -> Result<(), MeshError> 
     builder.push_face(&[end - 3, end - 2, end - 1], place)
 }
 
-fn finished(builder: Builder, deviation: Option<f64>) -> Result<MeshFile, MeshError> {
+fn finished(builder: Builder, remarks: Remarks) -> Result<MeshFile, MeshError> {
     Ok(MeshFile {
         mesh: builder.finish()?,
-        deviation,
+        deviation: remarks.deviation,
+        made: remarks.made(),
         // Texts are written from f32 as a rule.
         rounding: ROUNDING_32,
     })
