@@ -338,3 +338,58 @@ fn far_solid_does_not_loosen_the_tolerance_of_others() {
     assert_eq!(code, 1, "{out}{err}");
     assert!(out.contains("told t 7.4, exactly t 7.0"), "{out}");
 }
+
+/// Rays to points of the scene's box hardly ever meet small solids far apart.
+#[test]
+fn small_solids_missing_beside_a_floor_and_far_apart_are_found() {
+    let small = |x: u32, y: u32| {
+        format!("[[cylinder]]\np0 = [{x}, {y}, 0]\np1 = [{x}, {y}, 0.2]\nradius = 0.01\n")
+    };
+    let floor = "[[cuboid]]\nhalf_widths = [1000, 1000, 1]\ncenter = [0, 0, -1]\n";
+    let beside_a_floor = format!("{}{}{floor}", small(0, 0), small(100, 0));
+    let apart = [(0, 0), (30, 0), (0, 50), (100, 0)].map(|(x, y)| small(x, y));
+    for (scene, of_one) in [(beside_a_floor, 2), (apart.concat(), 4)] {
+        let folder = folder_of(&[("scene.toml", scene.as_str())]);
+        let made = [
+            "tessellate",
+            "scene.toml",
+            "-o",
+            "m.obj",
+            "--segments",
+            "16",
+        ];
+        assert_eq!(cyltrace(folder.path(), &made).0, 0);
+        let text = fs::read_to_string(folder.path().join("m.obj")).expect("reading the mesh");
+        let (code, output) = checked(folder.path(), "whole.obj", text.as_bytes(), &[]);
+        assert_eq!(code, 0, "{output}");
+        // The faces of the last cylinder, whose vertices come last but for the floor's eight.
+        let faces = text.lines().filter(|line| line.starts_with("f ")).count();
+        let solid = (faces - 12 * usize::from(of_one == 2)) / of_one;
+        let first = (of_one - 1) * solid;
+        let mut number = 0;
+        let kept: String = text
+            .lines()
+            .filter(|line| {
+                number += usize::from(line.starts_with("f "));
+                !line.starts_with("f ") || !(first < number && number <= first + solid)
+            })
+            .map(|line| format!("{line}\n"))
+            .collect();
+        let (code, output) = checked(folder.path(), "lacks.obj", kept.as_bytes(), &[]);
+        assert_eq!(code, 1, "{output}");
+    }
+}
+
+#[test]
+fn mesh_that_no_ray_could_meet_is_not_said_to_hold() {
+    let folder = folder_of(&[
+        ("scene.toml", SCENE),
+        ("away.csv", "ox,oy,oz,dx,dy,dz\n9,9,9,1,0,0\n"),
+    ]);
+    let away = ["--deviation", DEVIATION, "--rays", "away.csv"];
+    fs::write(folder.path().join("m.obj"), obj(&mesh())).expect("writing the mesh");
+    let arguments = ["check", "scene.toml", "--mesh", "m.obj"];
+    let (code, out, err) = cyltrace(folder.path(), &[&arguments[..], &away].concat());
+    assert_eq!(code, 1, "{out}{err}");
+    assert!((out + &err).contains("no ray hits a solid"));
+}

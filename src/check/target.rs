@@ -159,6 +159,14 @@ impl Outline {
         self.across[0] * cos + self.across[1] * sin
     }
 
+    /// A random point of the solid.
+    fn any_point(&self, random: &mut Random) -> DVec3 {
+        let outward = self.outward(random);
+        let radii = random.unit().sqrt();
+        let height = self.length * random.unit();
+        self.point_within(height, outward, radii)
+    }
+
     /// The point at a height, so many radii of the wall there from the axis.
     fn point_within(&self, height: f64, outward: DVec3, radii: f64) -> DVec3 {
         let (radius, _) = self.wall(height, outward);
@@ -171,6 +179,11 @@ impl Outline {
         let along = self.axis - normal * self.axis.dot(normal);
         normal.cross(self.axis) * around + along * up
     }
+}
+
+/// A random point of a solid, in its own space.
+pub(super) fn any_point_of(solid: &AnySolid, random: &mut Random) -> DVec3 {
+    Outline::new(solid).any_point(random)
 }
 
 impl<'a> Target<'a> {
@@ -207,10 +220,7 @@ impl<'a> Target<'a> {
 
     /// A random point of the solid, in the world.
     pub fn any_point(&self, random: &mut Random) -> DVec3 {
-        let outward = self.outline.outward(random);
-        let radii = random.unit().sqrt();
-        let height = self.outline.length * random.unit();
-        self.world_point(self.outline.point_within(height, outward, radii))
+        self.world_point(self.outline.any_point(random))
     }
 
     /// A random point of a solid a quarter thicker and longer, in the world.

@@ -216,6 +216,11 @@ impl Agreement {
         if self.rays == 0 {
             return Some(String::from("there is no ray to compare"));
         }
+        if self.hits == 0 && self.witness == Witness::UserMesh {
+            return Some(String::from(
+                "no ray hits a solid, so nothing is known of the mesh",
+            ));
+        }
         if self.is_any_lost || self.coarse > 0 {
             return Some(format!(
                 "the tolerance reaches the radius of a solid, which no answer could then be proven wrong about: it is {} at most, the least radius is {}, and {} of {} rays hit such a solid",

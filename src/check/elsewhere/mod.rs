@@ -6,6 +6,7 @@ mod depth;
 pub(in crate::check) mod deviation;
 mod met;
 mod nearness;
+pub(in crate::check) mod rays_around;
 mod surfaces;
 pub(in crate::check) mod tolerance;
 mod triangle;

@@ -22,7 +22,7 @@ use super::tolerance::Tolerance;
 use super::triangle::ShearedRay;
 use super::user_hits::in_blocks;
 use crate::check::{Progress, Witness};
-use crate::math::{Bounds, Random, Ray};
+use crate::math::{Bounds, Ray};
 use crate::solid::tessellation::Mesh;
 use crate::tracer::Tracer;
 
@@ -239,22 +239,4 @@ pub fn compare_mesh(
             agreement.add((tracer, &surfaces), index, ray, told, most_listed);
         },
     )
-}
-
-/// The rays of class `around`: from a sphere of twice the scene's radius to points of its box.
-#[must_use]
-pub fn rays_around(tracer: &Tracer, seed: u64, count: u64) -> Vec<Ray> {
-    let bounds = tracer.bounds();
-    if bounds.is_empty() {
-        return Vec::new();
-    }
-    let (centre, extent) = (bounds.centre(), bounds.extent());
-    (0..count)
-        .map(|index| {
-            let mut random = Random::new(seed, index);
-            let origin = centre + random.direction() * extent.length();
-            let part = DVec3::new(random.unit(), random.unit(), random.unit());
-            Ray::new(origin, bounds.lower + extent * part - origin)
-        })
-        .collect()
 }
