@@ -41,19 +41,23 @@ pub fn check(drawn: &DrawnScene) {
     }
     let placed = placed_solids(&drawn.scene);
     let (truth, compositions) = (Truth::new(&placed), Compositions::new(drawn));
-    for ray in &drawn.rays {
+    for (number, ray) in drawn.rays.iter().enumerate() {
         let answers = tracers.iter().map(|tracer| single(tracer, ray));
         let answers: Vec<Vec<Hit>> = answers.collect();
         assert_eq!(answers[0], answers[1], "layouts differ, {ray:?} {drawn:#?}");
-        truth.judge(ray, &answers[0], drawn);
-    }
-    for ray in drawn.rays.iter().take(MOST_LINES) {
         let line = Ray {
             t_min: f64::NEG_INFINITY,
             t_max: f64::INFINITY,
             ..*ray
         };
-        compositions.judge(&line, &single(&tracers[0], &line));
+        let of_line = single(&tracers[0], &line);
+        if of_line.len() < MOST_HITS {
+            assert_in_range(ray, &answers[0], &of_line);
+        }
+        truth.judge(&line, &of_line, drawn);
+        if number < MOST_LINES {
+            compositions.judge(&line, &of_line);
+        }
     }
     for tracer in &tracers {
         batch(tracer, drawn);
@@ -103,6 +107,16 @@ fn single(tracer: &Tracer, ray: &Ray) -> Vec<Hit> {
         .is_sorted_by(|one, next| one.t < next.t || (one.t == next.t && place(one) <= place(next)));
     assert!(is_sorted, "not in order: {ray:?}");
     all
+}
+
+/// The hits of a ray are those of its line in the ray's range, but that a ray that starts
+/// within a surface hits it there.
+fn assert_in_range(ray: &Ray, hits: &[Hit], of_line: &[Hit]) {
+    let is_in_range = |hit: &&Hit| ray.t_min <= hit.t && hit.t <= ray.t_max;
+    let expected: Vec<&Hit> = of_line.iter().filter(is_in_range).collect();
+    let is_start = |hit: &&Hit| hit.t == ray.t_min && !expected.contains(hit);
+    let found: Vec<&Hit> = hits.iter().filter(|hit| !is_start(hit)).collect();
+    assert_eq!(found, expected, "range of {ray:?}");
 }
 
 /// Batches answer as single rays do.
