@@ -1,4 +1,5 @@
-//! `cyltrace check --mesh` and `--hits` with what could make them say "holds" by mistake.
+//! `cyltrace check --mesh` and `--hits` with inputs that could make them report "holds" by
+//! mistake.
 
 #[path = "support/program.rs"]
 mod program;
@@ -265,7 +266,7 @@ fn bad_meshes_are_refused_with_file_and_line() {
     }
 }
 
-/// Two rays that hit and one that misses, and what another program says of them.
+/// Checks rays against the hits of another program.
 fn hits(rays: &str, hits: &str, more: &[&str]) -> (i32, String) {
     let rays = format!("ox,oy,oz,dx,dy,dz\n{rays}");
     let hits = format!("hit,t\n{hits}");

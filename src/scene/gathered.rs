@@ -180,7 +180,7 @@ impl Gathered {
         }
     }
 
-    /// Says that the numbers from `first` on come from a file.
+    /// Records that the numbers from `first` on come from a file.
     pub fn came_from(&mut self, file: &str, is_table: bool, first: u32) {
         self.origins.add(file, is_table, first, self.numbers);
     }

@@ -3,7 +3,8 @@
 //! The readers are ours because an error has to name its line, and a header that promises
 //! more than the file contains must not be believed: nothing is reserved for what has not
 //! been seen. Each one parses bytes, in time and memory that grow with their number alone,
-//! and accepts any bytes. `docs/formats.md` says what is read, ignored and refused.
+//! and any bytes end in a mesh or an error. `docs/formats.md` lists what is read, ignored and
+//! refused.
 
 mod builder;
 mod error;
@@ -31,14 +32,14 @@ pub struct MeshFile {
     /// The triangles; a polygon is a fan of them.
     pub mesh: Mesh,
     /// How far the mesh may be from the solids' surface, in scene units, where a
-    /// comment says `deviation X`, as those of `cyltrace tessellate` do.
+    /// comment contains `deviation X`, as those of `cyltrace tessellate` do.
     pub deviation: Option<f64>,
     /// How far the format rounds a coordinate, as a share of it: 2^-24 where coordinates are
     /// stored as f32, 0 for f64 and for text.
     pub rounding: f64,
 }
 
-/// Reads a mesh; the file's name says which kind it is.
+/// Reads a mesh in the format that the file's name ends in.
 ///
 /// # Errors
 /// When the name ends in none of `.stl`, `.obj` and `.ply`, the file cannot be read, is larger
