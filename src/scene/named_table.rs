@@ -74,8 +74,8 @@ impl<'a> Tables<'a> {
         })
     }
 
-    /// Takes some of the memory for what could not be counted beforehand; false if less
-    /// is left.
+    /// Takes some of the memory for what could not be counted beforehand; returns false
+    /// if less is left.
     pub fn take(&self, bytes: u64) -> bool {
         let left = self.memory.get().checked_sub(bytes);
         self.memory.set(left.unwrap_or(0));

@@ -1,4 +1,4 @@
-//! Files that are read as a whole: regular ones, up to a size.
+//! Reads whole files: regular ones, up to a size.
 
 use std::fs::{self, File};
 use std::io::{self, Read};

@@ -270,7 +270,7 @@ impl Layout {
         }
     }
 
-    /// What to say of the columns that nobody reads, `None` where there are none.
+    /// A note on the columns that are not read, `None` if there are none.
     #[must_use]
     pub fn unread(&self, read: &[Column]) -> Option<String> {
         const MOST_NAMED: usize = 20;
