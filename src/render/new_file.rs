@@ -60,7 +60,7 @@ pub enum FileError {
 /// reached, nothing of it stays.
 #[derive(Debug)]
 pub struct NewFile {
-    /// The file as asked for, which errors name.
+    /// The file as the user stated it, which errors name.
     path: PathBuf,
     /// The same without symbolic links.
     target: PathBuf,

@@ -30,7 +30,7 @@ pub(super) struct Gathered {
     pub skipped: u64,
     /// At least the size of every coordinate of a point of the solids.
     pub reach: f64,
-    /// What a user may want to know of the files.
+    /// Notes on the files for the user.
     pub notes: Vec<String>,
     /// The files that they come from.
     pub origins: Origins,

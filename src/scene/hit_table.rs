@@ -36,7 +36,7 @@ pub struct GivenHit {
     pub line: u64,
 }
 
-/// All rows of a table, and what to say of columns that are not read.
+/// All rows of a table, and a note on columns that are not read.
 #[derive(Debug)]
 pub struct GivenHits {
     /// One a ray.

@@ -194,7 +194,7 @@ impl<R: NumberRow> NumberColumns<R> {
         R::of(&values[..R::NAMES.len()]).map_err(|message| row.error(None, message))
     }
 
-    /// What to say of the columns that are not read.
+    /// A note on the columns that are not read.
     #[must_use]
     pub fn unread(&self) -> Option<String> {
         let read: Vec<Column> = self.columns.iter().map(|(_, column)| *column).collect();

@@ -1,4 +1,4 @@
-//! Refuses texts in XML that take more than their length to read.
+//! Refuses texts in XML that take more time to read than is linear in their length.
 //!
 //! The parser compares each attribute of an element with those before it, and an element
 //! that declares a namespace copies those of the elements around it. So the attributes of an

@@ -256,7 +256,7 @@ impl Layout {
 
     fn missing_help(&self, name: &str) -> String {
         if self.header.is_empty() {
-            return "its first line holds numbers: a header with the names of the columns is needed, or columns by their numbers from 0".to_owned();
+            return "its first line contains numbers: a header with the names of the columns is needed, or columns by their numbers from 0".to_owned();
         }
         suggestion(name, self.header.iter().map(String::as_str), "columns")
     }
