@@ -9,8 +9,8 @@
  *
  * Errors. A function that can fail answers CYLTRACE_ERROR or NULL and leaves a
  * message for cyltrace_last_error. A null pointer is refused with such a message
- * wherever nothing else is said, and so is an array that is not aligned, a count of
- * elements that no memory has room for, and a setting beyond its limit; so is a panic within the library, which does not
+ * wherever nothing else is said; so is an array that is not aligned, a count of elements
+ * that exceeds the address space, a setting beyond its limit, and a panic within the library, which does not
  * cross this interface. (A panic in a callback of Embree's ends the process.)
  *
  * Threads. All functions may be called from any number of threads at once,

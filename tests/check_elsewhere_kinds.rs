@@ -3,12 +3,9 @@
 
 mod support;
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use cyltrace::check::{
-    Agreement, Deviation, F32_TOLERANCE, TracedMesh, compare_hits, compare_mesh, rays_around,
-};
+use cyltrace::check::{Agreement, F32_TOLERANCE, compare_hits, rays_around};
 use cyltrace::math::{Orientation, Ray};
 use cyltrace::scene::{MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, SolidRecord};
 use cyltrace::solid::tessellation::{Fit, Mesh, deviation_of, mesh_of};
@@ -17,6 +14,7 @@ use cyltrace::solid::{
 };
 use cyltrace::tracer::{Options, Tracer};
 use glam::{DAffine3, DMat3, DVec3};
+use support::meshes::{compared_with, go_on};
 use support::solids::prototype_of;
 
 const RAYS: u64 = 5_000;
@@ -95,10 +93,6 @@ fn scene_of_composed() -> Arc<Scene> {
 
 fn tracer(scene: Arc<Scene>) -> Tracer {
     Tracer::new(scene, &Options::default()).expect("a tracer")
-}
-
-fn go_on(_: u64, _: u64, _: &str) -> ControlFlow<()> {
-    ControlFlow::Continue(())
 }
 
 /// What is found where `told` tells of each ray's exact answer.
@@ -199,24 +193,8 @@ fn meshes(scene: &Scene, segments: u32, fit: Fit) -> (Vec<Mesh>, f64) {
     (all, deviation)
 }
 
-fn verdict(tracer: &Tracer, meshes: &[Mesh], deviation: f64) -> Agreement {
-    let mut whole = Mesh::default();
-    meshes.iter().for_each(|one| whole.append(one));
-    let mesh = TracedMesh::new(&whole);
-    let rays = rays_around(tracer, 0, RAYS);
-    compare_mesh(
-        tracer,
-        &mesh,
-        ("around", &rays),
-        (Deviation::Everywhere(deviation), 0.0),
-        3,
-        &go_on,
-    )
-    .expect("an end")
-}
-
 #[test]
-fn right_meshes_of_every_kind_agree_and_wrong_ones_are_told() {
+fn right_meshes_of_every_kind_agree_and_wrong_ones_do_not() {
     for solids in kinds() {
         let what = solids[0].kind().name();
         let scene = scene(prototype_of(&solids));
@@ -224,7 +202,7 @@ fn right_meshes_of_every_kind_agree_and_wrong_ones_are_told() {
         for segments in [12, 48] {
             for fit in [Fit::Inscribed, Fit::Circumscribed] {
                 let (meshes, deviation) = meshes(&scene, segments, fit);
-                let found = verdict(&tracer, &meshes, deviation);
+                let found = compared_with(&tracer, &meshes, (0, RAYS), deviation);
                 let what = format!("{what} {segments} {fit:?}");
                 assert_eq!(found.disagreements, 0, "{what}: {:?}", found.listed);
                 let share = found.silhouette as f64 / RAYS as f64;
@@ -236,7 +214,7 @@ fn right_meshes_of_every_kind_agree_and_wrong_ones_are_told() {
         for missing in 0..right.len() {
             let mut some = right.clone();
             some.remove(missing);
-            let found = verdict(&tracer, &some, deviation).disagreements;
+            let found = compared_with(&tracer, &some, (0, RAYS), deviation).disagreements;
             println!("{what} without {missing}: {found}");
             assert!(found > RAYS / 100, "{what} without {missing}: {found}");
             // Moved by some deviations, it is told as well.
@@ -244,7 +222,7 @@ fn right_meshes_of_every_kind_agree_and_wrong_ones_are_told() {
             for vertex in &mut moved[missing].vertices {
                 *vertex += DVec3::new(0.1, 0.1, 0.1);
             }
-            let found = verdict(&tracer, &moved, deviation).disagreements;
+            let found = compared_with(&tracer, &moved, (0, RAYS), deviation).disagreements;
             assert!(found > RAYS / 100, "{what}: {missing} moved: {found}");
         }
     }

@@ -1,15 +1,17 @@
 //! Verdicts on meshes and hits from elsewhere: none is false, and real defects
 //! are found.
 
-use std::ops::ControlFlow;
+mod support;
+
 use std::path::Path;
 use std::sync::Arc;
 
-use cyltrace::check::{Agreement, Deviation, TracedMesh, compare_hits, compare_mesh, rays_around};
+use cyltrace::check::{compare_hits, rays_around};
 use cyltrace::scene::{Scene, load};
 use cyltrace::solid::tessellation::{Fit, Mesh, deviation_of, mesh_of};
 use cyltrace::tracer::{Options, Tracer};
 use glam::DVec3;
+use support::meshes::{compared_with, go_on};
 
 const RAYS: u64 = 20_000;
 
@@ -33,23 +35,6 @@ fn meshes(scene: &Scene, segments: u32, fit: Fit) -> (Vec<Mesh>, f64) {
     (meshes.collect(), deviations.fold(0.0, f64::max))
 }
 
-fn verdict(tracer: &Tracer, meshes: &[Mesh], seed: u64, deviation: f64) -> Agreement {
-    let mut whole = Mesh::default();
-    meshes.iter().for_each(|one| whole.append(one));
-    let mesh = TracedMesh::new(&whole);
-    let rays = rays_around(tracer, seed, RAYS);
-    let go_on = |_: u64, _: u64, _: &str| ControlFlow::Continue(());
-    compare_mesh(
-        tracer,
-        &mesh,
-        ("around", &rays),
-        (Deviation::Everywhere(deviation), 0.0),
-        3,
-        &go_on,
-    )
-    .expect("an end")
-}
-
 #[test]
 fn right_meshes_are_never_called_wrong() {
     let scene = scene();
@@ -58,7 +43,7 @@ fn right_meshes_are_never_called_wrong() {
         for fit in [Fit::Inscribed, Fit::Circumscribed] {
             let (meshes, deviation) = meshes(&scene, segments, fit);
             for seed in 0..3 {
-                let found = verdict(&tracer, &meshes, seed, deviation);
+                let found = compared_with(&tracer, &meshes, (seed, RAYS), deviation);
                 assert_eq!(found.rays, RAYS);
                 assert_eq!(
                     found.disagreements, 0,
@@ -80,7 +65,7 @@ fn moved_vertex_is_found() {
     let (mut meshes, deviation) = meshes(&scene, 32, Fit::Inscribed);
     // Of the drum, outward.
     meshes[3].vertices[0] += DVec3::new(10.0 * deviation, 0.0, 0.0);
-    let found = verdict(&tracer, &meshes, 0, deviation);
+    let found = compared_with(&tracer, &meshes, (0, RAYS), deviation);
     assert!(found.disagreements > 0);
     println!("moved vertex: {}", found.disagreements);
 }
@@ -92,7 +77,7 @@ fn missing_cylinder_is_found() {
     for missing in 0..4 {
         let (mut meshes, deviation) = meshes(&scene, 32, Fit::Inscribed);
         meshes.remove(missing);
-        let found = verdict(&tracer, &meshes, 0, deviation);
+        let found = compared_with(&tracer, &meshes, (0, RAYS), deviation);
         println!("without {missing}: {}", found.disagreements);
         assert!(found.disagreements > RAYS / 100, "{missing}");
     }
@@ -107,7 +92,6 @@ fn hits_off_by_a_thousandth_are_found() {
         let hits = rays.iter().map(|ray| tracer.closest(ray));
         hits.map(|hit| hit.map(|hit| hit.t * factor)).collect()
     };
-    let go_on = |_: u64, _: u64, _: &str| ControlFlow::Continue(());
     for factor in [1.0 - 1e-3, 1.0 + 1e-3] {
         let found = compare_hits(
             &tracer,

@@ -1,4 +1,5 @@
-//! `cyltrace check --mesh` and `--hits` with what could make them say "holds" by mistake.
+//! `cyltrace check --mesh` and `--hits` with inputs that could make them report "holds" by
+//! mistake.
 
 #[path = "support/program.rs"]
 mod program;
@@ -265,12 +266,17 @@ fn bad_meshes_are_refused_with_file_and_line() {
     }
 }
 
-/// Two rays that hit and one that misses, and what another program says of them.
+/// Checks rays against the hits of another program.
 fn hits(rays: &str, hits: &str, more: &[&str]) -> (i32, String) {
+    hits_in(SCENE, rays, hits, more)
+}
+
+/// The same in another scene.
+fn hits_in(scene: &str, rays: &str, hits: &str, more: &[&str]) -> (i32, String) {
     let rays = format!("ox,oy,oz,dx,dy,dz\n{rays}");
     let hits = format!("hit,t\n{hits}");
     let folder = folder_of(&[
-        ("scene.toml", SCENE),
+        ("scene.toml", scene),
         ("rays.csv", &rays),
         ("hits.csv", &hits),
     ]);
@@ -320,23 +326,9 @@ fn tiny_directions_are_no_excuse() {
 #[test]
 fn far_solid_does_not_loosen_the_tolerance_of_others() {
     let scene = format!("{SCENE}[[sphere]]\ncenter = [1e8, 0, 0]\nradius = 100\n");
-    let files = [
-        ("scene.toml", scene.as_str()),
-        ("rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n"),
-        ("hits.csv", "hit,t\n1,7.4\n"),
-    ];
-    let folder = folder_of(&files);
-    let arguments = [
-        "check",
-        "scene.toml",
-        "--rays",
-        "rays.csv",
-        "--hits",
-        "hits.csv",
-    ];
-    let (code, out, err) = cyltrace(folder.path(), &arguments);
-    assert_eq!(code, 1, "{out}{err}");
-    assert!(out.contains("told t 7.4, exactly t 7.0"), "{out}");
+    let (code, text) = hits_in(&scene, "0,0,9,0,0,-1\n", "1,7.4\n", &[]);
+    assert_eq!(code, 1, "{text}");
+    assert!(text.contains("told t 7.4, exactly t 7.0"), "{text}");
 }
 
 /// Rays to points of the scene's box hardly ever meet small solids far apart.

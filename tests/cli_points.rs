@@ -89,7 +89,7 @@ fn bad_tables_of_points_are_refused_at_their_place() {
         ("x,y\n1,2\n", "points.csv:1: the table has no column \"z\""),
         (
             "1,2,3\n",
-            "points.csv:1: the table has no column \"x\"; its first line holds numbers",
+            "points.csv:1: the table has no column \"x\"; its first line contains numbers",
         ),
         (
             "x,y,z\n1,2,3\n1,2\n",

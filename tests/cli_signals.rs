@@ -1,4 +1,4 @@
-//! Signals: every command ends within a second, whatever it waits for or computes,
+//! Signals: every command ends within a second while it waits or computes,
 //! with the documented exit code and without a file that was not finished.
 //!
 //! A command that does not end fails by its timeout, which is generous, since tests

@@ -271,7 +271,7 @@ fn far_and_huge_placements_change_no_hit() {
 }
 
 /// Clusters and single solids at all distances and of all sizes, placed at all
-/// distances: whatever groups that makes, no hit is lost.
+/// distances: no hit is lost in any grouping.
 #[test]
 fn scenes_of_all_scales_lose_no_hit() {
     let scales = |seed: u64| {

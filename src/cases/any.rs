@@ -8,6 +8,7 @@ use std::str::FromStr;
 
 use super::{
     CuboidFamily, DiskFamily, Family, Inputs, SphereFamily, TaperFamily, TaperSolid, UnknownFamily,
+    family_named,
 };
 use crate::math::Ray;
 use crate::solid::formulations::Problem;
@@ -146,11 +147,7 @@ impl FromStr for AnyFamily {
     type Err = UnknownFamily;
 
     fn from_str(name: &str) -> Result<Self, UnknownFamily> {
-        let found = Self::all().into_iter().find(|family| family.name() == name);
-        found.ok_or_else(|| UnknownFamily {
-            name: name.into(),
-            known: Self::all().into_iter().map(Self::name).collect(),
-        })
+        family_named(name, Self::all(), Self::name)
     }
 }
 

@@ -73,15 +73,29 @@ pub struct UnknownFamily {
     pub known: Vec<String>,
 }
 
+/// Finds the family with a name among all of its type.
+pub(crate) fn family_named<F: Copy>(
+    name: &str,
+    all: impl IntoIterator<Item = F>,
+    name_of: impl Fn(F) -> String,
+) -> Result<F, UnknownFamily> {
+    let mut known = Vec::new();
+    for family in all {
+        let one = name_of(family);
+        if one == name {
+            return Ok(family);
+        }
+        known.push(one);
+    }
+    let name = name.to_owned();
+    Err(UnknownFamily { name, known })
+}
+
 impl FromStr for Family {
     type Err = UnknownFamily;
 
     fn from_str(name: &str) -> Result<Self, UnknownFamily> {
-        let found = Self::ALL.into_iter().find(|family| family.name() == name);
-        found.ok_or_else(|| UnknownFamily {
-            name: name.into(),
-            known: Self::ALL.map(|family| family.name().to_owned()).into(),
-        })
+        family_named(name, Self::ALL, |family| family.name().to_owned())
     }
 }
 

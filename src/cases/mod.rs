@@ -20,6 +20,7 @@ pub use any::{AnyFamily, Case};
 pub use composed::{ComposedCase, ComposedFamily};
 pub use cuboids::CuboidFamily;
 pub use disks::DiskFamily;
+pub(crate) use families::family_named;
 pub use families::{Family, UnknownFamily};
 pub use spheres::SphereFamily;
 pub use tapers::{TaperCase, TaperFamily, TaperSolid};

@@ -1,8 +1,8 @@
 //! The program's allocator: the system's, which it counts and limits.
 //!
 //! A scene's records are estimated before they are made (`limit.rs`), but what a parser
-//! needs on the way is only known when it asks for it. So while a scene is read and
-//! parsed, what is allocated in all may not exceed a limit. And where the system itself
+//! needs on the way is known only when it allocates it. So while a scene is read and
+//! parsed, all allocations together may not exceed a limit. And where the system itself
 //! refuses, as under `ulimit -v`, Rust would abort. In both cases the program prints
 //! which limit was exceeded, removes temporary files and ends with exit code 2.
 //!
@@ -24,11 +24,12 @@ use std::thread;
 use super::COULD_NOT_RUN;
 use super::ending::{end_now, end_without_memory};
 
-/// Bytes that a thread counts before it adds them to the total.
+/// Bytes that a thread counts before it adds them to the total, 64 KiB: less makes
+/// threads wait for each other more often, more makes the total less exact.
 const SHARE: i64 = 64 << 10;
 
-/// Bytes that reading may take beyond its limit: buffers and threads, which every
-/// command has whatever the scene is.
+/// Bytes that reading may take beyond its limit, 16 MiB: buffers and threads, which
+/// every command needs for any scene.
 const ALLOWANCE: i64 = 16 << 20;
 
 /// No limit.
@@ -40,7 +41,7 @@ static TOTAL: AtomicI64 = AtomicI64::new(0);
 /// The total that may not be exceeded.
 static LIMIT: AtomicI64 = AtomicI64::new(NONE);
 
-/// What is said when it is exceeded.
+/// The error message for an exceeded limit.
 static REFUSAL: Mutex<String> = Mutex::new(String::new());
 
 thread_local! {
@@ -78,25 +79,28 @@ impl Drop for AllocationLimit {
 unsafe impl GlobalAlloc for LimitedAllocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count(signed(layout.size()));
-        // SAFETY: the caller's promise is the one that is asked for.
+        // SAFETY: `layout` has a size above 0, as our caller guarantees.
         available(unsafe { System.alloc(layout) }, layout.size())
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         count(signed(layout.size()));
-        // SAFETY: the caller's promise is the one that is asked for.
+        // SAFETY: `layout` has a size above 0, as our caller guarantees.
         available(unsafe { System.alloc_zeroed(layout) }, layout.size())
     }
 
     unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
         count(-signed(layout.size()));
-        // SAFETY: the caller's promise is the one that is asked for.
+        // SAFETY: `memory` came from `System` with this layout: the functions above and
+        // below return nothing else, and our caller passes both unchanged.
         unsafe { System.dealloc(memory, layout) };
     }
 
     unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         count(signed(size) - signed(layout.size()));
-        // SAFETY: the caller's promise is the one that is asked for.
+        // SAFETY: `memory` came from `System` with this layout, as for `dealloc`; our
+        // caller guarantees that `size` is above 0 and, rounded up to the alignment, at
+        // most `isize::MAX`.
         available(unsafe { System.realloc(memory, layout, size) }, size)
     }
 }

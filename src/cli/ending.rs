@@ -16,7 +16,7 @@ use super::print::print_error;
 const PATIENCE: Duration = Duration::from_millis(150);
 
 /// Removes what was not finished, prints `error: {message}` and ends the program,
-/// whatever its other threads do or wait for.
+/// without waiting for its other threads.
 pub fn end_now(message: &str, code: u8) -> ! {
     // Kept, so that no output is begun or replaced from here on.
     let _unfinished = remove_unfinished(PATIENCE);
@@ -24,8 +24,8 @@ pub fn end_now(message: &str, code: u8) -> ! {
     signal_hook::low_level::exit(i32::from(code));
 }
 
-/// As [`end_now`], where the system has refused `size` bytes. It allocates nothing
-/// that it can do without.
+/// As [`end_now`], where the system has refused `size` bytes. It allocates as little
+/// as possible.
 pub fn end_without_memory(size: usize, code: u8) -> ! {
     let _unfinished = remove_unfinished(PATIENCE);
     print_error(&format_args!(
@@ -47,7 +47,7 @@ fn print_in_time(message: &str) {
         Ok(_) => {
             let _ = is_printed.recv_timeout(PATIENCE);
         }
-        // There is no thread to be had: it is worth the risk to wait.
+        // No thread can be started: better to risk a wait than to lose the message.
         Err(_) => print_error(&message),
     }
 }

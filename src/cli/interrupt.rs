@@ -33,7 +33,7 @@ pub enum Interrupted {
     PartWritten,
 }
 
-/// What is said of a command that did not end by itself.
+/// The error message of a command that did not end by itself.
 const ENDED: &str = "interrupted; outputs that were not finished are as they were before, a stream written so far is incomplete";
 
 /// Set when a command that is writing has to end.

@@ -85,7 +85,7 @@ impl Limit {
     }
 
     /// What the system can give without swapping and within `ulimit -v`, where it
-    /// says so as Linux does.
+    /// reports that as Linux does.
     pub fn available() -> Self {
         let meminfo = fs::read_to_string("/proc/meminfo").ok();
         let free = meminfo.and_then(|text| kibibytes_of(&text, "MemAvailable:"));
@@ -106,8 +106,8 @@ impl Limit {
         AllocationLimit::new(self.bytes.unwrap_or(u64::MAX), refusal)
     }
 
-    /// Refuses a scene that needs more, to read its files or for what becomes of them;
-    /// else says how much is left, where there is a limit.
+    /// Refuses a scene that needs more, to read its files or for its records and trees;
+    /// otherwise returns how much is left, `None` without a limit.
     pub fn check(
         self,
         path: &Path,

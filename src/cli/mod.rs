@@ -60,7 +60,7 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// Runs what the program's arguments ask for.
+/// Runs the command that the program's arguments state.
 fn run_arguments() -> anyhow::Result<u8> {
     arguments()?.map_or(Ok(GOOD), |arguments| run_command(&arguments))
 }

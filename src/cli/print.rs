@@ -27,7 +27,7 @@ pub fn print(text: &str) -> anyhow::Result<()> {
         .map_err(|error| StandardOutputError::of(&error).into())
 }
 
-/// Writes something worth knowing to standard error, unless the command is quiet.
+/// Writes a note to standard error, unless the command is quiet.
 pub fn note(common: &Common, note: &str) {
     if !common.quiet {
         let _ = writeln!(io::stderr(), "note: {note}");

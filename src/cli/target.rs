@@ -70,7 +70,7 @@ impl Write for Target {
     }
 }
 
-/// An error of the same kind that names the file as asked for, not the temporary one.
+/// An error of the same kind that names the file as the user stated it, not the temporary one.
 fn unwritten(path: &Path, source: io::Error) -> io::Error {
     let (kind, path) = (source.kind(), path.into());
     io::Error::new(kind, FileError::System { path, source })

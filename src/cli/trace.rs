@@ -348,7 +348,7 @@ impl Traced {
 }
 
 /// Reads a table in the rayon pool that this is called in, and hands on the
-/// rows of some blocks at a time, in order. Says what is not read of it.
+/// rows of some blocks at a time, in order. Returns a note on the columns that it does not read, if there are any.
 pub fn for_each_batch<R: NumberRow>(
     path: &Path,
     format: &FormatArguments,

@@ -1,8 +1,8 @@
 //! Files that appear only when they are complete.
 //!
 //! What is written goes to a temporary file beside the target, which is
-//! renamed at the end, so that whatever stood there stays whole until the new
-//! file is whole too. Devices and pipes, which cannot be replaced, are written
+//! renamed at the end, so the old file stays whole until the new
+//! one is. Devices and pipes, which cannot be replaced, are written
 //! to directly.
 
 use std::fs::{self, File};
@@ -60,7 +60,7 @@ pub enum FileError {
 /// reached, nothing of it stays.
 #[derive(Debug)]
 pub struct NewFile {
-    /// The file as asked for, which errors name.
+    /// The file as the user stated it, which errors name.
     path: PathBuf,
     /// The same without symbolic links.
     target: PathBuf,

@@ -30,7 +30,7 @@ pub struct Scene {
     pub background: DVec3,
     /// Rows of tables left out because `degenerate = "skip"` was asked for.
     pub skipped_rows: u64,
-    /// What a user may want to know of the files, such as columns that are not read.
+    /// Notes on the files for the user, such as columns that are not read.
     pub notes: Vec<String>,
 }
 

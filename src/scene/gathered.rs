@@ -30,7 +30,7 @@ pub(super) struct Gathered {
     pub skipped: u64,
     /// At least the size of every coordinate of a point of the solids.
     pub reach: f64,
-    /// What a user may want to know of the files.
+    /// Notes on the files for the user.
     pub notes: Vec<String>,
     /// The files that they come from.
     pub origins: Origins,
@@ -180,7 +180,7 @@ impl Gathered {
         }
     }
 
-    /// Says that the numbers from `first` on come from a file.
+    /// Records that the numbers from `first` on come from a file.
     pub fn came_from(&mut self, file: &str, is_table: bool, first: u32) {
         self.origins.add(file, is_table, first, self.numbers);
     }

@@ -36,7 +36,7 @@ pub struct GivenHit {
     pub line: u64,
 }
 
-/// All rows of a table, and what to say of columns that are not read.
+/// All rows of a table, and a note on columns that are not read.
 #[derive(Debug)]
 pub struct GivenHits {
     /// One a ray.
@@ -49,7 +49,7 @@ impl GivenHits {
     /// Reads the table of a file or a pipe, of at most `most` rows and one.
     ///
     /// # Errors
-    /// When it cannot be read, or a row says something else.
+    /// When it cannot be read, or a cell is malformed.
     pub fn open(path: &Path, format: TableFormat, most: usize) -> Result<Self, SceneError> {
         Self::read(input::open(path)?, path, format, most)
     }
@@ -57,7 +57,7 @@ impl GivenHits {
     /// The same from anything; errors call it `path`.
     ///
     /// # Errors
-    /// When it cannot be read, or a row says something else.
+    /// When it cannot be read, or a cell is malformed.
     pub fn read(
         input: impl Read,
         path: &Path,
@@ -75,7 +75,7 @@ impl GivenHits {
         let unread = layout.unread(&known);
         let mut rows = table.rows();
         let mut hits = Vec::new();
-        // One more than there may be says enough.
+        // One more than `most` shows that there are too many.
         while hits.len() <= most {
             let Some(row) = rows.next_row()? else {
                 break;

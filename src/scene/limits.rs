@@ -38,20 +38,21 @@ pub const GREATEST_RAYS: u64 = 1_000_000_000;
 /// with room to spare, and more than 2^20 change no 8-bit colour.
 pub const GREATEST_SAMPLES: u32 = 1 << 20;
 
-/// Most numbers of sides that one check goes through.
+/// Most numbers of sides of one check: each repeats all of its rays.
 pub const MOST_SEGMENT_NUMBERS: usize = 64;
 
-/// Most violations that a check lists.
+/// Most violations that a check lists: some hundred bytes each, and more than anyone reads.
 pub const MOST_LISTED_VIOLATIONS: u64 = 1_000_000;
 
-/// Most cases of a family that `stress` and `bench accuracy` make.
+/// Most cases of a family that `stress` and `bench accuracy` make: some hours.
 pub const GREATEST_CASES: u64 = 10_000_000;
 
-/// Most rays of a kind that `bench` traces: with their answers some gigabytes.
+/// Most rays of a kind that `bench` traces: with their hits some gigabytes.
 pub const GREATEST_TIMED_RAYS: u64 = 10_000_000;
 
-/// Most samples of a time that `bench` takes.
+/// Most samples of a time that `bench` takes: its intervals are stable with a thousand.
 pub const GREATEST_ROUNDS: u64 = 100_000;
+
 /// Most bytes of a mesh file, 2^32: some 30 million triangles of OBJ, 80 million of binary
 /// STL.
 pub const MOST_MESH_BYTES: u64 = 1 << 32;
@@ -62,40 +63,45 @@ pub const GREATEST_MESH_COORDINATE: f64 = crate::solid::Cylinder::GREATEST;
 /// Most bytes of the header of a PLY file, 2^20: headers in use have less than a thousand.
 pub const MOST_PLY_HEADER_BYTES: usize = 1 << 20;
 
-/// Most properties of all elements of a PLY file together.
+/// Most properties of all elements of a PLY file together, 2^12: files in use have less than
+/// a hundred.
 pub const MOST_PLY_PROPERTIES: usize = 1 << 12;
 
-/// Most corners of a face of a mesh, 2^20.
+/// Most corners of a face of a mesh, 2^20: a face is stored whole before it is split.
 pub const MOST_FACE_CORNERS: usize = 1 << 20;
 
 /// Most bytes of a part of a 3MF file, unpacked, 2^30: some 16 million beams.
 pub(super) const MOST_PART_BYTES: u64 = 1 << 30;
 
-/// Most elements and texts of a part of a 3MF file, 2^26, of which each takes some 100 bytes
-/// while it is read.
+/// Most elements and texts of a part of a 3MF file, 2^26: each takes some 100 bytes while
+/// the part is read.
 pub(super) const MOST_XML_NODES: u32 = 1 << 26;
 
-/// Most attributes of an element of a 3MF file. Its format knows at most 12 for one.
+/// Most attributes of an element of a 3MF file. The format defines at most 12 for one; the
+/// parser's time is quadratic in them.
 pub(super) const MOST_ATTRIBUTES: usize = 256;
 
-/// Most prefixes of namespaces that a part of a 3MF file declares.
+/// Most prefixes of namespaces that a part of a 3MF file declares: the parser searches all
+/// of them for each name.
 pub(super) const MOST_NAMESPACES: usize = 256;
 
 /// Most places of the objects of a 3MF file, 2^20: components of components may otherwise be
 /// as many as a file states.
 pub(super) const MOST_PLACES: usize = 1 << 20;
+
 /// Most bytes of a table or a neuron, 2^40: enough for 10^10 rows.
 pub const GREATEST_TABLE_BYTES: u64 = 1 << 40;
 
 /// Most bytes of a row of a table or a neuron, 2^24. A row is read as a whole, so
-/// that this is what a line without an end takes before it is refused.
+/// that a line without an end takes this much memory before it is refused.
 pub const LONGEST_LINE: usize = 1 << 24;
 
 /// Most cells of a row, 2^14: as many columns as a sheet of Excel has.
 pub const MOST_COLUMNS: usize = 1 << 14;
 
-/// Most bytes of a cell that holds a number, 2^16.
+/// Most bytes of a cell with a number, 2^16: the exact digits of any f64 take 1100.
 pub const LONGEST_NUMBER: usize = 1 << 16;
 
-/// How long a named pipe may be without a program that writes to it.
+/// How long a named pipe may be without a program that writes to it: enough for a shell to
+/// start one, and an error before a user gives up.
 pub const PIPE_PATIENCE: std::time::Duration = std::time::Duration::from_secs(5);

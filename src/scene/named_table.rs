@@ -1,5 +1,5 @@
-//! Tables that a scene file names: how they are opened, how their columns are found,
-//! and what they take of the memory.
+//! Tables that a scene file names: opens them, finds their columns and limits their
+//! memory.
 
 use std::cell::{Cell, RefCell};
 use std::fs::File;
@@ -16,12 +16,12 @@ use super::table::{Column, ColumnKey, Decimal, Delimiter, Row, Rows, Table, Tabl
 /// What all tables of a scene file share.
 pub(super) struct Tables<'a> {
     pub source: &'a Source,
-    /// Bytes for the rows of pipes, which nobody can count ahead.
+    /// Bytes left for the rows of pipes, which cannot be counted beforehand.
     memory: Cell<u64>,
     notes: RefCell<Vec<String>>,
 }
 
-/// What a scene file says of a table.
+/// The keys of a table in a scene file.
 #[derive(Clone, Copy)]
 pub(super) struct TableKeys<'a> {
     pub file: &'a Spanned<String>,
@@ -38,7 +38,8 @@ pub(super) struct NamedTable<'a> {
 }
 
 impl<'a> Tables<'a> {
-    /// Those of a file, with so many bytes for what is not counted ahead.
+    /// The tables of a scene file, with `memory` bytes for rows that cannot be counted
+    /// beforehand.
     pub fn new(source: &'a Source, memory: Option<u64>) -> Self {
         Self {
             source,
@@ -47,7 +48,7 @@ impl<'a> Tables<'a> {
         }
     }
 
-    /// Opens a table for the columns that it is wanted for.
+    /// Opens a table to read the `wanted` columns.
     pub fn open(
         &'a self,
         keys: TableKeys,
@@ -73,15 +74,15 @@ impl<'a> Tables<'a> {
         })
     }
 
-    /// Takes some of the memory for what nobody could count ahead; false where no more is
-    /// left.
+    /// Takes some of the memory for what could not be counted beforehand; returns false
+    /// if less is left.
     pub fn take(&self, bytes: u64) -> bool {
         let left = self.memory.get().checked_sub(bytes);
         self.memory.set(left.unwrap_or(0));
         left.is_some()
     }
 
-    /// That a row of a pipe has no memory left.
+    /// The error for a row of a pipe without memory.
     pub fn refused(&self, path: &Path, line: u64) -> SceneError {
         SceneError::Row {
             path: path.to_owned(),
@@ -92,7 +93,7 @@ impl<'a> Tables<'a> {
         }
     }
 
-    /// Keeps something that a user may want to know of the files.
+    /// Keeps a note for the user.
     pub fn note(&self, note: String) {
         self.notes.borrow_mut().push(note);
     }
@@ -141,13 +142,13 @@ impl NamedTable<'_> {
         usize::try_from(lines).unwrap_or(0)
     }
 
-    /// The next row, which will be kept as a record of so many bytes.
+    /// The next row, which will be kept as a record of `record_bytes`.
     pub fn next_row(&mut self, record_bytes: usize) -> Result<Option<Row<'_>>, SceneError> {
         let Some(row) = self.rows.next_row()? else {
             return Ok(None);
         };
         if self.lines.is_none() {
-            // A list that grows is there twice while it is moved.
+            // A list that grows is in memory twice while it is moved.
             if !self.tables.take(2 * record_bytes as u64) {
                 return Err(self.tables.refused(row.path(), row.line));
             }

@@ -14,10 +14,10 @@ use super::error::SceneError;
 use super::table::{Block, Column, ColumnKey, Layout, Row, Table, TableFormat, input};
 use crate::math::Ray;
 
-/// What a row of numbers says.
+/// A value that a row of numbers states.
 pub trait NumberRow: Sized + Send {
-    /// The columns' names: first those that hold finite numbers and must be there, then
-    /// those that may be absent.
+    /// The columns' names: first those that contain finite numbers and must be present,
+    /// then those that may be absent.
     const NAMES: &'static [&'static str];
 
     /// Columns that a table must have.
@@ -26,7 +26,7 @@ pub trait NumberRow: Sized + Send {
     /// The values of the columns that are absent.
     const DEFAULTS: &'static [f64];
 
-    /// The row of numbers, one a column.
+    /// The value of a row of numbers, one a column.
     ///
     /// # Errors
     /// What is wrong with them.
@@ -82,10 +82,10 @@ pub struct NumberTable<R, I = Box<dyn Read>> {
     columns: NumberColumns<R>,
 }
 
-/// Which columns of a table hold what.
+/// Which columns of a table contain which numbers.
 pub struct NumberColumns<R> {
     layout: Layout,
-    /// Those that are there, each by its position in [`NumberRow::NAMES`].
+    /// Those that are present, each by its position in [`NumberRow::NAMES`].
     columns: Vec<(usize, Column)>,
     row: PhantomData<fn() -> R>,
 }
@@ -194,7 +194,7 @@ impl<R: NumberRow> NumberColumns<R> {
         R::of(&values[..R::NAMES.len()]).map_err(|message| row.error(None, message))
     }
 
-    /// What to say of the columns that are not read.
+    /// A note on the columns that are not read.
     #[must_use]
     pub fn unread(&self) -> Option<String> {
         let read: Vec<Column> = self.columns.iter().map(|(_, column)| *column).collect();

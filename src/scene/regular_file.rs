@@ -1,4 +1,4 @@
-//! Files that are read as a whole: regular ones, up to a size.
+//! Reads whole files: regular ones, up to a size.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -8,7 +8,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// When it cannot be read, has more than `greatest` bytes, or is no regular file: a
-/// device may never end, and opening a pipe waits for somebody to write.
+/// device may never end, and opening a pipe waits for a writer.
 pub(super) fn read_regular(path: &Path, greatest: u64) -> io::Result<Vec<u8>> {
     let found = fs::metadata(path)?;
     if !found.is_file() {

@@ -182,7 +182,7 @@ impl SceneFile {
         self.load_within(None)
     }
 
-    /// The same, with so many bytes of memory for the records of pipes, whose rows
+    /// The same, with at most `memory` bytes for the records of pipes, whose rows
     /// [`SceneFile::contents`] cannot count; `None` sets no limit.
     ///
     /// # Errors

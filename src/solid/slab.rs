@@ -10,7 +10,7 @@
 //! Where the line is so nearly across the axis that `t * slope` rounds away between
 //! the roots, `y` does not say where it comes through a plane: an error of an ulp of
 //! the height is one of an ulp over the slope in `t`, which may be any number. So the
-//! `t` of a disc is held between the roots of the wall. It is there without rounding.
+//! `t` of a disc is clamped between the roots of the wall. It is there without rounding.
 
 use super::chord::{Chord, ChordEnd, Meeting};
 use super::{Caps, Crossing, Part};

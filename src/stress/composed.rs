@@ -27,7 +27,7 @@ pub struct ComposedWitness {
 }
 
 impl ComposedWitness {
-    /// Asks the oracle.
+    /// Computes the truth by the oracle.
     #[must_use]
     pub fn new(case: &ComposedCase) -> Self {
         let truth = ComposedTruth::new(&case.composition);
@@ -55,7 +55,7 @@ pub(super) fn run_block(
     figures
 }
 
-/// What is right and wrong in the answers to a case.
+/// Which of the solver's answers to a case are wrong.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Verdict {
     /// Whether the ray truly hits.

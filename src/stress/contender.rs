@@ -66,7 +66,7 @@ impl Contender {
         }
     }
 
-    /// Whether it answers the cases of a family.
+    /// Whether it solves the cases of a family.
     #[must_use]
     pub fn answers_about(&self, family: StressFamily) -> bool {
         match family {

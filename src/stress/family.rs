@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::cases::{AnyFamily, ComposedFamily, UnknownFamily};
+use crate::cases::{AnyFamily, ComposedFamily, UnknownFamily, family_named};
 
 /// A family of cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -48,10 +48,6 @@ impl FromStr for StressFamily {
     type Err = UnknownFamily;
 
     fn from_str(name: &str) -> Result<Self, UnknownFamily> {
-        let found = Self::all().into_iter().find(|family| family.name() == name);
-        found.ok_or_else(|| UnknownFamily {
-            name: name.into(),
-            known: Self::all().into_iter().map(Self::name).collect(),
-        })
+        family_named(name, Self::all(), Self::name)
     }
 }

@@ -134,7 +134,7 @@ pub fn cases() -> Vec<Case> {
         Case::new(
             "neuron_that_is_blank",
             SWC,
-            &["neuron.swc:1", "holds no samples"],
+            &["neuron.swc:1", "contains no samples"],
         )
         .with("neuron.swc", "# nothing\n"),
         Case::new("neuron_in_latin_1", SWC, &["neuron.swc:2", "not UTF-8"]).with_bytes(

@@ -239,13 +239,13 @@ fn models() -> Vec<Case> {
             "objects_of_the_same_id",
             &format!("{good}\n{good}"),
             BUILD,
-            &["3dmodel.model:4", "the id \"1\" stands twice"],
+            &["3dmodel.model:4", "the id \"1\" occurs twice"],
         ),
         built(
             "objects_of_the_same_number",
             &format!("{good}\n{}", good.replace("id=\"1\"", "id=\"01\"")),
             BUILD,
-            &["3dmodel.model:4", "the id \"01\" stands twice"],
+            &["3dmodel.model:4", "the id \"01\" occurs twice"],
         ),
         built(
             "object_of_an_id_in_words",

@@ -104,7 +104,7 @@ pub fn cases() -> Vec<Case> {
             POINTS,
             &[
                 "has no column \"a\"",
-                "its first line holds numbers",
+                "its first line contains numbers",
                 "scene.toml:4:19",
             ],
         )

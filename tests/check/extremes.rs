@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use crate::support::solids::prototype_of;
 
-/// A solid of each kind about a line, as far as there is one of such numbers.
+/// A solid of each kind about a line, if these numbers make a valid one.
 fn kinds(p0: DVec3, p1: DVec3, radius: f64) -> Vec<AnySolid> {
     let middle = 0.5 * (p0 + p1);
     let half_widths = DVec3::new(radius, 0.5 * radius, 0.5 * (p1 - p0).length());

@@ -18,7 +18,7 @@ fn difference(parts: Vec<Composition>) -> Composition {
     Composition::Difference(parts)
 }
 
-/// A block of 4 x 4 x 4, of which a block of the same width takes the half with x > 0.
+/// A block of 4 x 4 x 4 without the half with x > 0, cut by a block of the same width.
 fn half() -> Composition {
     let block = |x: f64| cuboid(DVec3::X * x, DVec3::splat(2.0));
     difference(vec![block(0.0), block(2.0)])
@@ -292,7 +292,7 @@ fn tree(random: &mut Random, depth: u32) -> Composition {
     }
 }
 
-/// A tree of which something is left: a tenth of the lines meet it.
+/// A tree that is not empty: a tenth of the lines meet it.
 fn solid_tree(model: u64) -> Composition {
     let mut random = Random::new(71, model);
     loop {

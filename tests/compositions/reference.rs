@@ -201,7 +201,7 @@ impl<'a> Reference<'a> {
         if let AnySolid::Cone(cone) = solid
             && [(Part::Cap0, cone.radius0()), (Part::Cap1, cone.radius1())].contains(&(part, 0.0))
         {
-            // An apex: the wall around it, which the axis stands for.
+            // An apex: the wall around it, represented by the axis.
             let axis = (cone.p1() - cone.p0()) * if part == Part::Cap0 { -1.0 } else { 1.0 };
             let is_reversed = axis.dot(outward) < 0.0;
             return (0..400).any(|_| {
@@ -251,7 +251,7 @@ impl<'a> Reference<'a> {
     fn stations(&self, origin: DVec3, direction: DVec3) -> Vec<f64> {
         let mut all = Vec::new();
         let mut quadratic = |a: f64, b: f64, c: f64| {
-            // a t² + 2 b t + c; a double root is met up to a rounding.
+            // a t² + 2 b t + c; a double root is found up to a rounding.
             let size = b * b + (a * c).abs();
             let mut discriminant = b * b - a * c;
             if discriminant.abs() < 1e-13 * size {

@@ -76,7 +76,7 @@ fn hits_are_in_order_and_between_both_sides() {
             );
             let alternate =
                 |pair: &[cyltrace::oracle::ComposedHit]| pair[0].crossing != pair[1].crossing;
-            // The start of a range within the boundary stands for an entry before it.
+            // The start of a range within the boundary counts as the entry before it.
             assert!(found.windows(2).all(alternate), "{replay}");
             let mut random = Random::new(SEED, index);
             for hit in &found {

@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test uses some of it")]
 
 pub mod aim;
+pub mod meshes;
 pub mod solids;
 pub mod trees;
 

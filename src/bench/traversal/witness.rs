@@ -28,7 +28,7 @@ use crate::solid::AnySolid;
 /// The first hit of a ray.
 struct First {
     t: TrueT,
-    /// The radius of the solid where it stands ([`AnySolid::radius`]), by the mean scale
+    /// The radius of the placed solid ([`AnySolid::radius`]), by the mean scale
     /// of its placement.
     radius: f64,
     /// Those that are first.

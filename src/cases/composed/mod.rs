@@ -15,7 +15,7 @@ use std::str::FromStr;
 
 use glam::DVec3;
 
-use super::{Inputs, UnknownFamily, with_hyphens};
+use super::{Inputs, UnknownFamily, family_named, with_hyphens};
 use crate::math::{Random, Ray, power_of_two};
 use crate::solid::Composition;
 use shape::Shape;
@@ -132,10 +132,6 @@ impl FromStr for ComposedFamily {
     type Err = UnknownFamily;
 
     fn from_str(name: &str) -> Result<Self, UnknownFamily> {
-        let found = Self::ALL.into_iter().find(|family| family.name() == name);
-        found.ok_or_else(|| UnknownFamily {
-            name: name.into(),
-            known: Self::ALL.map(Self::name).into(),
-        })
+        family_named(name, Self::ALL, Self::name)
     }
 }

@@ -35,7 +35,7 @@ const MOST_HALVINGS: u32 = 40;
 /// The least half width of a window, as a share of its farthest coordinate. The origins of
 /// rays are on a grid of at most 2^-49 of it (`mesh_frame`), which so divides a window into 64
 /// steps or more: what is aimed at the window hits it. A solid so far out that this is wider
-/// than [`WIDEST`] is beyond f32 in any window, and its row says that it has no witness.
+/// than [`WIDEST`] is beyond f32 in any window, and its row reports no witness.
 const LEAST_REACH: f64 = power_of_two(-44);
 
 /// What the meshes of a window may take.

@@ -17,11 +17,11 @@
 //! direction of a vector `v` from the axis within `2 δ / |v|`, which the
 //! placement turns into at most `κ` times that.
 //!
-//! *Compositions.* Any leaf may be what is met, with its own parts. The normals of a leaf that
+//! *Compositions.* A ray may hit any leaf, with the leaf's own parts. The normals of a leaf that
 //! is taken away point into it, those of others out of it, unless faces of several leaves
 //! coincide: then the composition may be on the side of the leaf that another one has, and
 //! the normal is the other one's. So the part and the normal of an answer may be those of
-//! two leaves that may both be met.
+//! two leaves, if the ray may hit both.
 
 use glam::DVec3;
 

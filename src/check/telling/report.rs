@@ -84,7 +84,7 @@ fn dash() -> String {
     String::from("–")
 }
 
-/// What answers from elsewhere could be off, and how many were judged.
+/// The tolerance of hits of another program or of a mesh, and how many were judged.
 #[must_use]
 pub fn tolerance_text(row: &Agreement) -> String {
     let of_each = match row.deviation() {

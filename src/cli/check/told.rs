@@ -162,7 +162,7 @@ fn given_rays(arguments: &CheckArguments) -> anyhow::Result<Option<Vec<Ray>>> {
     let Rays::Table(path) = &arguments.rays else {
         return Ok(None);
     };
-    // The rays, with the hits that go with them; a list that grows is there twice.
+    // The rays and their hits; a list that grows is in memory twice.
     let bytes = 2 * (size_of::<Ray>() + size_of::<GivenHit>()) as u64;
     let mut rays = Vec::new();
     let note = for_each_batch(path, &arguments.format, |blocks: Vec<Vec<Ray>>| {

@@ -76,7 +76,7 @@ impl Builder {
         Ok(())
     }
 
-    /// The mesh, of which at least one triangle must exist.
+    /// The mesh; one without a triangle is an error.
     pub fn finish(self) -> Result<Mesh, MeshError> {
         let count = self.vertices();
         if let Some(&(corner, place)) = self.beyond.iter().find(|&&(corner, _)| corner >= count) {

@@ -55,7 +55,7 @@ impl fmt::Display for MeshError {
 /// Why no mesh was read.
 #[derive(Debug, thiserror::Error)]
 pub enum MeshReadError {
-    /// The name does not say which kind of file it is.
+    /// The name ends in no format that is read.
     #[error("{}: the name of a mesh must end in .stl, .obj or .ply", path.display())]
     Extension {
         /// The file.
@@ -66,7 +66,7 @@ pub enum MeshReadError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
     /// The file is longer than a mesh may be.

@@ -3,7 +3,8 @@
 //! The readers are ours because an error has to name its line, and a header that promises
 //! more than the file contains must not be believed: nothing is reserved for what has not
 //! been seen. Each one parses bytes, in time and memory that grow with their number alone,
-//! and accepts any bytes. `docs/formats.md` says what is read, ignored and refused.
+//! and any bytes end in a mesh or an error. `docs/formats.md` lists what is read, ignored and
+//! refused.
 
 mod builder;
 mod error;
@@ -33,7 +34,7 @@ pub struct MeshFile {
     /// The triangles; a polygon is a fan of them.
     pub mesh: Mesh,
     /// How far the mesh may be from the solids' surface, in scene units, where a
-    /// comment says `deviation X`, as those of `cyltrace tessellate` do.
+    /// comment contains `deviation X`, as those of `cyltrace tessellate` do.
     pub deviation: Option<f64>,
     /// How the mesh was made, where comments say so as those of `cyltrace tessellate` do.
     /// Anybody can write them.
@@ -43,7 +44,7 @@ pub struct MeshFile {
     pub rounding: f64,
 }
 
-/// Reads a mesh; the file's name says which kind it is.
+/// Reads a mesh in the format that the file's name ends in.
 ///
 /// # Errors
 /// When the name ends in none of `.stl`, `.obj` and `.ply`, the file cannot be read, is larger

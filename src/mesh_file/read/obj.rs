@@ -1,6 +1,6 @@
 //! Wavefront OBJ: vertices (`v`) and faces (`f`).
 //!
-//! A line that ends in `\` goes on in the next one, and `#` begins a comment anywhere; a `\`
+//! A line that ends in `\` continues in the next one, and `#` begins a comment anywhere; a `\`
 //! at the end of a comment belongs to the comment. What follows three coordinates (a weight,
 //! a color) is ignored, and so is every other keyword, except those of free-form surfaces:
 //! without these a part of the object would be missing.
@@ -75,7 +75,7 @@ impl Statement {
     }
 }
 
-/// Adds what a statement says.
+/// Adds the vertex or the face of a statement.
 fn add(builder: &mut Builder, line: u64, text: &[u8]) -> Result<(), MeshError> {
     let mut words = words(text);
     match words.next() {

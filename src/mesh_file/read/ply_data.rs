@@ -1,6 +1,6 @@
 //! The elements of a PLY file, one record after the other.
 //!
-//! In a text a record begins on a line of its own and may go on over several; `{` and `#`
+//! In a text a record begins on a line of its own and may span several; `{` and `#`
 //! begin a comment, as in the format's first description, and a `\` at the end of a line is
 //! no more than that. A binary record follows the one before it.
 

@@ -55,7 +55,7 @@ pub(super) struct Property {
     pub kind: Kind,
 }
 
-/// An element of the file, of which there are `count`.
+/// A kind of element, with `count` records in the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Element {
     pub name: String,
@@ -202,7 +202,7 @@ impl Header {
         Ok(header)
     }
 
-    /// Refuses elements without properties: nothing in the file says that they exist.
+    /// Refuses elements without properties: no byte of the file bounds their number.
     fn check(&self) -> Result<(), MeshError> {
         let mut elements = self.elements.iter();
         let empty = elements.find(|one| one.properties.is_empty() && one.count > 0);

@@ -3,7 +3,7 @@
 //!
 //! A binary file is 80 bytes of anything, the number of facets in 32 bits, and 50 bytes a
 //! facet. Those 80 bytes may begin with `solid`, as a text does. So a file whose length is
-//! what its number of facets makes it is binary, whatever its first word. A text never has
+//! what its number of facets makes it is binary, even if its first word is `solid`. A text never has
 //! such a length: four of its bytes are the number of a file beyond [`MOST_MESH_BYTES`]
 //! (`crate::scene`), as no byte of a text is below 9.
 

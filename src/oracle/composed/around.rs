@@ -13,7 +13,7 @@
 //! in exact numbers. Witnesses come in pairs on the two sides of one sheet, or of
 //! several that coincide there; `smooth.rs`, `edge.rs` and `apex.rs` choose them. That a pair is
 //! one is verified by its signs: they differ in these sheets only. So every cell and
-//! every face that is reported exists, whatever the choice. That none is left out rests
+//! every face that is reported exists for any choice of witnesses. That none is left out rests
 //! on the choice: each cell around the point is bounded by a sheet, and each piece of a
 //! sheet that others cut out has a pair.
 

@@ -2,7 +2,7 @@
 //!
 //! **The set.** Let `E` be what the operations say of the *open* insides of the
 //! operands. The composition is `R`, the closure of the points off all operands'
-//! surfaces where `E` is true: the points of which every neighbourhood has an open cell
+//! surfaces where `E` is true: a point belongs to it if every neighbourhood has an open cell
 //! with `E` true (a regularised set operation). A point is inside `R` where `E` is true in
 //! all cells around it, outside where it is in none, and on the boundary otherwise.
 //!

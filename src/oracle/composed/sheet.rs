@@ -1,4 +1,4 @@
-//! The surfaces of which a solid's boundary is made, as polynomials.
+//! The surfaces that bound a solid, as polynomials.
 //!
 //! A sheet is the set where `F(x) = x·M x + 2 b·x + c` is zero; `F < 0` is its inner
 //! side. At the point `x = X / r`, and on a curve from there, `r²F` is

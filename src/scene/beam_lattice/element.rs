@@ -114,8 +114,8 @@ impl<'a, 'input> Element<'a, 'input> {
         self.node.has_tag_name((BEAM_LATTICE, name)) || self.node.has_tag_name((BALLS, name))
     }
 
-    /// Refuses an element in it of one of some names that is in no namespace of a beam
-    /// lattice: what it states would be missing without a word.
+    /// Refuses a child with one of these names that is in no namespace of a beam
+    /// lattice: what it states would be left out silently.
     pub fn refuse_foreign(&self, names: &[&str]) -> Result<(), SceneError> {
         let mut children = self.children();
         let foreign = children

@@ -78,15 +78,15 @@ pub(super) struct Lattice {
 #[derive(Clone, Copy, PartialEq)]
 enum BallMode {
     None,
-    /// Those of which a ball is stated.
+    /// Those with a stated ball.
     Mixed,
     /// All at which a beam ends.
     All,
 }
 
 impl Lattice {
-    /// The lattice of a `<mesh>`, where there is one. `skips_meshes` says that triangles are
-    /// left out; they are an error otherwise.
+    /// The lattice of a `<mesh>`, if it has one. With `skips_meshes`, triangles are left
+    /// out; they are an error otherwise.
     pub fn new(
         mesh: &Element,
         skips_meshes: bool,

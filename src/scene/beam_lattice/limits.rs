@@ -1,4 +1,4 @@
-//! Refuses texts in XML that take more than their length to read.
+//! Refuses texts in XML that take more time to read than is linear in their length.
 //!
 //! The parser compares each attribute of an element with those before it, and an element
 //! that declares a namespace copies those of the elements around it. So the attributes of an
@@ -33,7 +33,8 @@ fn tag<'a>(
     prefixes: &mut HashSet<&'a [u8]>,
 ) -> Result<usize, (usize, String)> {
     let mut attributes = 0;
-    // An attribute is what stands between two values; of the first, also the element's name.
+    // An attribute's name is the text between two values; before the first value that text
+    // also contains the element's name.
     let mut at = start;
     while let Some(end) = bytes[at..].iter().position(|byte| b">\"'".contains(byte)) {
         let end = at + end;

@@ -1,7 +1,7 @@
 //! Beam lattices in 3MF: `package` finds the model in the archive, `model` the
 //! objects that it builds, `lattice` the beams and balls of one, `element` reads
-//! XML, `limits` refuses what would take too long, `notes` collects what a user should know,
-//! `counted` says how many solids there will be. Here they become solids.
+//! XML, `limits` refuses what would take too long, `notes` collects notes for the user,
+//! `counted` computes the number of solids beforehand. Here they become solids.
 //!
 //! **What a beam is.** The specification (3MF Beam Lattice Extension, 2.1.1) makes it
 //! a frustum, united at either end with what the end's cap is: nothing for `butt`, the

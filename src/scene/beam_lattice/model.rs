@@ -115,14 +115,14 @@ fn check_type(object: &Element, notes: &mut Notes) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Whether a model says that it may not be read without an extension.
+/// Whether a model requires an extension.
 fn requires(model: &Element, extension: &str) -> bool {
     let required = model.attribute("requiredextensions").unwrap_or_default();
     let mut required = required.split_whitespace();
     required.any(|prefix| model.namespace(prefix) == Some(extension))
 }
 
-/// That nothing is required that is not understood here.
+/// Refuses a model that requires an extension that is not known here.
 fn check_extensions(model: &Element) -> Result<(), SceneError> {
     let required = model.attribute("requiredextensions").unwrap_or_default();
     for prefix in required.split_whitespace() {
@@ -154,7 +154,7 @@ impl<'a, 'input> Objects<'a, 'input> {
             let id = object.id("id")?;
             if index.insert(id, place).is_some() {
                 let id = object.required("id")?;
-                return Err(object.error(format!("the id {} stands twice", quoted(id))));
+                return Err(object.error(format!("the id {} occurs twice", quoted(id))));
             }
         }
         Ok(Self { list, index })

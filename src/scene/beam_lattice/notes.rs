@@ -1,9 +1,9 @@
-//! What a user is told of a 3MF file that is read: what is left out, and what the
-//! specification forbids or other programs take differently.
+//! Notes on a 3MF file: what is left out, what the specification forbids, and what other
+//! programs may read differently.
 
 use super::element::Element;
 
-/// Objects that a note names; of more, it says how many.
+/// Objects that a note names; it counts the others.
 const MOST_NAMED: usize = 8;
 
 /// The notes on a file, each once with the objects that it is about.

@@ -4,7 +4,7 @@
 //! cone or a rounded cone with the radii of both.
 //!
 //! `samples` reads the lines, `tree` finds the parents, `soma` the balls and cylinders
-//! that stand for cell bodies.
+//! of cell bodies.
 
 mod samples;
 mod soma;

@@ -99,7 +99,7 @@ impl SwcFile<'_> {
         }
         if samples.is_empty() {
             let line = records.line().max(1);
-            return Err(self.error(line, None, "the file holds no samples", None));
+            return Err(self.error(line, None, "the file contains no samples", None));
         }
         Ok((samples, has_more_cells))
     }

@@ -17,7 +17,7 @@ use super::samples::Sample;
 
 /// The share of the radius that the samples of a cylinder may be off. It trades files
 /// whose numbers are rounded, to two decimals at a radius of a tenth, for somata that
-/// are no such cylinder: theirs would be moved by as much.
+/// are no such cylinder and would be moved by as much.
 const TOLERANCE: f64 = 1.0 / 16.0;
 
 /// The somata of a file that are more than their segments.

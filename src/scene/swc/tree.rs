@@ -69,7 +69,7 @@ impl SwcFile<'_> {
                     None => break,
                 }
             }
-            // The walk met its own trail, rather than an end or an older one.
+            // The walk returned to its own trail, not to an end or to an older one.
             if seen[place] == start && parents[place].is_some() {
                 return Err(self.cycle(samples, parents, place));
             }

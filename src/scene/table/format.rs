@@ -100,7 +100,7 @@ pub(super) fn stated_in(line: &str) -> Option<Delimiter> {
 }
 
 /// The delimiter of a line of names: the one of comma, semicolon and tab that is most
-/// frequent outside quotes, a comma in doubt, and blanks where there is none of them.
+/// frequent outside quotes, a comma in doubt, and blanks if the line has none of the three.
 pub(in crate::scene) fn of_names(line: &[u8]) -> Delimiter {
     most_frequent(
         line,

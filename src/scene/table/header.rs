@@ -1,5 +1,5 @@
-//! What the first lines of a table say: the names of its columns, how its cells are
-//! separated, and how many a row has.
+//! The layout that the first lines of a table show: the names of its columns, how its
+//! cells are separated, and how many a row has.
 //!
 //! The names are in the first row, or in a comment before it, as numpy and CloudCompare
 //! write them. The first row counts as names unless all of its cells are numbers. Where
@@ -136,7 +136,7 @@ impl Beginning<'_> {
             })
             .collect();
         match numbered.is_empty() {
-            // Columns that are not wanted may hold anything.
+            // Columns that are not wanted may contain anything.
             false => numbered.iter().any(|cell| !is_value(cell)),
             true => numbers.iter().any(|cell| !is_value(cell)),
         }
@@ -234,7 +234,7 @@ impl Layout {
         })
     }
 
-    /// Finds a column; else says what is wrong with the table and what to do.
+    /// Finds a column; otherwise returns what is wrong with the table and a help text.
     pub(in crate::scene) fn find(&self, key: &ColumnKey) -> Result<Column, (String, String)> {
         let names = usize::from(self.has_row_names);
         let name = match key {
@@ -270,7 +270,7 @@ impl Layout {
 
     fn missing_help(&self, name: &str) -> String {
         if self.header.is_empty() {
-            return "its first line holds numbers: a header with the names of the columns is needed, or columns by their numbers from 0".to_owned();
+            return "its first line contains numbers: a header with the names of the columns is needed, or columns by their numbers from 0".to_owned();
         }
         suggestion(name, self.header.iter().map(String::as_str), "columns")
     }
@@ -284,7 +284,7 @@ impl Layout {
         }
     }
 
-    /// What to say of the columns that nobody reads, `None` where there are none.
+    /// A note on the columns that are not read, `None` if there are none.
     #[must_use]
     pub fn unread(&self, read: &[Column]) -> Option<String> {
         const MOST_NAMED: usize = 20;

@@ -1,5 +1,5 @@
-//! Files that are read from beginning to end: regular ones, and pipes. Devices are
-//! refused, because most never end, and so is a named pipe that nobody writes to.
+//! Opens files that are read from beginning to end: regular ones and pipes. Devices are
+//! refused, because most never end, and so is a named pipe without a writer.
 
 use std::fs::{self, File};
 use std::io;

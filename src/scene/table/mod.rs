@@ -4,8 +4,7 @@
 //! `input` opens files and pipes; `records` finds the rows in their text and keeps the
 //! limits of `scene::limits`; `format` is what separates cells, and how numbers are
 //! written; `header` finds out what the columns are; `cells` splits a row, and `row`
-//! reads numbers in it. What the formats are, as a user needs it, is in
-//! `docs/scene-file.md`.
+//! reads numbers in it. `docs/formats.md` describes the formats to users.
 
 mod cells;
 mod format;

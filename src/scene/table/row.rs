@@ -182,7 +182,7 @@ impl Row<'_> {
     }
 }
 
-/// Whether a cell says that there is no value, in the words of pandas, R, Excel and others.
+/// Whether a cell states a missing value, in the words of pandas, R, Excel and others.
 pub(super) fn is_missing(cell: &str) -> bool {
     const WORDS: [&str; 10] = [
         "", "na", "n/a", "#n/a", "<na>", "nan", "-nan", "+nan", "null", "none",

@@ -164,7 +164,7 @@ fn tables_that_say_something_else_are_refused() {
     for (text, expected) in [
         ("", "t.csv:1: the table is empty"),
         ("# x,y\n\n", "t.csv:3: the table is empty"),
-        ("1,2\n", "its first line holds numbers"),
+        ("1,2\n", "its first line contains numbers"),
         ("x,x,y\n1,2,3\n", "more than one column \"x\""),
         ("X,Z\n1,2\n", "no column \"y\""),
         (

@@ -79,7 +79,7 @@ impl Bend {
     }
 
     /// Adds the directions in which one surface may change from above
-    /// to below another, of which `sign` says whether its normal is the same.
+    /// to below another; `sign` is -1 if the normal of the other is opposite.
     ///
     /// Each height is `A + B cos 2φ + C sin 2φ` on either side of a seam. The roots of the
     /// difference are added for all combinations of sides: a direction too many only

@@ -1,8 +1,8 @@
-//! What a line meets of a composition.
+//! The crossings of a line with the surface of a composition.
 //!
 //! The composition is a closed set, and the line is in it over closed intervals. Each
-//! begins with an entry and ends with an exit, in turn; `line.rs` says what is before and behind
-//! each station. Where that says that the line is outside on both sides or inside on both,
+//! begins with an entry and ends with an exit, in turn; `line.rs` decides what is before and behind
+//! each station. Where the line is outside on both sides or inside on both,
 //! what is around the point itself decides whether it is a *touch*: from outside the point
 //! is an interval of its own, an entry and an exit; from inside, where the point is not
 //! inside of the set, an exit and an entry. From the surface to the inside is no crossing.
@@ -25,13 +25,13 @@ use crate::solid::{ChordEnd, Location, Meeting};
 pub struct ComposedMeeting {
     /// The point, the part being that of the leaf.
     pub meeting: Meeting,
-    /// Whose surface is met, a position in [`Composition::operands`].
+    /// The operand whose surface it is, as a position in [`Composition::operands`].
     pub leaf: u32,
     /// Whether the composition is on the outer side of the leaf's surface, so that its normal
     /// is the leaf's reversed.
     pub is_reversed: bool,
-    /// The number of the crossing on the whole line, whatever the ray's range. It
-    /// orders what is met at the same `t`.
+    /// The number of the crossing on the whole line, independent of the ray's range. It
+    /// orders crossings at the same `t`.
     pub rank: u32,
 }
 
@@ -39,7 +39,7 @@ impl Composition {
     /// The points at which a ray is on the surface, among those with `t_min <= t +
     /// shift <= t_max`, in order.
     ///
-    /// `origin_from` answers with the ray's origin as seen from an anchor. The
+    /// `origin_from` returns the ray's origin as seen from an anchor. The
     /// range, `shift` and the direction are as for
     /// [`ConvexSolid::first`](crate::solid::ConvexSolid::first).
     pub fn meetings(

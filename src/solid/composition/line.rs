@@ -4,7 +4,7 @@
 //! order, are the *stations* of the line, and what is between two is a *stretch*. Over a
 //! stretch every leaf has the line inside or outside, or the line lies within the leaf's
 //! surface: in a face, along an edge, or along a ruling of a wall. All points of a stretch have
-//! the same around them, so that one of them says what the composition has there: the formula
+//! the same around them, so that one of them decides what the composition has there: the formula
 //! of the operations where the line is in no surface, else the neighbourhood.
 //!
 //! **Walls along one ruling.** A line may be a ruling of two walls that touch along it. Of

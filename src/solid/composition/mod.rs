@@ -35,8 +35,8 @@ pub use crossings::ComposedMeeting;
 use neighbourhood::Neighbourhood;
 use piece::{Nearness, Pieces, Viewed};
 
-/// A solid that is composed of others by set operations: the closure of what the
-/// operations say of the operands' interiors. Its surface is the boundary of that.
+/// A solid that is composed of others by set operations: the closure of the result of
+/// the operations on the operands' interiors. Its surface is the boundary of that.
 ///
 /// What a scene file states has no open ends, no disks and no operation without
 /// an operand. An operation without an operand is empty, and a solid with open ends
@@ -151,13 +151,13 @@ impl Composition {
         }
     }
 
-    /// Whether the formula is true where `is_within` says of each leaf whether the place is
-    /// inside of it.
+    /// Evaluates the formula at a place; `is_within` returns whether a leaf contains it in
+    /// its interior.
     fn holds(&self, is_within: &[bool]) -> bool {
         self.holds_for(&mut is_within.iter().copied())
     }
 
-    /// The same; takes one of `leaves` for each of its own, whatever the others are.
+    /// The same; takes one of `leaves` for each leaf of this formula and leaves the rest.
     fn holds_for(&self, leaves: &mut impl Iterator<Item = bool>) -> bool {
         match self {
             Self::Solid(_) => leaves.next().unwrap_or(false),

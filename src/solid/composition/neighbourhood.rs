@@ -1,4 +1,4 @@
-//! What the operations say of all that is around a point.
+//! Classifies the neighbourhood of a point by the set operations.
 //!
 //! Surfaces that pass through a point `p` divide a small ball around it into open cells. In
 //! each of them every leaf is inside or outside, so the formula of the operations has one
@@ -12,7 +12,7 @@
 //!    circles for tangent planes, small ones for apexes ([`Piece`]). Pieces with one
 //!    tangent plane are one circle, a *group*. On the circle of each group the points where
 //!    others cross it, and those where the heights of its own members change their
-//!    order, leave arcs. One direction in each arc stands for all of it: there
+//!    order, leave arcs. One direction in each arc represents all of it: there
 //!    every other group is on one known side.
 //! 2. *Second order.* In a direction `v`, at the distance `s`, the plane across it is taken
 //!    at the scale `s²`. A piece whose circle contains `v` is a straight line there, with the
@@ -105,8 +105,8 @@ impl Neighbourhood {
         found
     }
 
-    /// That of a point on the surfaces of several. `leaves` says of every other leaf whether
-    /// the point is inside of it, and `is_inside` evaluates the formula.
+    /// That of a point on the surfaces of several. `leaves` contains for every other leaf
+    /// whether the point is inside of it, and `is_inside` evaluates the formula.
     pub fn of_pieces(
         pieces: &Pieces,
         leaves: &mut [bool],
@@ -292,8 +292,8 @@ impl<F: Fn(&[bool]) -> bool> Explorer<'_, F> {
         merged
     }
 
-    /// Looks at all cells around a direction that the groups contain, of which there is one, or
-    /// which cross there.
+    /// Looks at all cells around a direction that one group contains, or in which several
+    /// cross.
     fn look(&mut self, direction: DVec3, groups: &[usize], error: f64) {
         let mut across = Across::new(direction, error);
         for (index, piece) in self.pieces.iter().enumerate() {

@@ -13,7 +13,7 @@
 //! second order a smooth piece has a [`Bend`].
 //!
 //! **Which pieces pass through the point of a line** is decided by the displacement δ that
-//! `line.rs` derives: those within 2 δ of it. The same displacement says how far a normal
+//! `line.rs` derives: those within 2 δ of it. The same displacement bounds how far a normal
 //! may be turned: a plane whose points are displaced by δ over an extent `l` by `2 δ / l`,
 //! and the normal of a surface of radius `R` by `δ / R` more. Two normals count as parallel if
 //!

@@ -124,9 +124,9 @@ impl Group {
     /// The Embree scene, which is built if this is the first time it is needed.
     ///
     /// # Panics
-    /// When Embree refuses, which is for want of memory: boxes are legal by the
-    /// frame's making, and a query has no way to answer with an error. Whoever
-    /// wants one builds everything beforehand.
+    /// When Embree runs out of memory, the only reason for which it fails: the frame
+    /// makes boxes legal. A query cannot return an error; build everything beforehand
+    /// to get one.
     #[inline]
     fn scene(&self) -> &embree::Scene<Query> {
         match self.joined() {
@@ -187,7 +187,7 @@ impl Group {
         hit
     }
 
-    /// Traces rays of a packet for their first hits. Answers with those whose
+    /// Traces rays of a packet for their first hits. Returns those whose
     /// first hit is nearer now.
     pub fn search_packet(&self, rays: RaySet, local: &PacketRays, packet: &mut Packet) -> RaySet {
         let PacketEntry {

@@ -29,7 +29,7 @@
 //! **How it is found.** The areas come from a sample of [`SAMPLE`] boxes at equal
 //! strides, cubes around the middles of some of them are tried, and the best one is
 //! doubled until the next octave is empty. Then nothing is left out that belongs to
-//! it: whatever is farther away is more than twice as far as the rest. What remains
+//! it: everything else is more than twice as far away as the rest. What remains
 //! is treated likewise. Where g adds less than a quarter to the boxes of the sample,
 //! as in nearly all prototypes, that ends the search.
 //!
@@ -57,7 +57,7 @@ const SAMPLE: usize = 256;
 const CENTRES: usize = 32;
 
 /// The least part of a sample that is trusted: a few boxes that are close by chance
-/// stand for thousands.
+/// would represent thousands.
 const LEAST_SHARE: f64 = 1.0 / 32.0;
 
 /// The octaves around a cube that are looked at in one pass over the boxes.

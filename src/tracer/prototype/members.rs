@@ -3,8 +3,7 @@
 //! A prototype has a list for each kind of solid, and its placements. A placed
 //! prototype may have several groups itself: then a placement is one primitive for
 //! each of them, and these may be in different groups of the parent. So a far solid
-//! in a placed prototype does not enlarge the boxes of the others there, whatever the
-//! depth.
+//! in a placed prototype does not enlarge the boxes of the others there, at any depth.
 
 use rayon::prelude::*;
 

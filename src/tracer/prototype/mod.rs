@@ -136,7 +136,7 @@ impl Children<Prototype> {
         )
     }
 
-    /// The groups with a number, of those that have so many.
+    /// The groups with this number, of the prototypes that have one.
     fn groups(&self, group: usize) -> Children<Group> {
         let groups = self.0.iter().filter_map(|(index, child)| {
             let group = child.groups.get(group)?;
