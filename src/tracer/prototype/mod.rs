@@ -229,9 +229,6 @@ impl Prototype {
 
     /// The number of the group with an entry of a list.
     fn group_with(&self, list: List, number: u32) -> usize {
-        if self.groups.len() == 1 {
-            return 0;
-        }
         let mut groups = self.groups.iter();
         let group = groups.position(|group| group.members.of(list).contains(number));
         group.expect("what is hit is in a group")
@@ -242,19 +239,34 @@ impl Prototype {
     pub fn way_to<'a>(root: &'a Arc<Self>, place: &Place) -> Way<'a, &'a Group> {
         let mut prototypes = Way::new();
         prototypes.push((root, None));
-        let mut last = root;
+        let (mut last, mut has_several) = (root, root.groups.len() > 1);
         for &index in &place.path {
             let (placement, child) = last.placement(index);
             prototypes.push((child, Some(placement)));
+            has_several |= child.groups.len() > 1;
             last = child;
         }
+        if has_several {
+            return Self::way_through_groups(&prototypes, place);
+        }
+        let way = prototypes.into_iter();
+        way.map(|(prototype, placement)| (&*prototype.groups[0], placement))
+            .collect()
+    }
+
+    /// As [`Prototype::way_to`], where a prototype has several groups.
+    #[cold]
+    fn way_through_groups<'a>(
+        prototypes: &[(&'a Arc<Self>, Option<&'a Placement>)],
+        place: &Place,
+    ) -> Way<'a, &'a Group> {
         // A group of a child is a primitive in a group of its parent: so the groups
         // follow from the last one on.
         let mut list = List::Solids(place.member.kind);
         let mut number = place.member.record;
         let numbers = place.path.iter().rev().copied().chain([0]);
         let mut way = Way::new();
-        for ((prototype, placement), above) in prototypes.into_iter().rev().zip(numbers) {
+        for (&(prototype, placement), above) in prototypes.iter().rev().zip(numbers) {
             let group = prototype.group_with(list, number);
             way.push((&*prototype.groups[group], placement));
             (list, number) = (List::Placements { group }, above);
