@@ -109,14 +109,14 @@ pub(crate) fn resolve(
     // Down to the prototype that was hit.
     let mut local = LocalRay::new(ray);
     let mut placements = Vec::with_capacity(place.path.len());
-    for (group, placement) in Prototype::way_to(root, place) {
+    Prototype::along_way(root, place, |group, placement| {
         if let Some(placement) = placement {
             let way = ChildFromParent::new(&placement.parent_from_child);
             placements.push((way, placement.parent_from_child));
             local = local.in_child(&way);
         }
         local = group.frame.approach(&local);
-    }
+    });
     let description = &scene.prototypes[place.prototype.0 as usize];
 
     // The point on the solid.

@@ -127,14 +127,14 @@ impl Frame {
     /// double-double step. The place is off by less than 2^-48 of the way there: two
     /// products and sums in each of three components, and as much for the ray's
     /// parameter. Written so that NaN is not certain.
-    #[inline(always)]
+    #[cold]
     fn is_missed_from_afar(&self, passing: &Passing) -> bool {
         const ROUNDING: f64 = 1.0 / (1_u64 << 48) as f64;
         let sphere = self.radius * (1.0 + 4.0 * BOX_GROWTH);
         let place = passing.place.length_squared();
         let way = passing.nearest * passing.nearest / passing.inverse_square + place;
         // (a + b)² <= 2 (a² + b²)
-        passing.is_far && place > 2.0 * (sphere * sphere + ROUNDING * ROUNDING * way)
+        place > 2.0 * (sphere * sphere + ROUNDING * ROUNDING * way)
     }
 
     /// As [`Frame::approach`], in double-double. The first guess of the nearest
@@ -178,7 +178,7 @@ impl Frame {
                 .then_some((Level { ray, window }, entry.ray32));
         }
         let passing = self.passing(ray);
-        if self.is_missed_from_afar(&passing) {
+        if passing.is_far && self.is_missed_from_afar(&passing) {
             return None;
         }
         let (ray, passing) = self.moved_if_far(ray, passing);

@@ -243,7 +243,7 @@ impl Enter<'_> {
             let (row, lane) = (number / LANES, number % LANES);
             let ray = self.rays.ray(row, lane);
             let passing = self.frame.passing(&ray);
-            if self.frame.is_missed_from_afar(&passing) {
+            if passing.is_far && self.frame.is_missed_from_afar(&passing) {
                 continue;
             }
             let (ray, passing) = self.frame.moved_if_far(&ray, passing);

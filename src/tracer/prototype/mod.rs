@@ -90,6 +90,8 @@ pub(crate) struct Prototype {
     description: Arc<Scene>,
     index: PrototypeIndex,
     children: Children<Self>,
+    /// Whether it, or a prototype in it, has more than one group.
+    has_several_groups: bool,
     /// Whether placements out of view were left out.
     is_viewed: bool,
 }
@@ -172,7 +174,10 @@ impl Prototype {
         let groups = groups.into_iter();
         let groups = groups
             .map(|group| Arc::new(Group::new(workshop, description, index, group, &children)));
+        let mut placed = children.0.iter();
         Some(Arc::new(Self {
+            has_several_groups: boxes.len() > 1
+                || placed.any(|(_, child)| child.has_several_groups),
             bounds,
             groups: groups.collect(),
             boxes,
@@ -234,39 +239,47 @@ impl Prototype {
         group.expect("what is hit is in a group")
     }
 
-    /// The groups on the way from the root to a place, each with the placement that led
-    /// there; the root has none.
-    pub fn way_to<'a>(root: &'a Arc<Self>, place: &Place) -> Way<'a, &'a Group> {
+    /// Takes a step for each group on the way from the root to a place, with the placement
+    /// that led there; the root has none.
+    #[inline]
+    pub fn along_way<'a>(
+        root: &'a Arc<Self>,
+        place: &Place,
+        mut step: impl FnMut(&'a Group, Option<&'a Placement>),
+    ) {
+        if root.has_several_groups {
+            for (group, placement) in Self::way_through_groups(root, place) {
+                step(group, placement);
+            }
+            return;
+        }
+        step(&root.groups[0], None);
+        let mut last = root;
+        for &index in &place.path {
+            let (placement, child) = last.placement(index);
+            step(&child.groups[0], Some(placement));
+            last = child;
+        }
+    }
+
+    /// The way of [`Prototype::along_way`] where a prototype has several groups.
+    #[cold]
+    fn way_through_groups<'a>(root: &'a Arc<Self>, place: &Place) -> Way<'a, &'a Group> {
         let mut prototypes = Way::new();
         prototypes.push((root, None));
-        let (mut last, mut has_several) = (root, root.groups.len() > 1);
+        let mut last = root;
         for &index in &place.path {
             let (placement, child) = last.placement(index);
             prototypes.push((child, Some(placement)));
-            has_several |= child.groups.len() > 1;
             last = child;
         }
-        if has_several {
-            return Self::way_through_groups(&prototypes, place);
-        }
-        let way = prototypes.into_iter();
-        way.map(|(prototype, placement)| (&*prototype.groups[0], placement))
-            .collect()
-    }
-
-    /// As [`Prototype::way_to`], where a prototype has several groups.
-    #[cold]
-    fn way_through_groups<'a>(
-        prototypes: &[(&'a Arc<Self>, Option<&'a Placement>)],
-        place: &Place,
-    ) -> Way<'a, &'a Group> {
         // A group of a child is a primitive in a group of its parent: so the groups
         // follow from the last one on.
         let mut list = List::Solids(place.member.kind);
         let mut number = place.member.record;
         let numbers = place.path.iter().rev().copied().chain([0]);
         let mut way = Way::new();
-        for (&(prototype, placement), above) in prototypes.iter().rev().zip(numbers) {
+        for ((prototype, placement), above) in prototypes.into_iter().rev().zip(numbers) {
             let group = prototype.group_with(list, number);
             way.push((&*prototype.groups[group], placement));
             (list, number) = (List::Placements { group }, above);
