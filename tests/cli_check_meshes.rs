@@ -363,7 +363,7 @@ fn small_solids_missing_beside_a_floor_and_far_apart_are_found() {
             .lines()
             .filter(|line| {
                 number += usize::from(line.starts_with("f "));
-                !line.starts_with("f ") || !(first < number && number <= first + solid)
+                !(line.starts_with("f ") && first < number && number <= first + solid)
             })
             .map(|line| format!("{line}\n"))
             .collect();

@@ -128,7 +128,7 @@ impl<'a> Targets<'a> {
                 // Rounded beyond the last.
                 continue;
             };
-            world_from_here = world_from_here * placement.parent_from_child;
+            world_from_here *= placement.parent_from_child;
             index = placement.of;
         }
     }
