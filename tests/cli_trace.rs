@@ -293,3 +293,13 @@ fn rays_that_are_not_a_text_file_refused() {
     let (code, _, err) = trace(directory.path(), &["-o", "hits.csv"]);
     assert!(code == 2 && err.contains("is a directory"), "{err}");
 }
+
+#[test]
+fn rays_that_cannot_be_read_write_no_header_either() {
+    let folder = workplace(RAYS.as_bytes());
+    for rays in ["none.csv", "."] {
+        let arguments = ["trace", "scene.toml", "--rays", rays, "-o", "-"];
+        let (code, out, err) = cyltrace(folder.path(), &arguments);
+        assert_eq!((code, out.as_str()), (2, ""), "{err}");
+    }
+}

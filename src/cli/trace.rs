@@ -207,11 +207,15 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         let mut target = Target::create(&arguments.output)?;
         let bar = progress::bar(common, rows.unwrap_or(0), self.items);
         let start = Instant::now();
-        target.write_all(self.header.as_bytes())?;
+        // Only when the table can be read: an empty list of hits would look like an answer.
+        let mut header = Some(self.header);
         let mut totals = Totals::default();
         let traced = workers.install(|| {
             for_each_batch(self.path, &arguments.format, |blocks| {
                 let before = totals.asked;
+                if let Some(header) = header.take() {
+                    target.write_all(header.as_bytes())?;
+                }
                 self.batch(&tracer, &blocks, &mut totals, &mut target)?;
                 bar.inc(totals.asked - before);
                 Ok(())
@@ -221,6 +225,9 @@ impl<R: NumberRow + Sync> Task<'_, R> {
             Some(_) if target.shows_parts() => Interrupted::PartWritten.into(),
             _ => error,
         })?;
+        if let Some(header) = header {
+            target.write_all(header.as_bytes())?;
+        }
         target.finish()?;
         let trace = start.elapsed().as_secs_f64();
         bar.finish_and_clear();
