@@ -82,7 +82,10 @@ impl Builder {
         if let Some(&(corner, place)) = self.beyond.iter().find(|&&(corner, _)| corner >= count) {
             return Err(MeshError::new(
                 place,
-                format!("the face names vertex {corner}, counted from 0, and there are {count}"),
+                format!(
+                    "the face names a vertex that does not exist: number {corner} from 0, {} from 1; there are {count}",
+                    corner.saturating_add(1)
+                ),
             ));
         }
         if self.mesh.triangles.is_empty() {

@@ -214,9 +214,9 @@ mod tests {
             (
                 "f 1 2 3\nf 1 2 9\nf 1 2 7",
                 6,
-                "names vertex 8, counted from 0, and there are 4",
+                "number 8 from 0, 9 from 1; there are 4",
             ),
-            ("f 1 2 5\nf 1 2 9\nv 0 0 0", 6, "names vertex 8"),
+            ("f 1 2 5\nf 1 2 9\nv 0 0 0", 6, "9 from 1"),
             (
                 "f 1 2 99999999999999999999",
                 5,

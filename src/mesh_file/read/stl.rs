@@ -102,27 +102,38 @@ impl Due {
     }
 }
 
-/// Reads a text, whose words may be in any case.
+/// Reads a text: words in any case, between any white space. What follows `solid` and
+/// `endsolid` on their lines is a name.
 fn ascii(text: &[u8]) -> Result<MeshFile, MeshError> {
     let mut builder = Builder::default();
     let mut remarks = Remarks::default();
     let mut due = Due::Solid;
     let mut last = 1;
-    for (line, text) in lines(text) {
-        let mut words = words(text);
-        let Some(first) = words.next() else {
-            continue;
-        };
+    let mut words = words_of(text);
+    while let Some((line, word)) = words.next() {
         last = line;
-        let keyword = first.to_ascii_lowercase();
+        let keyword = word.to_ascii_lowercase();
         due = match (due, keyword.as_slice()) {
             (Due::Solid, b"solid") => {
-                remarks.read(&String::from_utf8_lossy(text));
+                remarks.read(&String::from_utf8_lossy(words.rest_of_line()));
                 Due::Facet
             }
-            (Due::Facet, b"facet") => Due::Loop,
-            (Due::Facet, b"endsolid") => Due::Solid,
-            (Due::Loop, b"outer") => Due::Corner(0),
+            (Due::Facet, b"facet") => {
+                if words.skip_if(b"normal") {
+                    for _ in 0..3 {
+                        words.next();
+                    }
+                }
+                Due::Loop
+            }
+            (Due::Facet, b"endsolid") => {
+                words.rest_of_line();
+                Due::Solid
+            }
+            (Due::Loop, b"outer") => {
+                words.skip_if(b"loop");
+                Due::Corner(0)
+            }
             (Due::Corner(corner), b"vertex") => {
                 let point = point(&mut words).map_err(|what| MeshError::in_line(line, what))?;
                 builder.push_vertex(point, MeshPlace::Line(line))?;
@@ -135,8 +146,11 @@ fn ascii(text: &[u8]) -> Result<MeshFile, MeshError> {
             }
             (Due::EndLoop, b"endloop") => Due::EndFacet,
             (Due::EndFacet, b"endfacet") => Due::Facet,
+            (Due::Corner(_) | Due::EndLoop, _) if number(word).is_some() => {
+                return Err(MeshError::in_line(line, COORDINATES));
+            }
             (due, _) => {
-                let message = format!("{} where {} is due", shown(first), due.name());
+                let message = format!("{} where {} is due", shown(word), due.name());
                 return Err(MeshError::in_line(line, message));
             }
         };
@@ -149,16 +163,63 @@ fn ascii(text: &[u8]) -> Result<MeshFile, MeshError> {
     finished(builder, remarks)
 }
 
+/// The words of a text with their lines.
+struct Words<'a, L> {
+    lines: L,
+    line: u64,
+    rest: &'a [u8],
+}
+
+fn words_of(text: &[u8]) -> Words<'_, impl Iterator<Item = (u64, &[u8])>> {
+    Words {
+        lines: lines(text),
+        line: 1,
+        rest: &[],
+    }
+}
+
+impl<'a, L: Iterator<Item = (u64, &'a [u8])>> Words<'a, L> {
+    fn next(&mut self) -> Option<(u64, &'a [u8])> {
+        loop {
+            self.rest = self.rest.trim_ascii_start();
+            if !self.rest.is_empty() {
+                let end = self.rest.iter().position(u8::is_ascii_whitespace);
+                let (word, rest) = self.rest.split_at(end.unwrap_or(self.rest.len()));
+                self.rest = rest;
+                return Some((self.line, word));
+            }
+            (self.line, self.rest) = self.lines.next()?;
+        }
+    }
+
+    /// Skips the next word of the line if it is this one.
+    fn skip_if(&mut self, word: &[u8]) -> bool {
+        let next = words(self.rest).next().unwrap_or_default();
+        let is_it = next.eq_ignore_ascii_case(word);
+        if is_it {
+            self.next();
+        }
+        is_it
+    }
+
+    /// What is left of the line, which is skipped.
+    fn rest_of_line(&mut self) -> &'a [u8] {
+        std::mem::take(&mut self.rest)
+    }
+}
+
+/// What is wrong with a vertex of fewer or more numbers.
+const COORDINATES: &str = "a vertex has three coordinates: vertex x y z";
+
 /// The coordinates after `vertex`.
-fn point<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Result<DVec3, String> {
-    let words: Vec<_> = words.take(4).collect();
-    let [x, y, z] = words[..] else {
-        return Err("a vertex has three coordinates: vertex x y z".to_owned());
-    };
-    let coordinate = |word| {
+fn point<'a>(
+    words: &mut Words<'a, impl Iterator<Item = (u64, &'a [u8])>>,
+) -> Result<DVec3, String> {
+    let mut coordinate = || {
+        let (_, word) = words.next().ok_or(COORDINATES)?;
         number(word).ok_or_else(|| format!("the coordinate {} is not a number", shown(word)))
     };
-    Ok(DVec3::new(coordinate(x)?, coordinate(y)?, coordinate(z)?))
+    Ok(DVec3::new(coordinate()?, coordinate()?, coordinate()?))
 }
 
 /// Adds the facet of the last three vertices.
@@ -215,6 +276,11 @@ mod tests {
             text.replace("endsolid a\n", ""),
             format!("\u{feff}  {text}"),
             text.replace('\n', "\n\n\t"),
+            // Any white space separates words.
+            text.replace("\nouter", " outer")
+                .replace("\nvertex", "\t vertex"),
+            text.replace("vertex 1 0 0", "vertex 1\n0 0")
+                .replace("outer loop", "outer  loop"),
         ] {
             assert_eq!(corners(text.as_bytes()), expected, "{text:?}");
         }
