@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::error::SceneError;
 use super::names::quoted;
-use super::table::{Column, Row, Table, TableFormat, input};
+use super::table::{Column, ColumnKey, Row, Table, TableFormat, input};
 
 /// Columns of `trace` that are not compared.
 const KNOWN: [&str; 15] = [
@@ -64,11 +64,11 @@ impl GivenHits {
         format: TableFormat,
         most: usize,
     ) -> Result<Self, SceneError> {
-        let wanted = ["hit", "t", "ray"].map(Into::into);
+        let wanted = ["hit", "t", "ray"].map(ColumnKey::AnyCase);
         let table = Table::new(input, path, format, &wanted)?;
         let layout = table.layout();
         let (hit, t) = (layout.column(&wanted[0])?, layout.column(&wanted[1])?);
-        let find = |name: &str| layout.column(&name.into()).ok();
+        let find = |name| layout.column(&ColumnKey::AnyCase(name)).ok();
         let ray = find("ray");
         let mut known: Vec<Column> = KNOWN.iter().filter_map(|name| find(name)).collect();
         known.extend([hit, t].into_iter().chain(ray));

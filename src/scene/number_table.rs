@@ -120,7 +120,10 @@ impl<R: NumberRow, I: Read> NumberTable<R, I> {
         let is_numbered = !columns.is_empty();
         let keys: Vec<ColumnKey> = match is_numbered {
             true => columns.iter().map(|&at| ColumnKey::Number(at)).collect(),
-            false => R::NAMES.iter().map(|&name| name.into()).collect(),
+            false => R::NAMES
+                .iter()
+                .map(|&name| ColumnKey::AnyCase(name))
+                .collect(),
         };
         if is_numbered && ![R::REQUIRED, R::NAMES.len()].contains(&keys.len()) {
             let message = format!(

@@ -17,9 +17,10 @@ use crate::scene::names::{quoted, suggestion};
 /// A column as a user names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ColumnKey {
-    /// By its name in the header; in upper or lower case where no name is the same to the
-    /// letter.
+    /// By its name in the header, to the letter.
     Name(String),
+    /// By its name in upper or lower case, where no name is the same to the letter.
+    AnyCase(&'static str),
     /// By its place, from 0.
     Number(u64),
 }
@@ -60,6 +61,7 @@ impl ColumnKey {
     fn name(&self) -> Option<&str> {
         match self {
             Self::Name(name) => Some(name),
+            Self::AnyCase(name) => Some(name),
             Self::Number(_) => None,
         }
     }
@@ -69,6 +71,7 @@ impl fmt::Display for ColumnKey {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Name(name) => formatter.write_str(&name.escape_debug().to_string()),
+            Self::AnyCase(name) => formatter.write_str(name),
             Self::Number(number) => write!(formatter, "{number}"),
         }
     }
@@ -80,17 +83,19 @@ impl From<&str> for ColumnKey {
     }
 }
 
-/// Where a header has a name, else where it has it in other cases.
-fn places(header: &[String], name: &str) -> Vec<usize> {
+/// Where a header has the name of a key; nowhere if that is a number.
+fn places(header: &[String], key: &ColumnKey) -> Vec<usize> {
     let with = |is_same: &dyn Fn(&str) -> bool| -> Vec<usize> {
         let all = header.iter().enumerate();
         all.filter_map(|(index, cell)| is_same(cell).then_some(index))
             .collect()
     };
-    let same = with(&|cell| cell == name);
-    match same.is_empty() {
-        true => with(&|cell| cell.eq_ignore_ascii_case(name)),
-        false => same,
+    let same = with(&|cell| key.name() == Some(cell));
+    match key {
+        ColumnKey::AnyCase(name) if same.is_empty() => {
+            with(&|cell| cell.eq_ignore_ascii_case(name))
+        }
+        _ => same,
     }
 }
 
@@ -117,10 +122,8 @@ impl Beginning<'_> {
 
     /// How many of the wanted columns are named.
     fn wanted_names(&self, names: &[String]) -> usize {
-        let wanted = self.wanted.iter().filter_map(ColumnKey::name);
-        wanted
-            .filter(|name| !places(names, name).is_empty())
-            .count()
+        let wanted = self.wanted.iter();
+        wanted.filter(|key| !places(names, key).is_empty()).count()
     }
 
     /// Whether a cell of the first row, or one that is wanted by its number, is text.
@@ -132,7 +135,7 @@ impl Beginning<'_> {
             .iter()
             .filter_map(|key| match key {
                 ColumnKey::Number(number) => numbers.get(usize::try_from(*number).ok()?),
-                ColumnKey::Name(_) => None,
+                ColumnKey::Name(_) | ColumnKey::AnyCase(_) => None,
             })
             .collect();
         match numbered.is_empty() {
@@ -238,7 +241,8 @@ impl Layout {
     pub(in crate::scene) fn find(&self, key: &ColumnKey) -> Result<Column, (String, String)> {
         let names = usize::from(self.has_row_names);
         let name = match key {
-            ColumnKey::Name(name) => name,
+            ColumnKey::Name(name) => name.as_str(),
+            ColumnKey::AnyCase(name) => name,
             ColumnKey::Number(number) => {
                 return match usize::try_from(*number).ok().filter(|at| *at < self.cells) {
                     Some(at) => Ok(Column(at)),
@@ -249,7 +253,7 @@ impl Layout {
                 };
             }
         };
-        match places(&self.header, name)[..] {
+        match places(&self.header, key)[..] {
             [index] => Ok(Column(index + names)),
             [_, _, ..] => Err((
                 format!("has more than one column {}", quoted(name)),
@@ -264,8 +268,7 @@ impl Layout {
 
     /// Whether any column has that name.
     pub(in crate::scene) fn names(&self, key: &ColumnKey) -> bool {
-        key.name()
-            .is_some_and(|name| !places(&self.header, name).is_empty())
+        !places(&self.header, key).is_empty()
     }
 
     fn missing_help(&self, name: &str) -> String {
@@ -321,7 +324,7 @@ impl ColumnKey {
     /// The cells that a row needs for it.
     fn end(&self) -> usize {
         match self {
-            Self::Name(_) => 0,
+            Self::Name(_) | Self::AnyCase(_) => 0,
             Self::Number(number) => usize::try_from(*number).map_or(0, |at| at.saturating_add(1)),
         }
     }

@@ -52,9 +52,6 @@ fn table_in_any_layout_gives_the_same_numbers() {
         // R: names of rows, without a header or with an empty one.
         "\"x\" \"y\"\n\"1\" 1 2\n\"2\" 3 4\n",
         "\"\",\"x\",\"y\"\n\"1\",1,2\n\"2\",3,4\n",
-        // CloudCompare: a header in a comment, in upper case.
-        "//X Y Z\n1 2 0\n3 4 0\n",
-        "X,Y\n1,2\n3,4\n",
         // numpy.savetxt: names behind #, separated like the rows or not.
         "# x y\n1.0e+00 2\n3 4\n",
         "# x,y\n1 2\n3 4\n",
@@ -166,7 +163,7 @@ fn tables_that_say_something_else_are_refused() {
         ("# x,y\n\n", "t.csv:3: the table is empty"),
         ("1,2\n", "its first line contains numbers"),
         ("x,x,y\n1,2,3\n", "more than one column \"x\""),
-        ("X,Z\n1,2\n", "no column \"y\""),
+        ("x,Y\n1,2\n", "no column \"y\"; did you mean \"Y\"?"),
         (
             "x,y\n1,2\n1\n",
             "t.csv:3: the row has 1 cells, the header has 2",
@@ -234,10 +231,13 @@ fn columns_that_nobody_reads_are_named() {
 }
 
 #[test]
-fn name_to_the_letter_wins_over_other_cases() {
-    assert_eq!(of_x_and_y("X,x,y\n9,1,2\n"), Ok(vec![vec![1.0, 2.0]]));
-    assert_eq!(of_x_and_y("x,y,Y\n1,2,3\n"), Ok(vec![vec![1.0, 2.0]]));
-    let error = of_x_and_y("X,y,X\n1,2,3\n").unwrap_err();
+fn name_in_any_case_counts_where_none_is_the_same_to_the_letter() {
+    let keys = ["x", "y"].map(ColumnKey::AnyCase);
+    let of = |text| rows(text, TableFormat::default(), &keys);
+    // As CloudCompare writes it.
+    assert_eq!(of("//X Y Z\n1 2 0\n"), Ok(vec![vec![1.0, 2.0]]));
+    assert_eq!(of("X,x,y,Y\n9,1,2,9\n"), Ok(vec![vec![1.0, 2.0]]));
+    let error = of("X,y,X\n1,2,3\n").unwrap_err();
     assert!(error.contains("more than one column \"x\""), "{error}");
 }
 
