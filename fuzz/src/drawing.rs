@@ -202,7 +202,7 @@ impl<'a, 'b> Drawing<'a, 'b> {
         Ok(solids)
     }
 
-    /// A composition of at most so many levels; `None` where numbers are of no solid.
+    /// A composition of at most `levels` levels; `None` where numbers are of no solid.
     pub fn composition(&mut self, levels: usize) -> Result<Option<Composition>> {
         if levels == 0 || self.one_in(4)? {
             return Ok(self.new_solid(true)?.map(Composition::Solid));
@@ -258,7 +258,7 @@ fn moved(solid: &AnySolid, by: DVec3) -> Option<AnySolid> {
     changed(solid, |point| point + by, 1.0)
 }
 
-/// A solid seen from the origin as if it were so many times larger.
+/// A solid seen from the origin as if it were larger by a factor.
 fn scaled(solid: &AnySolid, factor: f64) -> Option<AnySolid> {
     changed(solid, |point| point * factor, factor)
 }

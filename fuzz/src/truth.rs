@@ -6,7 +6,7 @@
 //! `u (1 + 11 κ)` of the way to it (κ the condition of its matrix) and in the solid's own
 //! space 32 u of all lengths that the solver sees (`docs/derivations.md`, sections 5 and
 //! 6). Hits that are missing, or others, are accepted only if displacing the ray by up to
-//! 4 Δ changes the truth as well: by two dozen displacements around it, of which one is
+//! 4 Δ changes the truth as well: by two dozen displacements around it, one of them
 //! within 15 degrees of any direction across the ray. Hits beside the true ones are if the
 //! ray is within 4 Δ of the surface there.
 

@@ -285,7 +285,7 @@ fn judge(
             None => met.push(Met::new(tracer.scene(), &hit, deviation)),
         }
     }
-    // The first that is met is the solid of the exact hit.
+    // The first along the ray is the solid of the exact hit.
     let own = met.first();
     let own_distance = own.map_or(0.0, |own| own.in_world(own.margin(allowance)));
     let along = own_distance / speed;

@@ -5,7 +5,7 @@
 //! third axis. A corner's two numbers across the ray are rounded in the same way in every
 //! triangle that has it. Of these rounded numbers an edge's area `a b - c d` is rounded
 //! monotonically: it has the right sign, or is 0, and its sign is the opposite one in the
-//! triangle on the other side. A triangle is met where no two of its three areas have opposite
+//! triangle on the other side. A triangle is hit where no two of its three areas have opposite
 //! signs, so a ray to a common edge or corner meets at least one of the triangles there.
 //!
 //! A corner is displaced by the rounding of three operations on its distance from the

@@ -290,7 +290,7 @@ impl Frame {
 const LEAST_COMPONENT: f64 = power_of_two(-59);
 
 /// A component of a direction for Embree, which takes one of at most 1e-18 in size for
-/// +1e-18, whatever its sign. For coherent packets it picks rays that go the same way by
+/// +1e-18, whatever its sign. For coherent packets it picks rays of like directions by
 /// the signs of their components, and then relies on the signs of the inverses: so one ray
 /// with -1e-19 beside one with -1e-17 makes the packet miss boxes. Zero has one sign. It
 /// moves a ray by less than 2^-56 on its way of at most 4 through the sphere.
