@@ -231,11 +231,14 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
             };
             ChordEnd { t, part, on_rim }
         } else {
+            // A line that comes into the wall at the far disc's height only touches the
+            // rim. The chord's own entry will not do: at the near disc of a solid that is
+            // flat beside the rounding of heights it is at any height.
+            let to_enter = slab.beyond_near(discs, self.wall.enter());
             ChordEnd {
                 t: at_most(slab.at(discs.far), t),
                 part: discs.far_part(),
-                // A line that enters at the far disc's height only touches the rim.
-                on_rim: (height == slab.height) | (slab.beyond_near(discs, enter) == slab.height),
+                on_rim: (height == slab.height) | (to_enter == slab.height),
             }
         };
         // At an edge the two may come out in the wrong order by a rounding, and of a line
