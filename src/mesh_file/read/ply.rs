@@ -210,7 +210,7 @@ mod tests {
                 &good,
                 "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
                 13,
-                "names vertex 3",
+                "number 3 from 0",
             ),
             (
                 &good,
