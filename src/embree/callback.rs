@@ -12,9 +12,11 @@
 use super::abort::AbortOnPanic;
 use super::isa::MaxIsa;
 use super::query::Query;
+use super::ray::Ray32;
 use super::ray_set::{GREATEST_PACKET, RaySet};
+use super::scene::GeometryId;
 use super::sys::{self, word};
-use super::user::{Registered, UserGeometry};
+use super::user::{Reached, Registered, UserGeometry};
 use crate::math::{LANES, LaneMask};
 
 /// The callbacks of one geometry type for one instruction set.
@@ -84,6 +86,32 @@ callbacks!(
     )
 );
 
+/// What Embree calls back for in a context, which holds the instance on the way.
+#[inline(always)]
+fn reached(primitive: u32, context: &sys::cyltrace_context) -> Reached {
+    let instance = context.embree.instID[0];
+    Reached {
+        primitive,
+        instance: (instance != sys::INVALID_ID).then_some(GeometryId(instance)),
+    }
+}
+
+/// The ray of a callback of one lane.
+///
+/// # Safety
+/// Invariant 7: there is one lane.
+#[inline(always)]
+unsafe fn ray32(words: *const u32) -> Ray32 {
+    // SAFETY: the caller's promise; `sys::word` asserts the layout.
+    let ray = unsafe { &*words.cast::<sys::RTCRay>() };
+    Ray32 {
+        origin: [ray.org_x, ray.org_y, ray.org_z],
+        direction: [ray.dir_x, ray.dir_y, ray.dir_z],
+        t_near: ray.tnear,
+        t_far: ray.tfar,
+    }
+}
+
 type Packet<G> = <<G as UserGeometry>::Query as Query>::Packet;
 
 /// Embree's intersect callback.
@@ -100,12 +128,15 @@ unsafe fn intersect<G: UserGeometry>(args: *const sys::RTCIntersectFunctionNArgu
     // write to it while the callback runs.
     let context = unsafe { &*args.context.cast::<sys::cyltrace_context>() };
     let words = args.rayhit.cast::<u32>();
+    let at = reached(args.primID, context);
     if !context.is_packet {
         assert_eq!(args.N, 1, "a single ray has one lane");
+        // SAFETY: invariant 7: one lane.
+        let ray = unsafe { ray32(words) };
         let guard = AbortOnPanic::new("intersect");
         // SAFETY: invariant 4: behind Embree's part of the context is the query.
         let query = unsafe { &mut *context.query.cast::<G::Query>() };
-        let hit = geometry.intersect(args.primID, query);
+        let hit = geometry.intersect(at, &ray, query);
         guard.passed();
         // SAFETY: invariant 7: one mask a lane.
         unsafe { *args.valid = -i32::from(hit.is_some()) };
@@ -130,14 +161,14 @@ unsafe fn intersect<G: UserGeometry>(args: *const sys::RTCIntersectFunctionNArgu
     }
     // SAFETY: invariant 4: the query of a packet is the packet's state.
     let packet = unsafe { &mut *context.query.cast::<Packet<G>>() };
-    let (valid, primitive, id) = (args.valid, args.primID, args.geomID);
+    let (valid, id) = (args.valid, args.geomID);
     // SAFETY: invariant 7: `N` lanes, of which Embree has these numbers.
     unsafe {
         match args.N {
-            1 => intersect_lanes::<G, 1>(geometry, valid, words, primitive, id, packet),
-            4 => intersect_lanes::<G, 4>(geometry, valid, words, primitive, id, packet),
-            8 => intersect_lanes::<G, 8>(geometry, valid, words, primitive, id, packet),
-            16 => intersect_lanes::<G, 16>(geometry, valid, words, primitive, id, packet),
+            1 => intersect_lanes::<G, 1>(geometry, valid, words, at, id, packet),
+            4 => intersect_lanes::<G, 4>(geometry, valid, words, at, id, packet),
+            8 => intersect_lanes::<G, 8>(geometry, valid, words, at, id, packet),
+            16 => intersect_lanes::<G, 16>(geometry, valid, words, at, id, packet),
             lanes => unknown_width("intersect_packet", lanes),
         }
     }
@@ -152,7 +183,7 @@ unsafe fn intersect_lanes<G: UserGeometry, const N: usize>(
     geometry: &G,
     valid: *mut i32,
     words: *mut u32,
-    primitive: u32,
+    at: Reached,
     geometry_id: u32,
     packet: &mut Packet<G>,
 ) {
@@ -161,7 +192,7 @@ unsafe fn intersect_lanes<G: UserGeometry, const N: usize>(
     let rays = lanes.rays();
     let mut t_far = [f32::NEG_INFINITY; GREATEST_PACKET];
     let guard = AbortOnPanic::new("intersect_packet");
-    let hits = geometry.intersect_packet(primitive, rays, &mut t_far, packet) & rays;
+    let hits = geometry.intersect_packet(at, rays, &mut t_far, packet) & rays;
     guard.passed();
 
     // SAFETY: the caller's promise, here and below; alignment is that of words.
@@ -179,7 +210,7 @@ unsafe fn intersect_lanes<G: UserGeometry, const N: usize>(
         let lane = lanes.lane(ray);
         valid[lane] = -1;
         ends[lane] = ends[lane].min(t_far[ray]);
-        primitives[lane] = primitive;
+        primitives[lane] = at.primitive;
         geometries[lane] = geometry_id;
     }
 }
@@ -197,12 +228,15 @@ unsafe fn occluded<G: UserGeometry>(args: *const sys::RTCOccludedFunctionNArgume
     // SAFETY: invariant 4, as in `intersect`.
     let context = unsafe { &*args.context.cast::<sys::cyltrace_context>() };
     let words = args.ray.cast::<u32>();
+    let at = reached(args.primID, context);
     if !context.is_packet {
         assert_eq!(args.N, 1, "a single ray has one lane");
+        // SAFETY: invariant 7: one lane.
+        let ray = unsafe { ray32(words) };
         let guard = AbortOnPanic::new("occluded");
         // SAFETY: invariant 4, as in `intersect`.
         let query = unsafe { &mut *context.query.cast::<G::Query>() };
-        let hit = geometry.occluded(args.primID, query);
+        let hit = geometry.occluded(at, &ray, query);
         guard.passed();
         // SAFETY: invariant 7: one mask a lane.
         unsafe { *args.valid = -i32::from(hit) };
@@ -215,14 +249,14 @@ unsafe fn occluded<G: UserGeometry>(args: *const sys::RTCOccludedFunctionNArgume
     }
     // SAFETY: invariant 4, as in `intersect`.
     let packet = unsafe { &mut *context.query.cast::<Packet<G>>() };
-    let (valid, primitive) = (args.valid, args.primID);
+    let valid = args.valid;
     // SAFETY: invariant 7, as in `intersect`.
     unsafe {
         match args.N {
-            1 => occluded_lanes::<G, 1>(geometry, valid, words, primitive, packet),
-            4 => occluded_lanes::<G, 4>(geometry, valid, words, primitive, packet),
-            8 => occluded_lanes::<G, 8>(geometry, valid, words, primitive, packet),
-            16 => occluded_lanes::<G, 16>(geometry, valid, words, primitive, packet),
+            1 => occluded_lanes::<G, 1>(geometry, valid, words, at, packet),
+            4 => occluded_lanes::<G, 4>(geometry, valid, words, at, packet),
+            8 => occluded_lanes::<G, 8>(geometry, valid, words, at, packet),
+            16 => occluded_lanes::<G, 16>(geometry, valid, words, at, packet),
             lanes => unknown_width("occluded_packet", lanes),
         }
     }
@@ -237,14 +271,14 @@ unsafe fn occluded_lanes<G: UserGeometry, const N: usize>(
     geometry: &G,
     valid: *mut i32,
     words: *mut u32,
-    primitive: u32,
+    at: Reached,
     packet: &mut Packet<G>,
 ) {
     // SAFETY: the caller's promise.
     let lanes = unsafe { Lanes::<N>::read(valid, words) };
     let rays = lanes.rays();
     let guard = AbortOnPanic::new("occluded_packet");
-    let hits = geometry.occluded_packet(primitive, rays, packet) & rays;
+    let hits = geometry.occluded_packet(at, rays, packet) & rays;
     guard.passed();
 
     // SAFETY: the caller's promise, as in `intersect_lanes`.

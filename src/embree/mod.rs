@@ -102,4 +102,4 @@ pub use query::{NoPackets, Query};
 pub use ray::{Box32, GREATEST_COORDINATE, NativeHit, Ray32};
 pub use ray_set::{GREATEST_PACKET, RayNumbers, RaySet};
 pub use scene::{GeometryId, Scene, SceneBuilder};
-pub use user::UserGeometry;
+pub use user::{Reached, UserGeometry};

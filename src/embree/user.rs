@@ -13,10 +13,19 @@ use super::device::Device;
 use super::error::Error;
 use super::float_mode::with_default_float_mode;
 use super::query::Query;
-use super::ray::Box32;
+use super::ray::{Box32, Ray32};
 use super::ray_set::{GREATEST_PACKET, RaySet};
-use super::scene::GeometryHandle;
+use super::scene::{GeometryHandle, GeometryId};
 use super::sys;
+
+/// What Embree calls back for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reached {
+    /// The number of the primitive.
+    pub primitive: u32,
+    /// The instance that the geometry's scene is reached in.
+    pub instance: Option<GeometryId>,
+}
 
 /// Primitives that Rust code bounds and intersects.
 ///
@@ -39,14 +48,16 @@ pub trait UserGeometry: Send + Sync + 'static {
     /// scene is committed.
     fn bounds(&self, primitive: u32) -> Box32;
 
-    /// Intersects the query's ray with a primitive whose box it may meet.
+    /// Intersects the query's ray with a primitive whose box it may meet. `ray` is
+    /// Embree's own, in the space of the scene that the geometry is attached to; it ends
+    /// where the hits so far have left it.
     /// `Some(t_far)` accepts a hit and shortens Embree's ray, so that boxes
     /// beyond it are left out; a greater or NaN `t_far` does not change the
     /// ray. `None` is no hit. The query may be passed on to another scene.
-    fn intersect(&self, primitive: u32, query: &mut Self::Query) -> Option<f32>;
+    fn intersect(&self, at: Reached, ray: &Ray32, query: &mut Self::Query) -> Option<f32>;
 
     /// Whether a primitive ends the query, in [`Scene::any`](super::Scene::any).
-    fn occluded(&self, primitive: u32, query: &mut Self::Query) -> bool;
+    fn occluded(&self, at: Reached, ray: &Ray32, query: &mut Self::Query) -> bool;
 
     /// Intersects rays of a packet with a primitive, each as
     /// [`intersect`](Self::intersect) does. A hit is accepted for the rays that
@@ -59,7 +70,7 @@ pub trait UserGeometry: Send + Sync + 'static {
     /// does.
     fn intersect_packet(
         &self,
-        primitive: u32,
+        at: Reached,
         rays: RaySet,
         t_far: &mut [f32; GREATEST_PACKET],
         packet: &mut <Self::Query as Query>::Packet,
@@ -70,7 +81,7 @@ pub trait UserGeometry: Send + Sync + 'static {
     /// holds all rays of the packet that have not ended yet, wherever they go.
     fn occluded_packet(
         &self,
-        primitive: u32,
+        at: Reached,
         rays: RaySet,
         packet: &mut <Self::Query as Query>::Packet,
     ) -> RaySet;

@@ -176,7 +176,8 @@ fn wave(primitives: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::embree::{
-        Box32, Device, DeviceOptions, GREATEST_PACKET, RaySet, SceneBuilder, UserGeometry,
+        Box32, Device, DeviceOptions, GREATEST_PACKET, Ray32, RaySet, Reached, SceneBuilder,
+        UserGeometry,
     };
     use crate::math::Random;
     use crate::scene::{OtherSolids, PrototypeIndex};
@@ -195,17 +196,17 @@ mod tests {
             self.0[primitive as usize]
         }
 
-        fn intersect(&self, _: u32, (): &mut ()) -> Option<f32> {
+        fn intersect(&self, _: Reached, _: &Ray32, (): &mut ()) -> Option<f32> {
             None
         }
 
-        fn occluded(&self, _: u32, (): &mut ()) -> bool {
+        fn occluded(&self, _: Reached, _: &Ray32, (): &mut ()) -> bool {
             false
         }
 
         fn intersect_packet(
             &self,
-            _: u32,
+            _: Reached,
             _: RaySet,
             _: &mut [f32; GREATEST_PACKET],
             (): &mut (),
@@ -213,7 +214,7 @@ mod tests {
             RaySet::EMPTY
         }
 
-        fn occluded_packet(&self, _: u32, _: RaySet, (): &mut ()) -> RaySet {
+        fn occluded_packet(&self, _: Reached, _: RaySet, (): &mut ()) -> RaySet {
             RaySet::EMPTY
         }
     }

@@ -2,33 +2,43 @@
 
 use std::array;
 
-use cyltrace::embree::{Box32, GREATEST_PACKET, Query, Ray32, RaySet, Rays32, UserGeometry};
+use cyltrace::embree::{
+    Box32, GREATEST_PACKET, Query, Ray32, RaySet, Rays32, Reached, UserGeometry,
+};
 use cyltrace::math::Random;
 use glam::DVec3;
+
+/// A ray for callbacks that use that of their query.
+pub const UNUSED: Ray32 = Ray32 {
+    origin: [0.0; 3],
+    direction: [1.0; 3],
+    t_near: 0.0,
+    t_far: 0.0,
+};
 
 /// The methods for packets of a geometry that answers for each ray by itself.
 macro_rules! one_by_one {
     () => {
         fn intersect_packet(
             &self,
-            primitive: u32,
+            at: cyltrace::embree::Reached,
             rays: cyltrace::embree::RaySet,
             t_far: &mut [f32; cyltrace::embree::GREATEST_PACKET],
             packet: &mut crate::balls::BallPacket,
         ) -> cyltrace::embree::RaySet {
             crate::balls::intersect_each(rays, t_far, |ray| {
-                self.intersect(primitive, &mut packet[ray])
+                self.intersect(at, &crate::balls::UNUSED, &mut packet[ray])
             })
         }
 
         fn occluded_packet(
             &self,
-            primitive: u32,
+            at: cyltrace::embree::Reached,
             rays: cyltrace::embree::RaySet,
             packet: &mut crate::balls::BallPacket,
         ) -> cyltrace::embree::RaySet {
             rays.into_iter()
-                .filter(|&ray| self.occluded(primitive, &mut packet[ray]))
+                .filter(|&ray| self.occluded(at, &crate::balls::UNUSED, &mut packet[ray]))
                 .collect()
         }
     };
@@ -39,7 +49,7 @@ macro_rules! no_packets {
     () => {
         fn intersect_packet(
             &self,
-            _primitive: u32,
+            _: cyltrace::embree::Reached,
             _rays: cyltrace::embree::RaySet,
             _t_far: &mut [f32; cyltrace::embree::GREATEST_PACKET],
             packet: &mut cyltrace::embree::NoPackets,
@@ -49,7 +59,7 @@ macro_rules! no_packets {
 
         fn occluded_packet(
             &self,
-            _primitive: u32,
+            _: cyltrace::embree::Reached,
             _rays: cyltrace::embree::RaySet,
             packet: &mut cyltrace::embree::NoPackets,
         ) -> cyltrace::embree::RaySet {
@@ -119,19 +129,19 @@ impl UserGeometry for Balls {
         self.0[primitive as usize].bounds()
     }
 
-    fn intersect(&self, primitive: u32, query: &mut BallQuery) -> Option<f32> {
+    fn intersect(&self, at: Reached, _: &Ray32, query: &mut BallQuery) -> Option<f32> {
         query.visits += 1;
-        let t = self.0[primitive as usize].enter(query)?;
-        let is_better = query.best.is_none_or(|best| (t, primitive) < best);
+        let t = self.0[at.primitive as usize].enter(query)?;
+        let is_better = query.best.is_none_or(|best| (t, at.primitive) < best);
         is_better.then(|| {
-            query.best = Some((t, primitive));
+            query.best = Some((t, at.primitive));
             (t as f32).next_up()
         })
     }
 
-    fn occluded(&self, primitive: u32, query: &mut BallQuery) -> bool {
+    fn occluded(&self, at: Reached, _: &Ray32, query: &mut BallQuery) -> bool {
         query.visits += 1;
-        self.0[primitive as usize].enter(query).is_some()
+        self.0[at.primitive as usize].enter(query).is_some()
     }
 
     one_by_one!();

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use cyltrace::embree::{
     Box32, Coherence, Device, DeviceOptions, Error, GREATEST_PACKET, GeometryId, NativeHit,
-    PacketWidth, Ray32, RaySet, Rays32, Scene, SceneBuilder, UserGeometry,
+    PacketWidth, Ray32, RaySet, Rays32, Reached, Scene, SceneBuilder, UserGeometry,
 };
 
 const IDENTITY: [[f32; 4]; 3] = [
@@ -99,17 +99,17 @@ impl UserGeometry for Slab {
         }
     }
 
-    fn intersect(&self, _primitive: u32, (): &mut ()) -> Option<f32> {
+    fn intersect(&self, _: Reached, _: &Ray32, (): &mut ()) -> Option<f32> {
         Some(self.0)
     }
 
-    fn occluded(&self, _primitive: u32, (): &mut ()) -> bool {
+    fn occluded(&self, _: Reached, _: &Ray32, (): &mut ()) -> bool {
         true
     }
 
     fn intersect_packet(
         &self,
-        _primitive: u32,
+        _: Reached,
         rays: RaySet,
         t_far: &mut [f32; GREATEST_PACKET],
         (): &mut (),
@@ -118,7 +118,7 @@ impl UserGeometry for Slab {
         rays
     }
 
-    fn occluded_packet(&self, _primitive: u32, rays: RaySet, (): &mut ()) -> RaySet {
+    fn occluded_packet(&self, _: Reached, rays: RaySet, (): &mut ()) -> RaySet {
         rays
     }
 }

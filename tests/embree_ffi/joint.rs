@@ -5,7 +5,7 @@ use std::sync::Barrier;
 use std::thread;
 
 use cyltrace::embree::{
-    Box32, Device, DeviceOptions, Error, JointCommit, SceneBuilder, UserGeometry,
+    Box32, Device, DeviceOptions, Error, JointCommit, Ray32, Reached, SceneBuilder, UserGeometry,
     with_flushed_denormals,
 };
 
@@ -116,13 +116,13 @@ impl UserGeometry for OnTouch {
         }
     }
 
-    fn intersect(&self, _primitive: u32, query: &mut BallQuery) -> Option<f32> {
+    fn intersect(&self, _: Reached, _: &Ray32, query: &mut BallQuery) -> Option<f32> {
         let scene = self.0.join().unwrap();
         scene.closest(&query.ray(), query);
         query.best.map(|(t, _)| (t as f32).next_up())
     }
 
-    fn occluded(&self, _primitive: u32, query: &mut BallQuery) -> bool {
+    fn occluded(&self, _: Reached, _: &Ray32, query: &mut BallQuery) -> bool {
         self.0.join().unwrap().any(&query.ray(), query)
     }
 

@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use cyltrace::embree::{
-    Box32, Device, DeviceOptions, NoPackets, Query, Ray32, Scene, SceneBuilder, UserGeometry,
+    Box32, Device, DeviceOptions, NoPackets, Query, Ray32, Reached, Scene, SceneBuilder,
+    UserGeometry,
 };
 
 use crate::balls::{Balls, no_packets, random_balls};
@@ -66,12 +67,12 @@ impl UserGeometry for Witness {
         }
     }
 
-    fn intersect(&self, _primitive: u32, query: &mut Visits) -> Option<f32> {
+    fn intersect(&self, _: Reached, _: &Ray32, query: &mut Visits) -> Option<f32> {
         query.0 += 1;
         None
     }
 
-    fn occluded(&self, _primitive: u32, _query: &mut Visits) -> bool {
+    fn occluded(&self, _: Reached, _: &Ray32, _query: &mut Visits) -> bool {
         true
     }
 

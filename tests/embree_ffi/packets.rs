@@ -4,8 +4,8 @@
 use std::array;
 
 use cyltrace::embree::{
-    Box32, Coherence, Device, DeviceOptions, GREATEST_PACKET, MaxIsa, PacketWidth, RaySet, Rays32,
-    Scene, SceneBuilder, UserGeometry,
+    Box32, Coherence, Device, DeviceOptions, GREATEST_PACKET, MaxIsa, PacketWidth, Ray32, RaySet,
+    Rays32, Reached, Scene, SceneBuilder, UserGeometry,
 };
 use cyltrace::math::Random;
 use glam::DVec3;
@@ -234,7 +234,7 @@ impl UserGeometry for Nest {
         }
     }
 
-    fn intersect(&self, _primitive: u32, query: &mut BallQuery) -> Option<f32> {
+    fn intersect(&self, _: Reached, _: &Ray32, query: &mut BallQuery) -> Option<f32> {
         let (mut packet, place) = Self::alone(query);
         let (width, coherence) = self.way;
         let active = RaySet::from_bits(1 << place);
@@ -245,7 +245,7 @@ impl UserGeometry for Nest {
         end(query)
     }
 
-    fn occluded(&self, _primitive: u32, query: &mut BallQuery) -> bool {
+    fn occluded(&self, _: Reached, _: &Ray32, query: &mut BallQuery) -> bool {
         let (mut packet, place) = Self::alone(query);
         let (width, coherence) = self.way;
         let active = RaySet::from_bits(1 << place);
@@ -257,7 +257,7 @@ impl UserGeometry for Nest {
 
     fn intersect_packet(
         &self,
-        _primitive: u32,
+        _: Reached,
         rays: RaySet,
         t_far: &mut [f32; GREATEST_PACKET],
         packet: &mut BallPacket,
@@ -280,7 +280,7 @@ impl UserGeometry for Nest {
         })
     }
 
-    fn occluded_packet(&self, _primitive: u32, rays: RaySet, packet: &mut BallPacket) -> RaySet {
+    fn occluded_packet(&self, _: Reached, rays: RaySet, packet: &mut BallPacket) -> RaySet {
         if self.as_single_rays {
             let blocked = rays.into_iter().filter(|&ray| {
                 let query = &mut packet[ray];

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use cyltrace::embree::{
     Box32, Coherence, Device, DeviceOptions, GREATEST_PACKET, PacketWidth, Ray32, RaySet, Rays32,
-    SceneBuilder, UserGeometry,
+    Reached, SceneBuilder, UserGeometry,
 };
 
 const VARIABLE: &str = "CYLTRACE_TEST_PANICKING_CALLBACK";
@@ -41,19 +41,19 @@ impl UserGeometry for Panicking {
         }
     }
 
-    fn intersect(&self, _primitive: u32, _query: &mut ()) -> Option<f32> {
+    fn intersect(&self, _: Reached, _: &Ray32, _query: &mut ()) -> Option<f32> {
         self.reach("intersect");
         None
     }
 
-    fn occluded(&self, _primitive: u32, _query: &mut ()) -> bool {
+    fn occluded(&self, _: Reached, _: &Ray32, _query: &mut ()) -> bool {
         self.reach("occluded");
         false
     }
 
     fn intersect_packet(
         &self,
-        _primitive: u32,
+        _: Reached,
         _rays: RaySet,
         _t_far: &mut [f32; GREATEST_PACKET],
         _packet: &mut (),
@@ -62,7 +62,7 @@ impl UserGeometry for Panicking {
         RaySet::EMPTY
     }
 
-    fn occluded_packet(&self, _primitive: u32, _rays: RaySet, _packet: &mut ()) -> RaySet {
+    fn occluded_packet(&self, _: Reached, _rays: RaySet, _packet: &mut ()) -> RaySet {
         self.reach("occluded_packet");
         RaySet::EMPTY
     }

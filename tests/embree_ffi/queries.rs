@@ -8,7 +8,8 @@ use std::sync::{Arc, Mutex, OnceLock};
 use std::thread;
 
 use cyltrace::embree::{
-    Box32, Device, DeviceOptions, Error, MaxIsa, Ray32, Scene, SceneBuilder, UserGeometry, Version,
+    Box32, Device, DeviceOptions, Error, MaxIsa, Ray32, Reached, Scene, SceneBuilder, UserGeometry,
+    Version,
 };
 use glam::DVec3;
 
@@ -211,16 +212,16 @@ impl UserGeometry for Level {
         self.ball.bounds()
     }
 
-    fn intersect(&self, primitive: u32, query: &mut BallQuery) -> Option<f32> {
+    fn intersect(&self, at: Reached, _: &Ray32, query: &mut BallQuery) -> Option<f32> {
         query.visits += 1;
         match &self.inner {
             Some(scene) => scene.closest(&query.ray(), query),
-            None => query.best = Some((self.ball.enter(query)?, primitive)),
+            None => query.best = Some((self.ball.enter(query)?, at.primitive)),
         }
         query.best.map(|(t, _)| t as f32)
     }
 
-    fn occluded(&self, _primitive: u32, query: &mut BallQuery) -> bool {
+    fn occluded(&self, _: Reached, _: &Ray32, query: &mut BallQuery) -> bool {
         match &self.inner {
             Some(scene) => scene.any(&query.ray(), query),
             None => self.ball.enter(query).is_some(),
@@ -285,12 +286,12 @@ impl UserGeometry for Lazy {
         }
     }
 
-    fn intersect(&self, _primitive: u32, query: &mut BallQuery) -> Option<f32> {
+    fn intersect(&self, _: Reached, _: &Ray32, query: &mut BallQuery) -> Option<f32> {
         self.scene().closest(&query.ray(), query);
         query.best.map(|(t, _)| (t as f32).next_up())
     }
 
-    fn occluded(&self, _primitive: u32, query: &mut BallQuery) -> bool {
+    fn occluded(&self, _: Reached, _: &Ray32, query: &mut BallQuery) -> bool {
         self.scene().any(&query.ray(), query)
     }
 
@@ -349,12 +350,12 @@ impl UserGeometry for ModeWitness {
         }
     }
 
-    fn intersect(&self, _primitive: u32, query: &mut Self::Query) -> Option<f32> {
+    fn intersect(&self, _: Reached, _: &Ray32, query: &mut Self::Query) -> Option<f32> {
         query.push(flushes_denormals());
         None
     }
 
-    fn occluded(&self, _primitive: u32, query: &mut Self::Query) -> bool {
+    fn occluded(&self, _: Reached, _: &Ray32, query: &mut Self::Query) -> bool {
         query.push(flushes_denormals());
         false
     }

@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::clusters::{Item, cluster};
 use super::cylinders::Cylinders;
 use super::ends::Ends;
-use crate::embree::{Box32, GREATEST_PACKET, RaySet, UserGeometry};
+use crate::embree::{Box32, GREATEST_PACKET, Ray32, RaySet, Reached, UserGeometry};
 use crate::math::{LANES, LaneMask, LaneVectors, Lanes};
 use crate::scene::Records;
 use crate::solid::lanes::{CylinderLanes, RayLanes, first};
@@ -226,32 +226,32 @@ impl<E: Ends, S: Stored> UserGeometry for BlockedCylinders<E, S> {
     }
 
     #[inline(always)]
-    fn intersect(&self, primitive: u32, query: &mut Query) -> Option<f32> {
+    fn intersect(&self, at: Reached, _: &Ray32, query: &mut Query) -> Option<f32> {
         counters::called_back();
         query.callbacks += 1;
         let before = query.bound();
-        query.visit_block::<E>(&self.blocks[primitive as usize], &self.cylinders);
+        query.visit_block::<E>(&self.blocks[at.primitive as usize], &self.cylinders);
         (query.bound() < before).then(|| query.t_far())
     }
 
     #[inline(always)]
-    fn occluded(&self, primitive: u32, query: &mut Query) -> bool {
+    fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
         counters::called_back();
         query.callbacks += 1;
-        query.meets_block::<E>(&self.blocks[primitive as usize])
+        query.meets_block::<E>(&self.blocks[at.primitive as usize])
     }
 
     #[inline(always)]
     fn intersect_packet(
         &self,
-        primitive: u32,
+        at: Reached,
         rays: RaySet,
         t_far: &mut [f32; GREATEST_PACKET],
         packet: &mut Packet,
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        let block = &self.blocks[primitive as usize];
+        let block = &self.blocks[at.primitive as usize];
         let mut shorter = RaySet::EMPTY;
         for lane in 0..block.len() {
             let place = (&self.cylinders, block.record(lane));
@@ -261,10 +261,10 @@ impl<E: Ends, S: Stored> UserGeometry for BlockedCylinders<E, S> {
     }
 
     #[inline(always)]
-    fn occluded_packet(&self, primitive: u32, rays: RaySet, packet: &mut Packet) -> RaySet {
+    fn occluded_packet(&self, at: Reached, rays: RaySet, packet: &mut Packet) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        let block = &self.blocks[primitive as usize];
+        let block = &self.blocks[at.primitive as usize];
         let mut blocked = RaySet::EMPTY;
         for lane in 0..block.len() {
             blocked = blocked | packet.meets::<E>(&block.cylinder::<E>(lane), rays - blocked);

@@ -8,7 +8,7 @@ use super::described::Described;
 use super::ends::{Ends, EndsKind};
 use super::members::{List, Members};
 use super::numbers::Numbers;
-use crate::embree::{Box32, GREATEST_PACKET, RaySet, UserGeometry};
+use crate::embree::{Box32, GREATEST_PACKET, Ray32, RaySet, Reached, UserGeometry};
 use crate::scene::{CylinderList, CylinderRecord};
 use crate::solid::{Cylinder, SolidKind};
 use crate::tracer::counters;
@@ -116,33 +116,33 @@ impl<E: Ends> UserGeometry for SingleCylinders<E> {
     }
 
     #[inline(always)]
-    fn intersect(&self, primitive: u32, query: &mut Query) -> Option<f32> {
+    fn intersect(&self, at: Reached, _: &Ray32, query: &mut Query) -> Option<f32> {
         counters::called_back();
         query.callbacks += 1;
         let before = query.bound();
-        let record = self.cylinders.record(primitive);
+        let record = self.cylinders.record(at.primitive);
         query.visit(&self.cylinder(record), &self.cylinders, record);
         (query.bound() < before).then(|| query.t_far())
     }
 
     #[inline(always)]
-    fn occluded(&self, primitive: u32, query: &mut Query) -> bool {
+    fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
         counters::called_back();
         query.callbacks += 1;
-        query.meets(&self.cylinder(self.cylinders.record(primitive)))
+        query.meets(&self.cylinder(self.cylinders.record(at.primitive)))
     }
 
     #[inline(always)]
     fn intersect_packet(
         &self,
-        primitive: u32,
+        at: Reached,
         rays: RaySet,
         t_far: &mut [f32; GREATEST_PACKET],
         packet: &mut Packet,
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        let record = self.cylinders.record(primitive);
+        let record = self.cylinders.record(at.primitive);
         packet.visit::<E>(
             &self.cylinder(record),
             (&self.cylinders, record),
@@ -152,10 +152,10 @@ impl<E: Ends> UserGeometry for SingleCylinders<E> {
     }
 
     #[inline(always)]
-    fn occluded_packet(&self, primitive: u32, rays: RaySet, packet: &mut Packet) -> RaySet {
+    fn occluded_packet(&self, at: Reached, rays: RaySet, packet: &mut Packet) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        let record = self.cylinders.record(primitive);
+        let record = self.cylinders.record(at.primitive);
         packet.meets::<E>(&self.cylinder(record), rays)
     }
 }

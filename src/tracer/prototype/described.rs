@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::members::Members;
 use super::numbers::Numbers;
-use crate::embree::{Box32, GREATEST_PACKET, RaySet, UserGeometry};
+use crate::embree::{Box32, GREATEST_PACKET, Ray32, RaySet, Reached, UserGeometry};
 use crate::math::Bounds;
 use crate::scene::{self, PrototypeIndex, Scene};
 use crate::tracer::counters;
@@ -112,38 +112,38 @@ impl<S: TracedSolid> UserGeometry for SolidList<S> {
         self.described.grown_box(&bounds)
     }
 
-    fn intersect(&self, primitive: u32, query: &mut Query) -> Option<f32> {
+    fn intersect(&self, at: Reached, _: &Ray32, query: &mut Query) -> Option<f32> {
         counters::called_back();
         query.callbacks += 1;
         let before = query.bound();
-        query.visit_solid(self, self.numbers.number(primitive));
+        query.visit_solid(self, self.numbers.number(at.primitive));
         (query.bound() < before).then(|| query.t_far())
     }
 
-    fn occluded(&self, primitive: u32, query: &mut Query) -> bool {
+    fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
         counters::called_back();
         query.callbacks += 1;
-        query.meets_solid(self.of_primitive(primitive))
+        query.meets_solid(self.of_primitive(at.primitive))
     }
 
     // Inlined for the rows of lanes within, as `embree::callback` says.
     #[inline(always)]
     fn intersect_packet(
         &self,
-        primitive: u32,
+        at: Reached,
         rays: RaySet,
         t_far: &mut [f32; GREATEST_PACKET],
         packet: &mut Packet,
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        packet.visit_solid(self, self.numbers.number(primitive), rays, t_far)
+        packet.visit_solid(self, self.numbers.number(at.primitive), rays, t_far)
     }
 
     #[inline(always)]
-    fn occluded_packet(&self, primitive: u32, rays: RaySet, packet: &mut Packet) -> RaySet {
+    fn occluded_packet(&self, at: Reached, rays: RaySet, packet: &mut Packet) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        packet.meets_solid(self.of_primitive(primitive), rays)
+        packet.meets_solid(self.of_primitive(at.primitive), rays)
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::numbers::Numbers;
 use super::sight::Sight;
 use super::{Children, Group};
-use crate::embree::{Box32, GREATEST_PACKET, Instructions, RaySet, UserGeometry};
+use crate::embree::{Box32, GREATEST_PACKET, Instructions, Ray32, RaySet, Reached, UserGeometry};
 use crate::math::{Bounds, ChildFromParent};
 use crate::scene::{Placement, PrototypeIndex, Scene};
 use crate::tracer::counters;
@@ -106,30 +106,30 @@ impl UserGeometry for Arc<Placements> {
         self.frame.grown_box(&reach)
     }
 
-    fn intersect(&self, primitive: u32, query: &mut Query) -> Option<f32> {
+    fn intersect(&self, at: Reached, _: &Ray32, query: &mut Query) -> Option<f32> {
         counters::called_back();
         query.callbacks += 1;
         let before = query.bound();
-        self.visit(self.in_view.number(primitive), query, Group::search);
+        self.visit(self.in_view.number(at.primitive), query, Group::search);
         (query.bound() < before).then(|| query.t_far())
     }
 
-    fn occluded(&self, primitive: u32, query: &mut Query) -> bool {
+    fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
         counters::called_back();
         query.callbacks += 1;
-        self.visit(self.in_view.number(primitive), query, Group::occluded)
+        self.visit(self.in_view.number(at.primitive), query, Group::occluded)
     }
 
     fn intersect_packet(
         &self,
-        primitive: u32,
+        at: Reached,
         rays: RaySet,
         t_far: &mut [f32; GREATEST_PACKET],
         packet: &mut Packet,
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        let number = self.in_view.number(primitive);
+        let number = self.in_view.number(at.primitive);
         let shorter = self.visit_packet(number, rays, packet, |child, in_child, packet| {
             child.search_packet(rays, in_child, packet)
         });
@@ -139,10 +139,10 @@ impl UserGeometry for Arc<Placements> {
         shorter
     }
 
-    fn occluded_packet(&self, primitive: u32, rays: RaySet, packet: &mut Packet) -> RaySet {
+    fn occluded_packet(&self, at: Reached, rays: RaySet, packet: &mut Packet) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        let number = self.in_view.number(primitive);
+        let number = self.in_view.number(at.primitive);
         self.visit_packet(number, rays, packet, |child, in_child, packet| {
             child.occluded_packet(rays, in_child, packet)
         })
