@@ -8,6 +8,7 @@ mod random;
 mod reference;
 #[path = "../support/mod.rs"]
 mod support;
+mod wedges;
 
 use cyltrace::math::Orientation;
 use cyltrace::solid::{

@@ -10,7 +10,7 @@ use Crossing::{Enter, Leave};
 
 const SEED: u64 = 61;
 
-fn cases() -> u64 {
+pub fn cases() -> u64 {
     std::env::var("CYLTRACE_CASES").map_or(20_000, |count| count.parse().expect("a number"))
 }
 

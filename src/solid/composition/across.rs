@@ -10,10 +10,15 @@
 //! an apex that a plane touches along this direction. Heights of parallel lines are equal
 //! within what curvatures may be off ([`Piece::height_error`]), and crossings with a line are one
 //! within what two such errors move them.
+//!
+//! Where first order is exact, planes may differ by far less than their normals in f64 are off.
+//! Then the sines between lines come from the exact normals. A line's places are in or out
+//! of another by the side of the crossing that they are on, never by a product of normals in f64.
 
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
+use super::first_order::{FirstOrder, Place};
 use super::piece::{Piece, Pieces};
 
 /// A surface in the plane.
@@ -32,12 +37,28 @@ struct Line {
     is_of_apex: bool,
 }
 
+/// How a line lies to another.
+#[derive(Clone, Copy, Debug)]
+enum Relation {
+    /// They are one; their normals may be opposite.
+    Coincides { is_turned: bool },
+    /// They are parallel, and the first is inside or outside of the other.
+    IsParallel { is_within: bool },
+    /// They cross, at this place along the first.
+    Crosses {
+        place: f64,
+        /// By how much the place may be off.
+        error: f64,
+        /// Whether the places behind are outside of the other.
+        leaves: bool,
+    },
+}
+
 /// The plane across a direction.
-pub(super) struct Across {
-    direction: DVec3,
+pub(super) struct Across<'a, A: FirstOrder> {
+    place: &'a Place<'a, A::Way>,
+    first_order: &'a A,
     axes: [DVec3; 2],
-    /// By how much the direction may be off.
-    error: f64,
     lines: SmallVec<[Line; 8]>,
 }
 
@@ -71,13 +92,13 @@ impl Sides {
     }
 }
 
-impl Across {
-    pub fn new(direction: DVec3, error: f64) -> Self {
-        let (x, y) = direction.any_orthonormal_pair();
+impl<'a, A: FirstOrder> Across<'a, A> {
+    pub fn new(place: &'a Place<'a, A::Way>, first_order: &'a A) -> Self {
+        let (x, y) = place.direction.any_orthonormal_pair();
         Self {
-            direction,
+            place,
+            first_order,
             axes: [x, y],
-            error,
             lines: SmallVec::new(),
         }
     }
@@ -89,7 +110,7 @@ impl Across {
             piece: index,
             group,
             normal: DVec2::from_array(normal).normalize(),
-            height: piece.bend.height(self.direction),
+            height: piece.bend.height(self.place.direction),
             height_error: piece.height_error(),
             turned: piece.turned,
             is_of_apex: !piece.is_flat_to_first_order(),
@@ -99,12 +120,14 @@ impl Across {
     /// Hands on both sides of every stretch of every line.
     pub fn each_border(&self, mut look: impl FnMut(&Sides)) {
         for (index, line) in self.lines.iter().enumerate() {
-            let mut earlier = self.lines[..index].iter();
-            if earlier.any(|other| self.coincide(line, other)) {
+            let mut relations = SmallVec::<[Relation; 8]>::new();
+            relations.extend(self.lines.iter().map(|other| self.relation(line, other)));
+            let mut earlier = relations[..index].iter();
+            if earlier.any(|relation| matches!(relation, Relation::Coincides { .. })) {
                 continue;
             }
-            for place in self.stretches(line) {
-                look(&self.sides(line, place));
+            for place in stretches(&relations) {
+                look(&self.sides(line, place, &relations));
             }
         }
     }
@@ -113,59 +136,77 @@ impl Across {
         one.group == other.group
             || (one.is_of_apex || other.is_of_apex)
                 && one.normal.perp_dot(other.normal).abs()
-                    <= self.error + 2.0 * one.turned.max(other.turned)
+                    <= self.place.error + 2.0 * one.turned.max(other.turned)
     }
 
-    fn coincide(&self, one: &Line, other: &Line) -> bool {
-        let sign = one.normal.dot(other.normal).signum();
-        self.are_parallel(one, other)
-            && (one.height - sign * other.height).abs()
-                <= 2.0 * one.height_error.max(other.height_error)
-    }
-
-    /// A place on each stretch of a line, from the foot of the origin.
-    fn stretches(&self, line: &Line) -> SmallVec<[f64; 8]> {
-        let along = line.normal.perp();
-        let mut crossings = SmallVec::<[(f64, f64); 8]>::new();
-        for other in &self.lines {
-            if !self.are_parallel(line, other) {
-                let sine = along.dot(other.normal);
-                let place = (other.height - line.height * line.normal.dot(other.normal)) / sine;
-                let error = 2.0 * line.height_error.max(other.height_error) / sine.abs();
-                crossings.push((place, error));
-            }
+    fn relation(&self, line: &Line, other: &Line) -> Relation {
+        let cosine = line.normal.dot(other.normal);
+        let height_error = 2.0 * line.height_error.max(other.height_error);
+        if self.are_parallel(line, other) {
+            let sign = cosine.signum();
+            return if (line.height - sign * other.height).abs() <= height_error {
+                let is_turned = cosine < 0.0;
+                Relation::Coincides { is_turned }
+            } else {
+                let is_within = sign * line.height < other.height;
+                Relation::IsParallel { is_within }
+            };
         }
-        crossings.sort_by(|one, other| one.0.total_cmp(&other.0));
-        crossings.dedup_by(|next, last| next.0 - last.0 <= next.1 + last.1);
-        let (Some(first), Some(last)) = (crossings.first(), crossings.last()) else {
-            return SmallVec::from_slice(&[0.0]);
-        };
-        // Any length will do beyond the first and the last.
-        let beyond = 1.0 + first.0.abs().max(last.0.abs());
-        let mut places = SmallVec::new();
-        places.push(first.0 - beyond);
-        for pair in crossings.windows(2) {
-            places.push(0.5 * (pair[0].0 + pair[1].0));
+        let exact = (self.first_order).sine(self.place, line.piece, other.piece);
+        let sine = exact.unwrap_or_else(|| line.normal.perp().dot(other.normal));
+        Relation::Crosses {
+            place: (other.height - line.height * cosine) / sine,
+            error: height_error / sine.abs(),
+            leaves: sine > 0.0,
         }
-        places.push(last.0 + beyond);
-        places
     }
 
-    fn sides(&self, line: &Line, place: f64) -> Sides {
+    fn sides(&self, line: &Line, place: f64, relations: &[Relation]) -> Sides {
         let point = line.normal * line.height + line.normal.perp() * place;
         let mut sides = Sides {
             on_the_line: SmallVec::new(),
             others: SmallVec::new(),
         };
-        for other in &self.lines {
-            if self.coincide(line, other) {
-                let is_turned = line.normal.dot(other.normal) < 0.0;
-                sides.on_the_line.push((other.piece, is_turned));
-            } else {
-                let is_within = point.dot(other.normal) < other.height;
-                sides.others.push((other.piece, is_within));
-            }
+        for (other, relation) in self.lines.iter().zip(relations) {
+            let is_within = match *relation {
+                Relation::Coincides { is_turned } => {
+                    sides.on_the_line.push((other.piece, is_turned));
+                    continue;
+                }
+                _ if !A::IS_EXACT => point.dot(other.normal) < other.height,
+                Relation::IsParallel { is_within } => is_within,
+                Relation::Crosses {
+                    place: crossing,
+                    leaves,
+                    ..
+                } => (place < crossing) == leaves,
+            };
+            sides.others.push((other.piece, is_within));
         }
         sides
     }
+}
+
+/// A place on each stretch of a line, from the foot of the origin.
+fn stretches(relations: &[Relation]) -> SmallVec<[f64; 8]> {
+    let mut crossings = SmallVec::<[(f64, f64); 8]>::new();
+    for relation in relations {
+        if let Relation::Crosses { place, error, .. } = *relation {
+            crossings.push((place, error));
+        }
+    }
+    crossings.sort_by(|one, other| one.0.total_cmp(&other.0));
+    crossings.dedup_by(|next, last| next.0 - last.0 <= next.1 + last.1);
+    let (Some(first), Some(last)) = (crossings.first(), crossings.last()) else {
+        return SmallVec::from_slice(&[0.0]);
+    };
+    // Any length will do beyond the first and the last.
+    let beyond = 1.0 + first.0.abs().max(last.0.abs());
+    let mut places = SmallVec::new();
+    places.push(first.0 - beyond);
+    for pair in crossings.windows(2) {
+        places.push(0.5 * (pair[0].0 + pair[1].0));
+    }
+    places.push(last.0 + beyond);
+    places
 }

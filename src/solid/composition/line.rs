@@ -41,6 +41,7 @@ use super::Composition;
 use super::leaf::{Event, Leaf, What};
 use super::neighbourhood::Neighbourhood;
 use super::piece::{Nearness, Pieces, Viewed};
+use super::turned::Turned;
 use crate::math::power_of_two;
 use crate::solid::{ChordEnd, Location, Part};
 
@@ -307,7 +308,7 @@ impl<'a> Line<'a> {
         pieces.retain(|piece| {
             piece.normal.dot(half).abs() <= distance || self.lies_on(piece.leaf) == Some(piece.part)
         });
-        Neighbourhood::of_pieces(&pieces, leaves, holds)
+        Neighbourhood::of_pieces(&pieces, &Turned(&pieces), leaves, holds)
     }
 
     /// What is around the point of a station, where the line is on the surfaces of the leaves
@@ -338,7 +339,7 @@ impl<'a> Line<'a> {
             self.view(index, t, distance, &named)
                 .add_pieces(&mut pieces);
         }
-        Neighbourhood::of_pieces(&pieces, &mut leaves, holds)
+        Neighbourhood::of_pieces(&pieces, &Turned(&pieces), &mut leaves, holds)
     }
 
     /// How near a piece passes the points of leaves that it counts for.

@@ -13,17 +13,24 @@
 //!
 //! - `neighbourhood.rs`, with `across.rs`, decides what is around a point that is on the
 //!   surfaces of several leaves; `piece.rs` and `bend.rs` say what these are there;
+//! - `first_order.rs` is what it takes from normals: `turned.rs` compares them in f64, for
+//!   points of lines, `planes.rs` exactly, for stated points;
 //! - `locate` below uses it for points as stated;
 //! - `line.rs` orders the points where a line changes and classifies what is between them, and
 //!   `crossings.rs` turns that into hits.
 
 mod across;
 mod bend;
+mod circle;
 mod crossings;
+mod first_order;
 mod leaf;
 mod line;
 mod neighbourhood;
+mod normal;
 mod piece;
+mod planes;
+mod turned;
 
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -34,6 +41,8 @@ use crate::math::Bounds;
 pub use crossings::ComposedMeeting;
 use neighbourhood::Neighbourhood;
 use piece::{Nearness, Pieces, Viewed};
+use planes::Planes;
+use turned::Turned;
 
 /// A solid that is composed of others by set operations: the closure of the result of
 /// the operations on the operands' interiors. Its surface is the boundary of that.
@@ -213,7 +222,16 @@ impl Composition {
                     }
                     .add_pieces(&mut pieces);
                 }
-                Neighbourhood::of_pieces(&pieces, &mut is_within, holds).location()
+                let found = match Planes::at(point, &pieces, &solids) {
+                    Some(planes) => {
+                        Neighbourhood::of_pieces(&pieces, &planes, &mut is_within, holds)
+                    }
+                    None => {
+                        let turned = Turned(&pieces);
+                        Neighbourhood::of_pieces(&pieces, &turned, &mut is_within, holds)
+                    }
+                };
+                found.location()
             }
         }
     }

@@ -27,13 +27,13 @@
 //! curve or in a point of third order, where neither is on one side of the other on
 //! both sides of the point; what is between them is thinner than any angle.
 
-use std::f64::consts::{PI, TAU};
-
 use glam::DVec3;
 use smallvec::SmallVec;
 
 use super::across::{Across, Sides};
 use super::bend::Angles;
+use super::circle::Circle;
+use super::first_order::{FirstOrder, Place};
 use super::piece::{Piece, Pieces};
 use crate::solid::{Location, Part};
 
@@ -109,12 +109,14 @@ impl Neighbourhood {
     /// whether the point is inside of it, and `is_inside` evaluates the formula.
     pub fn of_pieces(
         pieces: &Pieces,
+        first_order: &impl FirstOrder,
         leaves: &mut [bool],
         is_inside: impl Fn(&[bool]) -> bool,
     ) -> Self {
         let mut explorer = Explorer {
             pieces,
-            groups: groups(pieces),
+            first_order,
+            groups: groups(pieces.len(), first_order),
             is_within: pieces.iter().map(|_| false).collect(),
             leaves,
             is_inside,
@@ -126,76 +128,18 @@ impl Neighbourhood {
 }
 
 /// The group of each piece, named by its first member.
-fn groups(pieces: &Pieces) -> SmallVec<[usize; 8]> {
+fn groups(count: usize, first_order: &impl FirstOrder) -> SmallVec<[usize; 8]> {
     let mut groups = SmallVec::<[usize; 8]>::new();
-    for (index, piece) in pieces.iter().enumerate() {
-        let first = (0..index).find(|&one| groups[one] == one && piece.is_tangent_to(&pieces[one]));
+    for index in 0..count {
+        let first = (0..index).find(|&one| groups[one] == one && first_order.are_one(index, one));
         groups.push(first.unwrap_or(index));
     }
     groups
 }
 
-/// Where a group is crossed by others.
-struct Crossing {
-    angle: f64,
-    /// By how much the angle may be off.
-    error: f64,
-    /// The groups that contain the direction; none where only members change their order.
-    groups: SmallVec<[usize; 4]>,
-}
-
-/// The circle of a group, as `n k + √(1 - k²) (cos φ x + sin φ y)`.
-struct Circle {
-    middle: DVec3,
-    x: DVec3,
-    y: DVec3,
-}
-
-impl Circle {
-    fn new(piece: &Piece) -> Self {
-        let (x, y) = piece.normal.any_orthonormal_pair();
-        let radius = (1.0 - piece.cosine * piece.cosine).sqrt();
-        Self {
-            middle: piece.normal * piece.cosine,
-            x: x * radius,
-            y: y * radius,
-        }
-    }
-
-    fn at(&self, angle: f64) -> DVec3 {
-        self.middle + self.x * libm::cos(angle) + self.y * libm::sin(angle)
-    }
-
-    /// The directions that another piece has too, and by how much they may be off.
-    ///
-    /// On the circle `v·n' - k'` is `M cos(φ - φ0) - K`. A piece that is turned by θ
-    /// moves the roots by `2 θ / (M sin(φ - φ0))`, and circles whose distance from touching is below `2 θ`
-    /// touch.
-    fn crossings(&self, own: &Piece, other: &Piece) -> SmallVec<[(f64, f64); 2]> {
-        let error = 2.0 * own.turned.max(other.turned);
-        let (a, b) = (self.x.dot(other.normal), self.y.dot(other.normal));
-        let amplitude = libm::hypot(a, b);
-        let mut found = SmallVec::new();
-        if amplitude <= error {
-            return found;
-        }
-        let middle = libm::atan2(b, a);
-        let cosine = (other.cosine - self.middle.dot(other.normal)) / amplitude;
-        let beyond = (cosine.abs() - 1.0) * amplitude;
-        if beyond.abs() <= error {
-            let angle = if cosine > 0.0 { middle } else { middle + PI };
-            found.push((angle, error / amplitude));
-        } else if beyond < 0.0 {
-            let half = libm::acos(cosine);
-            let error = error / (amplitude * libm::sin(half));
-            found.extend([(middle + half, error), (middle - half, error)]);
-        }
-        found
-    }
-}
-
-struct Explorer<'a, F> {
+struct Explorer<'a, A, F> {
     pieces: &'a Pieces,
+    first_order: &'a A,
     groups: SmallVec<[usize; 8]>,
     /// Of each piece, whether the cell is inside of it.
     is_within: SmallVec<[bool; 8]>,
@@ -204,7 +148,7 @@ struct Explorer<'a, F> {
     found: Neighbourhood,
 }
 
-impl<F: Fn(&[bool]) -> bool> Explorer<'_, F> {
+impl<A: FirstOrder, F: Fn(&[bool]) -> bool> Explorer<'_, A, F> {
     fn explore(&mut self) {
         // Faces in one plane, as at the mouth of a bore, have two sides and no more.
         if self.groups.iter().all(|group| *group == 0) && self.pieces.iter().all(Piece::is_plane) {
@@ -220,90 +164,49 @@ impl<F: Fn(&[bool]) -> bool> Explorer<'_, F> {
     /// Looks at both sides of the members of a group, all around.
     fn explore_group(&mut self, group: usize) {
         let circle = Circle::new(&self.pieces[group]);
-        let crossings = self.crossings(group, &circle);
-        let Some(last) = crossings.last() else {
-            return self.look(circle.at(0.0), &[group], 0.0);
-        };
-        let mut before = last.angle - TAU;
-        for crossing in crossings {
-            let middle = 0.5 * (before + crossing.angle);
-            self.look(circle.at(middle), &[group], 0.0);
-            if !crossing.groups.is_empty() {
-                let mut groups = crossing.groups;
-                groups.push(group);
-                self.look(circle.at(crossing.angle), &groups, crossing.error);
-            }
-            before = crossing.angle;
-        }
+        let others: SmallVec<[usize; 8]> = (0..self.pieces.len())
+            .filter(|&other| other != group && self.groups[other] == other)
+            .collect();
+        let changes = self.changes(group, &circle);
+        self.first_order
+            .each_place(&circle, group, &others, &changes, |place| self.look(place));
     }
 
-    /// The directions on the circle of a group that bound its arcs, in order.
-    fn crossings(&self, group: usize, circle: &Circle) -> SmallVec<[Crossing; 8]> {
-        let own = &self.pieces[group];
-        let mut all = SmallVec::<[Crossing; 8]>::new();
-        let mut add = |angle: f64, error: f64, group: Option<usize>| {
-            let turns = libm::floor(angle / TAU);
-            all.push(Crossing {
-                angle: angle - TAU * turns,
-                error,
-                groups: group.into_iter().collect(),
-            });
-        };
+    /// The angles where members of a group change their order.
+    fn changes(&self, group: usize, circle: &Circle) -> Angles {
         let (axes, mut angles) = ([circle.x, circle.y], Angles::new());
+        if !self.pieces[group].is_flat_to_first_order() {
+            return angles;
+        }
         // The members of the group, one of each surface.
         let mut distinct = SmallVec::<[&Piece; 8]>::new();
-        for (index, piece) in self.pieces.iter().enumerate() {
-            let other = self.groups[index];
-            if other == group {
-                if !distinct.iter().any(|one| one.coincides_with(piece)) {
-                    distinct.push(piece);
-                }
-            } else if other == index {
-                for (angle, error) in circle.crossings(own, piece) {
-                    add(angle, error, Some(other));
-                }
+        for (piece, _) in (self.pieces.iter().zip(&self.groups)).filter(|(_, of)| **of == group) {
+            if distinct.iter().any(|one| one.coincides_with(piece)) {
+                continue;
             }
-        }
-        if own.is_flat_to_first_order() {
-            for (index, one) in distinct.iter().enumerate() {
-                one.bend.add_seam(axes, &mut angles);
-                for other in &distinct[..index] {
-                    let sign = one.normal.dot(other.normal).signum();
-                    one.bend.add_crossings(&other.bend, sign, axes, &mut angles);
-                }
+            piece.bend.add_seam(axes, &mut angles);
+            for other in &distinct {
+                let sign = piece.normal.dot(other.normal).signum();
+                piece
+                    .bend
+                    .add_crossings(&other.bend, sign, axes, &mut angles);
             }
+            distinct.push(piece);
         }
-        for angle in angles {
-            add(angle, own.turned, None);
-        }
-        all.sort_by(|one, other| one.angle.total_cmp(&other.angle));
-        let mut merged = SmallVec::<[Crossing; 8]>::new();
-        for crossing in all {
-            match merged.last_mut() {
-                Some(last) if last.is_one_with(&crossing, 0.0) => last.merge(crossing),
-                _ => merged.push(crossing),
-            }
-        }
-        // Around the circle the last may be the first.
-        if merged.len() > 1 && merged[merged.len() - 1].is_one_with(&merged[0], TAU) {
-            let last = merged.pop().expect("there are two");
-            merged[0].merge(last);
-        }
-        merged
+        angles
     }
 
-    /// Looks at all cells around a direction that one group contains, or in which several
-    /// cross.
-    fn look(&mut self, direction: DVec3, groups: &[usize], error: f64) {
-        let mut across = Across::new(direction, error);
+    /// Looks at all cells around a place of a group's circle.
+    fn look(&mut self, place: &Place<A::Way>) {
+        let mut across = Across::new(place, self.first_order);
         for (index, piece) in self.pieces.iter().enumerate() {
-            if groups.contains(&self.groups[index]) {
+            if place.groups.contains(&self.groups[index]) {
                 across.add(index, piece, self.groups[index]);
             } else {
-                self.is_within[index] = direction.dot(piece.normal) < piece.cosine;
+                self.is_within[index] = self.first_order.is_within(place, index);
             }
         }
-        across.each_border(|sides| self.compare(sides, direction));
+        across.each_border(|sides| self.compare(sides, place.direction));
     }
 
     /// Compares the cells on both sides of a line.
@@ -359,25 +262,5 @@ impl<F: Fn(&[bool]) -> bool> Explorer<'_, F> {
             self.leaves[piece.leaf as usize] &= *is_within;
         }
         (self.is_inside)(self.leaves)
-    }
-}
-
-impl Crossing {
-    /// Whether another may be the same direction; `turn` is added to its angle.
-    fn is_one_with(&self, next: &Self, turn: f64) -> bool {
-        next.angle + turn - self.angle <= self.error + next.error
-    }
-
-    fn merge(&mut self, other: Self) {
-        // The angle of two groups' crossing rather than one of a mere change of order.
-        if self.groups.is_empty() {
-            self.angle = other.angle;
-        }
-        self.error = self.error.max(other.error);
-        for group in other.groups {
-            if !self.groups.contains(&group) {
-                self.groups.push(group);
-            }
-        }
     }
 }

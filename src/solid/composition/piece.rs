@@ -24,7 +24,8 @@
 //! A cuboid's normals are stated as unit vectors, whose `l` is 1. Curvatures are off by the
 //! share θ of themselves in the same way.
 //!
-//! **Which pieces pass through a stated point** is decided exactly.
+//! **Which pieces pass through a stated point** is decided exactly, and so is what their
+//! tangent planes divide (`planes.rs`).
 
 use glam::DVec3;
 use smallvec::SmallVec;

@@ -4,21 +4,42 @@ use std::cmp::Ordering;
 
 use dashu_base::Sign;
 use dashu_float::{FBig, round::mode::HalfEven};
+use glam::DVec3;
 
 use super::Number;
 
 /// A binary float without a limit on its length.
 #[derive(Clone, Debug)]
-pub(super) struct Big(pub FBig<HalfEven, 2>);
+pub(in crate::solid) struct Big(pub(super) FBig<HalfEven, 2>);
 
 impl Big {
     /// The quotient, rounded to f64.
     pub fn over(&self, divisor: f64) -> f64 {
-        let long = |x: &FBig<HalfEven, 2>| x.clone().with_precision(128).value();
-        (long(&self.0) / long(&Self::of(divisor).0))
-            .to_f64()
-            .value()
+        ratio(self, &Self::of(divisor))
     }
+}
+
+/// The quotient of two numbers, within some units of 2^-53 of it if it does not underflow.
+pub(in crate::solid) fn ratio(dividend: &Big, divisor: &Big) -> f64 {
+    let long = |x: &Big| x.0.clone().with_precision(128).value();
+    (long(dividend) / long(divisor)).to_f64().value()
+}
+
+/// The unit vector of a direction that is not zero, within some units of 2^-53.
+pub(in crate::solid) fn unit(direction: &[Big; 3]) -> DVec3 {
+    let is_less = |a: &Big, b: &Big| a.minus(b).sign() == Some(Ordering::Less);
+    let zero = Big::of(0.0);
+    let sizes = direction.each_ref().map(|x| match is_less(x, &zero) {
+        true => zero.minus(x),
+        false => x.clone(),
+    });
+    let greatest = sizes
+        .iter()
+        .fold(&zero, |most, size| match is_less(most, size) {
+            true => size,
+            false => most,
+        });
+    DVec3::from_array(direction.each_ref().map(|x| ratio(x, greatest))).normalize()
 }
 
 impl Number for Big {

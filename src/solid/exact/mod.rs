@@ -29,7 +29,7 @@ use std::cmp::Ordering;
 use super::{Cylinder, Part};
 use crate::math::Ray;
 use crate::solid::Crossing;
-use big::Big;
+pub(super) use big::{Big, ratio, unit};
 use bounded::Bounded;
 use decide::At;
 pub(super) use expression::{Expression, cross, difference, dot, quotient, sign, vector};
