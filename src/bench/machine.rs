@@ -2,14 +2,19 @@
 
 use std::fs;
 
-use crate::embree::MaxIsa;
+use crate::embree::{Device, DeviceOptions, MaxIsa};
 
 /// What a run's figures depend on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Circumstances {
+    /// The processor's model name where the system says it (Linux), its architecture
+    /// elsewhere.
+    pub processor: String,
     /// The processor, and how many of it.
     pub machine: String,
-    /// The widest instruction set that Embree may use.
+    /// Embree's version.
+    pub embree: String,
+    /// The widest instruction set that Embree and the callbacks use.
     pub isa: &'static str,
     /// The instruction sets that this program was compiled for, beyond the
     /// first of its architecture.
@@ -29,11 +34,13 @@ impl Circumstances {
     /// Those of this program on this machine.
     #[must_use]
     pub fn here(max_isa: Option<MaxIsa>, cases: u64, seed: u64, rounds: usize) -> Self {
+        let processor = processor();
+        let count = std::thread::available_parallelism().map_or(1, usize::from);
         Self {
-            machine: machine(),
-            isa: max_isa
-                .or_else(MaxIsa::best)
-                .map_or("unknown", MaxIsa::name),
+            machine: format!("{processor}, {count} processors"),
+            processor,
+            embree: embree_version(),
+            isa: MaxIsa::name_in_use(max_isa),
             target_features: target_features(),
             commit: option_env!("CYLTRACE_COMMIT"),
             cases,
@@ -66,24 +73,27 @@ impl Circumstances {
             .commit
             .map_or_else(String::new, |commit| format!(" from {commit}"));
         format!(
-            "{}; compiled for {compiled}{commit}; Embree on {}.",
-            self.machine, self.isa
+            "{}; compiled for {compiled}{commit}; Embree {} on {}.",
+            self.machine, self.embree, self.isa
         )
     }
 }
 
-/// The processor's name where the system tells (Linux), its architecture
-/// elsewhere, and the number of processors.
-fn machine() -> String {
+fn embree_version() -> String {
+    let device = Device::new(&DeviceOptions::default());
+    device.map_or_else(
+        |_| String::from("unknown"),
+        |device| device.version().to_string(),
+    )
+}
+
+fn processor() -> String {
     let described = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = described
         .lines()
-        .find_map(|line| line.strip_prefix("model name"))
-        .map_or(std::env::consts::ARCH, |rest| {
-            rest.trim_start_matches([' ', '\t', ':'])
-        });
-    let count = std::thread::available_parallelism().map_or(1, usize::from);
-    format!("{name}, {count} processors")
+        .find_map(|line| line.strip_prefix("model name"));
+    let name = name.map(|rest| rest.trim_start_matches([' ', '\t', ':']).trim_end());
+    name.unwrap_or(std::env::consts::ARCH).to_owned()
 }
 
 fn target_features() -> Vec<&'static str> {
@@ -108,16 +118,17 @@ mod tests {
         let mut here = Circumstances::here(Some(MaxIsa::Sse2), 10, 3, 5);
         here.target_features = vec!["avx", "avx2"];
         here.commit = Some("abc");
+        here.embree = String::from("3.13.5");
         let text = here.sentence();
         for part in [
             "10 cases",
             "seed 3",
             "5 rounds",
             "avx, avx2 from abc",
-            "Embree on sse2",
+            "Embree 3.13.5 on sse2",
         ] {
             assert!(text.contains(part), "no {part} in {text}");
         }
-        assert!(!here.machine.is_empty());
+        assert!(!here.processor.is_empty() && here.machine.starts_with(&here.processor));
     }
 }

@@ -25,5 +25,5 @@ pub use machine::Circumstances;
 pub use outputs::{SUMMARY_HEADINGS, figure, page, summary, table};
 pub use rivals::{Native, SIDES, Shape, Spaced, Traced};
 pub use statistics::{Spread, p99};
-pub use timing::{Rounds, Timer, WallClock, interleave};
+pub use timing::{Rounds, ThreadClock, Timer, WallClock, interleave};
 pub use truth::{Errors, JudgedCases, draw};

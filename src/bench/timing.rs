@@ -28,6 +28,31 @@ impl Timer for WallClock {
     }
 }
 
+/// The processor time of the calling thread: while other programs have its processor,
+/// it does not run. Where there is no such clock, it is [`WallClock`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ThreadClock;
+
+#[cfg(unix)]
+impl Timer for ThreadClock {
+    fn seconds(&mut self, work: &mut dyn FnMut()) -> f64 {
+        use rustix::time::{ClockId, clock_gettime};
+        let now = || clock_gettime(ClockId::ThreadCPUTime);
+        let start = now();
+        work();
+        let end = now();
+        let seconds = (end.tv_sec - start.tv_sec) as f64;
+        (seconds + 1e-9 * (end.tv_nsec - start.tv_nsec) as f64).max(f64::MIN_POSITIVE)
+    }
+}
+
+#[cfg(not(unix))]
+impl Timer for ThreadClock {
+    fn seconds(&mut self, work: &mut dyn FnMut()) -> f64 {
+        WallClock.seconds(work)
+    }
+}
+
 /// How often and how long.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounds {
@@ -142,6 +167,21 @@ mod tests {
         assert_eq!(samples, [[2.0; 2], [7.0; 2]]);
         // Three runs of 2 s are as long as asked for, one of 7 s is longer.
         assert_eq!(log[4..], [2, 2, 2, 7, 7, 2, 2, 2]);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn thread_clock_counts_work_and_not_sleep() {
+        let pause = std::time::Duration::from_millis(50);
+        let asleep = ThreadClock.seconds(&mut || std::thread::sleep(pause));
+        let mut sum = 0_u64;
+        let working = ThreadClock.seconds(&mut || {
+            let start = Instant::now();
+            while start.elapsed() < pause {
+                sum = black_box(sum.wrapping_add(1));
+            }
+        });
+        assert!(0.0 < asleep && asleep < working, "{asleep} {working}");
     }
 
     #[test]

@@ -87,7 +87,7 @@ fn run_command(arguments: &Arguments) -> anyhow::Result<u8> {
         Command::Info(arguments) => info::run(arguments).map(|()| GOOD),
         Command::Tessellate(arguments) => tessellate::run(arguments).map(|()| GOOD),
         Command::Stress(arguments) => stress::run(arguments),
-        Command::Bench(arguments) => bench::run(arguments).map(|()| GOOD),
+        Command::Bench(arguments) => bench::run(arguments),
         Command::Check(arguments) => check::run(arguments),
     }
 }

@@ -306,10 +306,10 @@ impl<Q: Query> Scene<Q> {
         rays: &Rays32,
         active: RaySet,
         width: PacketWidth,
+        coherence: Coherence,
         packet: &mut Q::Packet,
         tell: impl FnMut(usize, NativeHit),
     ) {
-        let coherence = Coherence::Coherent;
         match width {
             PacketWidth::Four => self.intersect::<4>(rays, active, coherence, packet, tell),
             PacketWidth::Eight => self.intersect::<8>(rays, active, coherence, packet, tell),

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use super::c_callback::CCallback;
 use super::flat::Flat;
-use super::measure::Plan;
 use super::native::{Native, Solids};
 use super::native_packets::by_packets;
+use super::plan::Plan;
 use super::representation::{Representation, Representative};
 use crate::bench::rivals::Shape;
 use crate::embree::{Device, DeviceOptions};
@@ -24,7 +24,7 @@ pub fn build(
     };
     let native = |solids| Native::new(flat, solids, &device).map_err(|error| error.to_string());
     if let Some(shape) = representation.shape() {
-        if let Some(reason) = refusal(plan, flat, representation, shape) {
+        if let Some(reason) = refusal(plan, flat, shape) {
             return Err(reason);
         }
         let native = native(Solids::Shape(shape))?;
@@ -56,26 +56,10 @@ pub fn build(
 }
 
 /// Why a scene is not built of what Embree intersects by itself, if it is not.
-fn refusal(
-    plan: &Plan,
-    flat: &Flat,
-    representation: Representation,
-    shape: Shape,
-) -> Option<String> {
+fn refusal(plan: &Plan, flat: &Flat, shape: Shape) -> Option<String> {
     let kinds = flat.kinds();
     if let Some(&kind) = kinds.iter().find(|&&kind| !shape.represents(kind)) {
         return Some(shape.refusal(kind));
-    }
-    // Embree 3.13.5 does not come back from coherent packets of shadow rays through
-    // instances of curves. Whether it does from other shapes is not worth a benchmark
-    // that hangs.
-    if representation.is_by_packets() && flat.has_placements() {
-        let of_curves =
-            "Embree does not come back from coherent packets through instances of curves";
-        return Some(match shape {
-            Shape::Cone | Shape::Round => String::from(of_curves),
-            _ => format!("not tried, since {of_curves}"),
-        });
     }
     let estimate = shape_bytes(flat, shape);
     (estimate > plan.max_memory).then(|| {

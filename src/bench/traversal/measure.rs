@@ -3,17 +3,20 @@
 //! This library's modes are timed in turns first. Then rivals come one after
 //! the other, each built alone beside this library and gone before the next:
 //! with each the fastest mode is timed anew, in turns, and what is compared is
-//! compared between neighbouring measurements. A C callback is compared with
-//! single rays, which are what it answers.
+//! compared between neighbouring measurements. A rival gets the rays in either
+//! order (`order`), each in turns with this library, and the better one counts. The
+//! callback in C is compared with single rays in the same order, which are what it
+//! answers.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
 use super::building::build;
 use super::flat::Flat;
+use super::order::{Order, sorted};
 use super::ours;
 use super::outcome::{Figures, Row, Traversal};
+use super::plan::Plan;
 use super::race::{Crew, Lap, Times, race};
 use super::rays::{Kind, Rays};
 use super::representation::{Representation, Representative};
@@ -21,34 +24,13 @@ use super::scenes::SceneName;
 use super::witness::{Judged, Witness};
 use crate::bench::statistics::Spread;
 use crate::bench::timing::Timer;
-use crate::tracer::Options;
 use crate::tracer::counters::Counts;
 
-/// What is measured.
-pub struct Plan {
-    /// The scenes.
-    pub scenes: Vec<SceneName>,
-    /// Where scene files are.
-    pub directory: PathBuf,
-    /// Rays of each kind.
-    pub rays: usize,
-    /// Samples of each time, at least 1.
-    pub rounds: usize,
-    /// Chooses sticks and rays.
-    pub seed: u64,
-    /// The threads that trace; the first crew's times make the ratios.
-    pub crews: Vec<Crew>,
-    /// Rivals that would take more bytes are left out.
-    pub max_memory: u64,
-    /// How scenes are built.
-    pub options: Options,
-}
-
 impl Traversal {
-    /// The steps of which [`Traversal::measure`] tells.
+    /// How often [`Traversal::measure`] calls `after_step`.
     #[must_use]
     pub fn steps(plan: &Plan) -> usize {
-        plan.scenes.len() * Representation::ALL.len()
+        plan.scenes.len() * plan.representations().count()
     }
 
     /// Measures everything; `after_step` is called as often as
@@ -61,7 +43,7 @@ impl Traversal {
             match prepare(plan, scene) {
                 Ok(field) => course.run(&field, timer, after_step),
                 Err(reason) => {
-                    for representation in Representation::ALL {
+                    for representation in plan.representations() {
                         course.absent(representation, &reason);
                         after_step();
                     }
@@ -81,7 +63,15 @@ impl Traversal {
 struct Field {
     flat: Arc<Flat>,
     ours: Vec<(Representation, Arc<dyn Representative>, f64)>,
-    rays: Vec<(Rays, Judged)>,
+    rays: Vec<Asked>,
+}
+
+/// Rays of one kind and what is right about them.
+struct Asked {
+    rays: Rays,
+    /// The same rays in the order of this library's batches, where it is another one.
+    sorted: Option<Rays>,
+    judged: Judged,
 }
 
 fn prepare(plan: &Plan, scene: SceneName) -> Result<Field, String> {
@@ -96,9 +86,10 @@ fn prepare(plan: &Plan, scene: SceneName) -> Result<Field, String> {
     let tracer = Arc::clone(modes[0].1.tracer());
     let rays = Rays::of_scene(&flat, &tracer, plan.rays, plan.seed);
     let witness = Witness::new(&flat);
-    let judge = |rays: Rays| {
-        let judged = witness.judge(&rays, scene.judged());
-        (rays, judged)
+    let judge = |rays: Rays| Asked {
+        sorted: sorted(&rays, &tracer),
+        judged: witness.judge(&rays, scene.judged()),
+        rays,
     };
     let rays = rays.into_iter().map(judge).collect();
     let shared = |(mode, ours, build_s)| (mode, Arc::new(ours) as Arc<dyn Representative>, build_s);
@@ -169,10 +160,8 @@ impl<'a> Course<'a> {
             }
             after_step();
         }
-        for representation in Representation::ALL {
-            if representation.is_ours() {
-                continue;
-            }
+        let rivals = self.plan.representations();
+        for representation in rivals.filter(|one| !one.is_ours()) {
             let start = Instant::now();
             match build(self.plan, &field.flat, representation) {
                 Ok(rival) => {
@@ -190,7 +179,8 @@ impl<'a> Course<'a> {
     fn run_ours(&mut self, field: &Field, timer: &mut dyn Timer) -> Vec<Vec<usize>> {
         let plan = self.plan;
         let mut fastest = Vec::new();
-        for (rays, judged) in &field.rays {
+        for asked in &field.rays {
+            let rays = &asked.rays;
             let mut by_crew = Vec::new();
             for crew in &plan.crews {
                 let laps: Vec<Lap<'_>> = field
@@ -209,9 +199,10 @@ impl<'a> Course<'a> {
                         build_s: *build_s,
                         counts: ours.counts(rays),
                         lap_s,
+                        order: Order::Given,
                         ratio: None,
                     };
-                    let found = figures(field, rays, judged, entry);
+                    let found = figures(field, asked, entry);
                     self.push(rays.kind, *mode, crew.threads, found);
                 }
             }
@@ -230,24 +221,40 @@ impl<'a> Course<'a> {
         timer: &mut dyn Timer,
     ) {
         let plan = self.plan;
-        for ((rays, judged), fastest) in field.rays.iter().zip(fastest) {
+        for (asked, fastest) in field.rays.iter().zip(fastest) {
             for (crew, &fastest) in plan.crews.iter().zip(fastest) {
                 let against = match representation {
                     Representation::CCallback => 0,
                     _ => fastest,
                 };
                 let (mode, ours, _) = &field.ours[against];
-                let laps = [ours, rival].map(|one| lap(one.as_ref(), rays, crew));
-                let times = race(timer, &laps, plan.rounds);
+                let mut race_in = |rays| {
+                    let laps = [
+                        lap(ours.as_ref(), &asked.rays, crew),
+                        lap(rival.as_ref(), rays, crew),
+                    ];
+                    let times = race(timer, &laps, plan.rounds);
+                    (times[1].lap(), times[1].over(&times[0]))
+                };
+                let mut order = Order::Given;
+                let (mut lap_s, mut ratio) = race_in(&asked.rays);
+                let is_sorted_too = representation != Representation::CCallback;
+                if let Some(rays) = asked.sorted.as_ref().filter(|_| is_sorted_too) {
+                    let (sorted_s, sorted_ratio) = race_in(rays);
+                    if sorted_ratio.median < ratio.median {
+                        (order, lap_s, ratio) = (Order::Sorted, sorted_s, sorted_ratio);
+                    }
+                }
                 let entry = Entry {
                     representative: rival,
                     build_s,
                     counts: None,
-                    lap_s: times[1].lap(),
-                    ratio: Some((times[1].over(&times[0]), *mode)),
+                    lap_s,
+                    order,
+                    ratio: Some((ratio, *mode)),
                 };
-                let found = figures(field, rays, judged, entry);
-                self.push(rays.kind, representation, crew.threads, found);
+                let found = figures(field, asked, entry);
+                self.push(asked.rays.kind, representation, crew.threads, found);
             }
         }
     }
@@ -267,15 +274,12 @@ struct Entry<'a> {
     build_s: f64,
     counts: Option<Counts>,
     lap_s: Spread,
+    order: Order,
     ratio: Option<(Spread, Representation)>,
 }
 
-fn figures(
-    field: &Field,
-    rays: &Rays,
-    judged: &Judged,
-    entry: Entry<'_>,
-) -> Result<Figures, String> {
+fn figures(field: &Field, asked: &Asked, entry: Entry<'_>) -> Result<Figures, String> {
+    let Asked { rays, judged, .. } = asked;
     let count = rays.wide.len();
     if count == 0 {
         return Err(String::from("no ray of the camera hits anything"));
@@ -293,16 +297,19 @@ fn figures(
         build_s: entry.build_s,
         callbacks_per_ray: per_ray(|counts| counts.callbacks),
         solves_per_ray: per_ray(|counts| counts.solves),
+        order: entry.order,
         ratio: entry.ratio,
     })
 }
 
 #[cfg(test)]
 mod tests {
+    use std::path::PathBuf;
+
     use super::super::building::BYTES_PER_PRIMITIVE;
-    use super::super::race::Crew;
     use super::*;
     use crate::solid::SolidKind;
+    use crate::tracer::Options;
 
     /// A clock on which everything takes a second.
     struct Even;
@@ -322,6 +329,7 @@ mod tests {
             rays: 100,
             rounds: 1,
             seed: 4,
+            rivals: Representation::ALL.to_vec(),
             crews: vec![Crew::new(1).unwrap(), Crew::new(2).unwrap()],
             // Room for 32 triangles a cylinder, not for 64.
             max_memory: 48 * 10_000 * BYTES_PER_PRIMITIVE,
@@ -346,7 +354,7 @@ mod tests {
                     assert!(reason.contains("of the kind cylinder"), "{name}: {reason}");
                 }
                 (Err(_), _) => assert!(
-                    ["embree_cone_packet", "native_instances", "instance_array"].contains(&name),
+                    ["native_instances", "instance_array"].contains(&name),
                     "{name}"
                 ),
                 (Ok(figures), _) => {

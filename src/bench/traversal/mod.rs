@@ -4,18 +4,21 @@
 //! [`Traversal::measure`] takes some scenes (`scenes`), draws rays of three
 //! kinds (`rays`), has a part of them judged by the oracle (`witness`), builds
 //! one representation after the other (`ours`, `c_callback`, `native`) and runs
-//! it in turns with this library (`race`). [`figures`],
-//! [`page`] and [`table`] show the outcome.
+//! it in turns with this library (`race`), rivals in two orders of rays (`order`).
+//! [`Best`], [`figures`], [`page`] and [`table`] show the outcome.
 
+mod best;
 mod building;
 mod c_callback;
 mod flat;
 mod measure;
 mod native;
 mod native_packets;
+mod order;
 mod ours;
 mod outcome;
 mod outputs;
+mod plan;
 mod race;
 mod rays;
 mod representation;
@@ -24,11 +27,13 @@ mod sight;
 mod thicket;
 mod witness;
 
+pub use best::{BEST_HEADINGS, BEST_NAMES, Best};
 pub use flat::{Flat, Placed};
-pub use measure::Plan;
+pub use order::Order;
 pub(super) use ours::run as run_ours;
 pub use outcome::{Figures, RIVALS, Ratio, Row, Traversal};
 pub use outputs::{SUMMARY_HEADINGS, Shown, figures, page, summary, table};
+pub use plan::Plan;
 pub use race::Crew;
 pub(super) use race::{Lap, race};
 pub use rays::{Kind, Rays, TILE, camera_rays, random_rays};

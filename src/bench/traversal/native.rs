@@ -124,6 +124,11 @@ impl Native {
         self.device.packet_width()
     }
 
+    /// Whether rays go through Embree's instances.
+    pub fn has_instances(&self) -> bool {
+        self.flat.has_placements()
+    }
+
     /// Embree's scene.
     pub fn scene(&self) -> &Scene<()> {
         &self.scene

@@ -1,5 +1,6 @@
 //! What the comparison finds.
 
+use super::order::Order;
 use super::rays::Kind;
 use super::representation::Representation;
 use super::scenes::SceneName;
@@ -27,6 +28,9 @@ pub struct Figures {
     pub callbacks_per_ray: Option<f64>,
     /// Rays put to a solid or to a block of them, a ray, where it is counted.
     pub solves_per_ray: Option<f64>,
+    /// The order in which a rival had the rays: the better one. This library has them as
+    /// they are given and sorts its batches itself.
+    pub order: Order,
     /// Its time over that of a mode of this library, which is named.
     pub ratio: Option<(Spread, Representation)>,
 }
@@ -54,15 +58,18 @@ pub struct Row {
     pub found: Result<Figures, String>,
 }
 
-/// How many times faster this library is than a rival, each in its fastest mode.
+/// How many times faster this library is than a rival, each in its fastest mode, the
+/// rival in its better order of rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ratio {
-    /// The median over the rounds, and their spread.
+    /// The median over the rounds, and its median absolute deviation.
     pub spread: Spread,
     /// The mode of this library.
     pub ours: Representation,
     /// That of the rival.
     pub rival: Representation,
+    /// The order in which the rival had the rays.
+    pub order: Order,
 }
 
 /// The rivals that ratios are to, by the names of their keys.
@@ -107,7 +114,9 @@ pub struct Traversal {
 
 impl Traversal {
     /// How many times faster this library is, on the first crew's threads, than
-    /// the fastest of some representations; or why there is no such number.
+    /// the fastest of some representations; or why there is no such number. The fastest
+    /// is the one with the least ratio: ratios are of neighbouring measurements, times
+    /// depend on what else the machine did.
     ///
     /// # Errors
     /// The reasons of the representations.
@@ -128,20 +137,28 @@ impl Traversal {
         let measured = rows().filter_map(|row| {
             let found = row.found.as_ref().ok()?;
             let (spread, ours) = found.ratio?;
-            let ratio = Ratio {
+            Some(Ratio {
                 spread,
                 ours,
                 rival: row.representation,
-            };
-            Some((found.ns.median, ratio))
+                order: found.order,
+            })
         });
         measured
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, ratio)| ratio)
+            .min_by(|a, b| a.spread.median.total_cmp(&b.spread.median))
             .ok_or_else(|| {
                 let reasons = rows().filter_map(|row| row.found.as_ref().err());
                 reasons.cloned().collect::<Vec<_>>().join("; ")
             })
+    }
+
+    /// The rows of this library with a wrong answer.
+    pub fn wrong(&self) -> impl Iterator<Item = &Row> {
+        let is_wrong = |row: &&Row| {
+            let found = row.found.as_ref();
+            row.representation.is_ours() && found.is_ok_and(|one| one.wrong_percent > 0.0)
+        };
+        self.rows.iter().filter(is_wrong)
     }
 }
 
@@ -165,6 +182,7 @@ mod tests {
             build_s: 1.0,
             callbacks_per_ray: None,
             solves_per_ray: None,
+            order: Order::Sorted,
             ratio: Some((spread(ratio), Representation::AnalyticBlock)),
         };
         Row {
@@ -187,7 +205,8 @@ mod tests {
             rows: vec![
                 row(EmbreeCone, 1, Some((300.0, 3.0))),
                 row(EmbreeCone, 2, Some((10.0, 9.0))),
-                row(EmbreeConePacket, 1, Some((200.0, 2.0))),
+                // Timed while the machine was slower, so its time says less than its ratio.
+                row(EmbreeConePacket, 1, Some((400.0, 2.0))),
                 row(Mesh32, 1, None),
             ],
         };
@@ -196,9 +215,31 @@ mod tests {
         };
         let cone = ratio(&found, RIVALS[0].1).unwrap();
         assert_eq!((cone.spread.median, cone.rival), (2.0, EmbreeConePacket));
-        assert_eq!(cone.ours, Representation::AnalyticBlock);
+        assert_eq!(
+            (cone.ours, cone.order),
+            (Representation::AnalyticBlock, Order::Sorted)
+        );
         assert_eq!(ratio(&found, &[Mesh32]).unwrap_err(), "no mesh_32");
         found.rows[2] = row(EmbreeConePacket, 1, None);
         assert_eq!(ratio(&found, RIVALS[0].1).unwrap().rival, EmbreeCone);
+    }
+
+    #[test]
+    fn wrong_is_of_this_library_alone() {
+        use Representation::{AnalyticPacket, AnalyticSingle, EmbreeCone};
+        let mut rows = [AnalyticSingle, AnalyticPacket, EmbreeCone]
+            .map(|one| row(one, 1, Some((1.0, 1.0))))
+            .to_vec();
+        for row in &mut rows[1..] {
+            let found = row.found.as_mut().unwrap();
+            found.wrong_percent = 0.1;
+        }
+        let found = Traversal {
+            scenes: vec![SceneName::Sticks1e4],
+            threads: vec![1],
+            rows,
+        };
+        let wrong: Vec<Representation> = found.wrong().map(|row| row.representation).collect();
+        assert_eq!(wrong, [AnalyticPacket]);
     }
 }

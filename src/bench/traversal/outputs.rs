@@ -2,10 +2,12 @@
 
 use std::collections::HashSet;
 
-use super::outcome::{Figures, RIVALS, Row, Traversal};
+use super::best::{BEST_HEADINGS, Best, ratio_table};
+use super::outcome::{Figures, Row, Traversal};
 use super::rays::Kind;
 use super::representation::Representation;
 use super::scenes::SceneName;
+use crate::bench::machine::Circumstances;
 use crate::report::{self, Figure, Mark, Page, Series, Symbol, csv};
 
 /// The kinds of representations in a figure: legend, symbol, whether they are
@@ -135,7 +137,7 @@ fn figure(
     })
 }
 
-const CSV_HEADINGS: [&str; 16] = [
+const CSV_HEADINGS: [&str; 20] = [
     "scene",
     "rays",
     "representation",
@@ -152,16 +154,20 @@ const CSV_HEADINGS: [&str; 16] = [
     "ratio",
     "ratio_spread",
     "reason",
+    "order",
+    "processor",
+    "embree",
+    "isa",
 ];
 
 /// The table as CSV, numbers in full; a cell is empty where there is none.
 #[must_use]
-pub fn table(found: &Traversal) -> String {
-    let rows: Vec<Vec<String>> = found.rows.iter().map(cells).collect();
-    csv(&CSV_HEADINGS, &rows)
+pub fn table(found: &Traversal, here: &Circumstances) -> String {
+    let rows = found.rows.iter().map(|row| cells(row, here));
+    csv(&CSV_HEADINGS, &rows.collect::<Vec<_>>())
 }
 
-fn cells(row: &Row) -> Vec<String> {
+fn cells(row: &Row, here: &Circumstances) -> Vec<String> {
     let figures = row.found.as_ref().ok();
     let number = |of: fn(&Figures) -> Option<f64>| {
         let number = figures.and_then(of);
@@ -184,6 +190,10 @@ fn cells(row: &Row) -> Vec<String> {
         number(|one| one.ratio.map(|(spread, _)| spread.median)),
         number(|one| one.ratio.map(|(spread, _)| spread.deviation)),
         row.found.as_ref().err().cloned().unwrap_or_default(),
+        figures.map_or("", |one| one.order.name()).to_owned(),
+        here.processor.clone(),
+        here.embree.clone(),
+        here.isa.to_owned(),
     ]
 }
 
@@ -235,6 +245,12 @@ pub fn summary(row: &Row) -> Vec<String> {
 pub fn page(found: &Traversal, circumstances: &str) -> String {
     let mut page = Page::new("Rays through whole scenes: time, error and memory");
     page.note(circumstances);
+    page.heading("Beside Embree's own geometry");
+    let best = found.best();
+    page.table(
+        &BEST_HEADINGS,
+        &best.iter().map(Best::cells).collect::<Vec<_>>(),
+    );
     page.heading("Times as fast");
     let (headings, rows) = ratio_table(found);
     page.table(&headings, &rows);
@@ -265,44 +281,16 @@ pub fn page(found: &Traversal, circumstances: &str) -> String {
     page.finish()
 }
 
-/// The headings and the rows: a column for each rival that some scene has.
-fn ratio_table(found: &Traversal) -> (Vec<&'static str>, Vec<Vec<String>>) {
-    let asked = || {
-        let scenes = found.scenes.iter();
-        scenes.flat_map(|&scene| Kind::ALL.map(|rays| (scene, rays)))
-    };
-    let is_there = |rivals: &[Representation]| {
-        asked().any(|(scene, rays)| found.ratio(scene, rays, rivals).is_ok())
-    };
-    let rivals: Vec<_> = RIVALS
-        .into_iter()
-        .filter(|(_, rivals)| is_there(rivals))
-        .collect();
-    let mut headings = vec!["scene", "rays"];
-    headings.extend(rivals.iter().map(|(name, _)| name));
-    let row = |(scene, rays): (SceneName, Kind)| {
-        let mut cells = vec![scene.name().to_owned(), rays.name().to_owned()];
-        cells.extend(rivals.iter().map(|(_, rivals)| {
-            let ratio = found.ratio(scene, rays, rivals);
-            ratio.map_or_else(
-                |_| String::from("–"),
-                |ratio| format!("{:.2} ± {:.2}", ratio.spread.median, ratio.spread.deviation),
-            )
-        }));
-        cells
-    };
-    (headings, asked().map(row).collect())
-}
-
 /// How to read the page.
 const READING: [&str; 3] = [
-    "Above 1 this library is faster, each side in its fastest mode. Rivals are timed one by one in turns with this library on the same rays; a ratio is the median over neighbouring measurements of some milliseconds, averaged by time over all rays; spreads are median absolute deviations, as if all pieces were off together. Rows with several threads share the rays out; figures are of the first number of threads.",
+    "Above 1 this library is faster, each side in its fastest mode. Rivals are timed one by one in turns with this library on the same rays, in the order in which the rays were drawn and in the order in which this library's batches trace them (sorting not counted), and the better order counts; a ratio is the median over neighbouring measurements of some milliseconds, averaged by time over all rays; spreads are median absolute deviations, as if all pieces were off together. Rows with several threads share the rays out; figures are of the first number of threads.",
     "Coherent rays are the camera's, in tiles of 4 by 4 pixels; shadow rays go from their hits to the sun and stop at anything; incoherent ones start anywhere in the box, in any direction. All are f32 numbers, so that everybody has the same ray. An exact oracle says of a sample of them what is hit first, among candidates found by brute force.",
     "Wrong is a hit for a miss, a miss for a hit, or another solid than the first. The position error is along the ray, in radii of the solid that is hit (the greater one where it tapers, the least half width of a cuboid), over the rays with the right solid. Bytes are records and all that Embree holds, for each solid that is stored: those of a placed prototype count once, placements come on top.",
 ];
 
 #[cfg(test)]
 mod tests {
+    use super::super::order::Order;
     use super::*;
     use crate::bench::statistics::Spread;
 
@@ -327,6 +315,7 @@ mod tests {
                     build_s: 0.5,
                     callbacks_per_ray: None,
                     solves_per_ray: None,
+                    order: Order::Given,
                     ratio: Some((spread(ns / 100.0), Representation::AnalyticSingle)),
                 })
             },
@@ -362,14 +351,19 @@ mod tests {
 
     #[test]
     fn table_null_rows_say_why() {
-        let text = table(&sample());
+        let mut here = Circumstances::here(None, 1, 2, 3);
+        (here.processor, here.embree, here.isa) = ("Fast, Inc.".into(), "4.3.1".into(), "avx2");
+        let text = table(&sample(), &here);
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines[0], CSV_HEADINGS.join(","));
         assert_eq!(
             lines[2],
-            "lattice,coherent,embree_cone,1,150,0.5,6.666666666666667,0.25,0.0001,160,0.5,,,1.5,0.5,"
+            "lattice,coherent,embree_cone,1,150,0.5,6.666666666666667,0.25,0.0001,160,0.5,,,1.5,0.5,,given,\"Fast, Inc.\",4.3.1,avx2"
         );
-        assert_eq!(lines[5], "lattice,coherent,mesh_64,1,,,,,,,,,,,,too large");
+        assert_eq!(
+            lines[5],
+            "lattice,coherent,mesh_64,1,,,,,,,,,,,,too large,,\"Fast, Inc.\",4.3.1,avx2"
+        );
     }
 
     #[test]

@@ -27,7 +27,7 @@ use crate::tracer::workers;
 /// With 256, modes of this library found the tree in the caches where the other
 /// had left it for the same rays, and came out up to twice as fast as beside a
 /// rival, that fills them with its own.
-const PIECE: usize = 1024 * TILE;
+pub const PIECE: usize = 1024 * TILE;
 
 /// So many threads.
 #[derive(Clone)]

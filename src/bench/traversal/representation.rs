@@ -81,6 +81,29 @@ impl Representation {
         Self::AnalyticBlock,
     ];
 
+    /// Embree's own geometry for solids of any kind: its curves and points, and the
+    /// triangles of cuboids. A scene of one kind has one of these shapes.
+    #[must_use]
+    pub fn own() -> Vec<Self> {
+        let is_own = |one: &Self| {
+            let shape = one.shape();
+            shape.is_some_and(|shape| !matches!(shape, Shape::Mesh(_)))
+        };
+        Self::ALL.into_iter().filter(is_own).collect()
+    }
+
+    /// The rivals of this name: `own` is [`own`](Self::own), others are one
+    /// representation each. `None` for a name that is none of theirs.
+    #[must_use]
+    pub fn rivals(name: &str) -> Option<Vec<Self>> {
+        if name == "own" {
+            return Some(Self::own());
+        }
+        let mut all = Self::ALL.into_iter();
+        let named = all.find(|one| !one.is_ours() && one.name() == name);
+        named.map(|one| vec![one])
+    }
+
     /// The name in tables.
     #[must_use]
     pub fn name(self) -> &'static str {

@@ -4,7 +4,7 @@ use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use cyltrace::bench::traversal::SceneName;
+use cyltrace::bench::traversal::{Representation, SceneName};
 use cyltrace::scene::{GREATEST_CASES, GREATEST_ROUNDS, GREATEST_TIMED_RAYS};
 
 use super::Common;
@@ -53,8 +53,10 @@ pub struct AccuracyArguments {
 /// solids, meshes and instances
 ///
 /// Each rival is timed in turns with this library, on the same coherent, shadow
-/// and incoherent rays; an exact oracle judges a sample of them. A rival that
-/// cannot be built here is a row without figures that says why.
+/// and incoherent rays, in the order given and in that of this library's batches;
+/// the better order counts. An exact oracle judges a sample of the rays: the exit
+/// code is 1 if this library has one of them wrong. A rival that cannot be built
+/// here is a row without figures that says why.
 ///
 /// Scenes: sticks_1e4, sticks_1e5 and sticks_1e6 are random sticks in the unit
 /// cube, 2 n^(-1/3) long and a twentieth of that in radius; lattice and forest are
@@ -66,6 +68,11 @@ pub struct TraversalArguments {
     /// Only this scene; may be repeated [default: all ten]
     #[arg(long, value_name = "NAME", value_parser = parse_scene)]
     pub scene: Vec<SceneName>,
+    /// Only this rival: a name of the column representation, or own for Embree's own
+    /// geometry of each kind of solid (curves, points, the triangles of cuboids); may
+    /// be repeated [default: all]
+    #[arg(long, value_name = "NAME", value_parser = parse_rival)]
+    pub rival: Vec<Chosen>,
     /// Where lattice.toml and forest.toml are
     #[arg(long, value_name = "DIR", default_value = "scenes")]
     pub scenes: PathBuf,
@@ -116,6 +123,20 @@ pub struct ScaleArguments {
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub common: Common,
+}
+
+/// The rivals that a name chooses.
+#[derive(Clone, Debug)]
+pub struct Chosen(pub Vec<Representation>);
+
+/// The error names what is known.
+fn parse_rival(text: &str) -> Result<Chosen, String> {
+    Representation::rivals(text).map(Chosen).ok_or_else(|| {
+        let all = Representation::ALL.into_iter();
+        let rivals = all.filter(|one| !one.is_ours()).map(Representation::name);
+        let names: Vec<&str> = ["own"].into_iter().chain(rivals).collect();
+        format!("it must be one of {}", names.join(", "))
+    })
 }
 
 /// The error names what is known.

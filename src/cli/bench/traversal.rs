@@ -1,10 +1,10 @@
 //! `cyltrace bench traversal`.
 
 use cyltrace::bench::traversal::{
-    Crew, Figures, Kind, Plan, RIVALS, Ratio, Row, SUMMARY_HEADINGS, SceneName, Traversal, figures,
-    page, summary, table,
+    BEST_HEADINGS, BEST_NAMES, Best, Crew, Figures, Kind, Plan, RIVALS, Ratio, Representation, Row,
+    SUMMARY_HEADINGS, SceneName, Traversal, figures, page, summary, table,
 };
-use cyltrace::bench::{Circumstances, WallClock};
+use cyltrace::bench::{Circumstances, ThreadClock, Timer, WallClock};
 use cyltrace::report::Table;
 use cyltrace::tracer::Options;
 use serde_json::{Map, Value, json};
@@ -12,10 +12,11 @@ use serde_json::{Map, Value, json};
 use super::{rays_sentence, tell, with_circumstances};
 use crate::cli::arguments::TraversalArguments;
 use crate::cli::target::{make_directory, write_text};
-use crate::cli::{interrupt, json, progress, scene};
+use crate::cli::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
 
-/// Time, error and memory of everything that traces solids.
-pub fn run(arguments: &TraversalArguments) -> anyhow::Result<()> {
+/// Time, error and memory of everything that traces solids. The check is that this
+/// library has no wrong answer.
+pub fn run(arguments: &TraversalArguments) -> anyhow::Result<u8> {
     let common = &arguments.common;
     json::check(common)?;
     if let Some(directory) = &arguments.report {
@@ -25,7 +26,13 @@ pub fn run(arguments: &TraversalArguments) -> anyhow::Result<()> {
     let workers = scene::workers(common)?;
     let plan = plan(arguments, workers.current_num_threads())?;
     let bar = progress::bar(common, Traversal::steps(&plan) as u64, "steps");
-    let found = workers.install(|| Traversal::measure(&plan, &mut WallClock, &mut || bar.inc(1)));
+    // One thread's processor time leaves out what other programs do meanwhile.
+    let is_one_thread = plan.crews.iter().all(|crew| crew.threads == 1);
+    let timer: &mut (dyn Timer + Send) = match is_one_thread {
+        true => &mut ThreadClock,
+        false => &mut WallClock,
+    };
+    let found = workers.install(|| Traversal::measure(&plan, timer, &mut || bar.inc(1)));
     bar.finish_and_clear();
 
     let circumstances = Circumstances::here(
@@ -40,12 +47,21 @@ pub fn run(arguments: &TraversalArguments) -> anyhow::Result<()> {
         for shown in figures(&found) {
             write_text(&directory.join(shown.name + ".svg"), &shown.svg)?;
         }
-        write_text(&directory.join("traversal.csv"), &table(&found))?;
+        write_text(
+            &directory.join("traversal.csv"),
+            &table(&found, &circumstances),
+        )?;
         write_text(&directory.join("index.html"), &page(&found, &sentence))?;
     }
-    json::write(common, &all_figures(&found, &circumstances))?;
+    let mut all = all_figures(&found, &circumstances);
+    all["processor"] = json!(circumstances.processor);
+    all["embree"] = json!(circumstances.embree);
+    all["clock"] = json!(if is_one_thread { "thread" } else { "wall" });
+    json::write(common, &all)?;
     let text = summary_text(&found, &sentence);
-    tell(common, text, arguments.report.as_deref())
+    tell(common, text, arguments.report.as_deref())?;
+    let is_good = found.wrong().next().is_none();
+    Ok(if is_good { GOOD } else { CHECK_FAILED })
 }
 
 /// One thread and all, or as many as `--threads` says.
@@ -66,6 +82,10 @@ fn plan(arguments: &TraversalArguments, all_threads: usize) -> anyhow::Result<Pl
         rays: arguments.rays.get(),
         rounds: arguments.rounds.get(),
         seed: arguments.seed,
+        rivals: match arguments.rival.as_slice() {
+            [] => Representation::ALL.to_vec(),
+            some => some.iter().flat_map(|chosen| chosen.0.clone()).collect(),
+        },
         crews: crews?,
         max_memory: arguments.max_memory,
         options: Options {
@@ -76,7 +96,8 @@ fn plan(arguments: &TraversalArguments, all_threads: usize) -> anyhow::Result<Pl
     })
 }
 
-/// The table for people: what was measured, then what is missing.
+/// The tables for people: all that was measured, each side at its best, and this
+/// library's wrong answers.
 fn summary_text(found: &Traversal, sentence: &str) -> String {
     let mut table = Table::new(&SUMMARY_HEADINGS, 3);
     let measured = found.rows.iter().filter(|row| row.found.is_ok());
@@ -95,7 +116,29 @@ fn summary_text(found: &Traversal, sentence: &str) -> String {
             text += &format!("times as fast: {scene}, {rays}: {}\n", ratios.join(", "));
         }
     }
-    text
+    let mut best = Table::new(&BEST_HEADINGS, BEST_NAMES);
+    for one in found.best() {
+        best.push(one.cells());
+    }
+    text += &format!("{sentence}\n{best}");
+    text + &wrong_text(found)
+}
+
+/// Which rows of this library have wrong answers.
+fn wrong_text(found: &Traversal) -> String {
+    let ours = found.rows.iter().filter(|row| row.representation.is_ours());
+    let measured = ours.filter(|row| row.found.is_ok()).count();
+    let wrong = found.wrong().map(|row| {
+        let (scene, rays) = (row.scene.name(), row.rays.name());
+        let percent = row.found.as_ref().map_or(0.0, |one| one.wrong_percent);
+        let name = row.representation.name();
+        format!("wrong: {name}, {scene}, {rays}: {percent:.3} % of the rays judged\n")
+    });
+    let wrong: String = wrong.collect();
+    match wrong.is_empty() {
+        true => format!("0 wrong in all {measured} rows of this library\n"),
+        false => wrong,
+    }
 }
 
 /// All figures; null where there is none.
@@ -109,6 +152,7 @@ fn all_figures(found: &Traversal, circumstances: &Circumstances) -> Value {
         "reasons": by_scene(found, |ratio| {
             ratio.err().map_or(Value::Null, |reason| json!(reason))
         }),
+        "best": found.best().iter().map(best_figures).collect::<Vec<_>>(),
         "ratio_threads": found.threads.first(),
         "spread": "median absolute deviation",
     });
@@ -136,6 +180,28 @@ fn row_figures(row: &Row) -> Value {
         "ratio_spread": number(|one| one.ratio.map(|(spread, _)| spread.deviation)),
         "ratio_to": figures.and_then(|one| one.ratio.map(|(_, ours)| ours.name())),
         "reason": row.found.as_ref().err(),
+        "order": figures.map(|one| one.order.name()),
+    })
+}
+
+fn best_figures(best: &Best) -> Value {
+    let ratio = best.ratio.as_ref().ok();
+    let number = |side: usize, of: fn(&Figures) -> f64| best.figures.map(|both| of(both[side]));
+    json!({
+        "scene": best.scene.name(),
+        "rays": best.rays.name(),
+        "ours": ratio.map(|ratio| ratio.ours.name()),
+        "rival": ratio.map(|ratio| ratio.rival.name()),
+        "order": ratio.map(|ratio| ratio.order.name()),
+        "ratio": ratio.map(|ratio| ratio.spread.median),
+        "ratio_spread": ratio.map(|ratio| ratio.spread.deviation),
+        "ns_per_ray": number(0, |one| one.ns.median),
+        "rival_ns_per_ray": number(1, |one| one.ns.median),
+        "wrong_percent": number(0, |one| one.wrong_percent),
+        "rival_wrong_percent": number(1, |one| one.wrong_percent),
+        "bytes_per_cylinder": number(0, |one| one.bytes_per_cylinder),
+        "rival_bytes_per_cylinder": number(1, |one| one.bytes_per_cylinder),
+        "reason": best.ratio.as_ref().err(),
     })
 }
 

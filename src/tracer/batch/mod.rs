@@ -117,6 +117,21 @@ impl Tracer {
         }
     }
 
+    /// The positions of a batch's rays in the order in which the batch traces them.
+    pub(crate) fn batch_order(&self, rays: &[Ray]) -> Vec<u32> {
+        let mut positions = Vec::with_capacity(rays.len());
+        let mut rest = rays;
+        while !rest.is_empty() {
+            let (first, group) = (positions.len() as u32, split(rest).0);
+            rest = &rest[group.len()..];
+            match order(group, self.fits_caches()) {
+                Some(order) => positions.extend(order.into_iter().map(|position| first + position)),
+                None => positions.extend(first..first + group.len() as u32),
+            }
+        }
+        positions
+    }
+
     /// Whether all that rays visit stays in a core's own caches, however rays come.
     fn fits_caches(&self) -> bool {
         self.counted.described_bytes <= GREATEST_CACHED
