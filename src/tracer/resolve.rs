@@ -87,11 +87,11 @@ impl Search<'_> {
 
     fn on_solid<S: TracedSolid>(&self, record: &SolidRecord<S>) -> LocalHit {
         let met = self.met(|t| record.solid.first(self.ray, self.t_min, t));
-        let (surface, margin) = record.solid.surface(self.ray, &met);
+        let surface = record.solid.surface(self.ray, &met);
         LocalHit {
             meeting: met.meeting,
             surface,
-            margin,
+            margin: record.solid.spawn_margin(&met, &surface),
             primitive: record.primitive,
             material: record.material,
         }
@@ -165,7 +165,7 @@ pub(crate) fn resolve(
         point,
         error,
         normal,
-        u: surface.u,
+        u: surface.u(),
         v: surface.v,
         prototype: place.prototype,
         solid: place.member.kind,
