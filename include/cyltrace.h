@@ -108,7 +108,7 @@ struct cyltrace_ray {
 /*
  * A hit, or a miss: then is_hit is 0 and nothing else counts.
  *
- * The library fills in every field. A callback of cyltrace_check sets is_hit and
+ * cyltrace_closest fills in every field. A callback of cyltrace_check sets is_hit and
  * t, and says with `tells` what else it has set; that is then checked too.
  */
 struct cyltrace_hit {
@@ -138,6 +138,24 @@ struct cyltrace_hit {
 int cyltrace_closest(const struct cyltrace_scene *scene,
                      const struct cyltrace_ray *rays, size_t count,
                      struct cyltrace_hit *hits);
+
+/* The fields of a hit that cyltrace_closest_with works out, added up */
+#define CYLTRACE_FIELD_POINT 1u  /* point */
+#define CYLTRACE_FIELD_NORMAL 2u /* normal */
+#define CYLTRACE_FIELD_UV 4u     /* u and v */
+#define CYLTRACE_FIELD_ERROR 8u  /* error */
+#define CYLTRACE_FIELD_PATH 16u  /* instance_count and instance */
+#define CYLTRACE_FIELD_ALL 31u   /* all of them, as cyltrace_closest does */
+
+/*
+ * As cyltrace_closest, but works out only the fields that are in `fields`, which is
+ * faster. They have the same bits as cyltrace_closest returns. The others are NaN,
+ * and instance_count and instance are 0; `tells` has only what is there. All fields
+ * that have no flag are always there. Refuses a flag that does not exist.
+ */
+int cyltrace_closest_with(const struct cyltrace_scene *scene,
+                          const struct cyltrace_ray *rays, size_t count,
+                          uint32_t fields, struct cyltrace_hit *hits);
 
 /* Whether each of `count` rays hits anything: 1 or 0. */
 int cyltrace_occluded(const struct cyltrace_scene *scene,

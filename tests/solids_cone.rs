@@ -315,7 +315,7 @@ fn points_of_hits_are_within_their_bounds() {
                     let name = || format!("{solid:?} {family:?} {index} {hit:?} {met:?} {off:e}");
                     assert!(off <= met.error, "{}", name());
                     assert!((met.normal.length() - 1.0).abs() < 1e-14, "{}", name());
-                    assert!((0.0..1.0).contains(&met.u), "{}", name());
+                    assert!((0.0..1.0).contains(&met.u()), "{}", name());
                     assert!((0.0..=1.0).contains(&met.v), "{}", name());
                     let slack = DVec3::splat(met.error);
                     let is_in_box = met.point.cmpge(bounds.lower - slack).all()

@@ -7,10 +7,10 @@ use std::slice;
 use std::sync::{Arc, OnceLock};
 
 use super::status::{CYLTRACE_ERROR, CYLTRACE_OK, guarded};
-use super::types::{CyltraceHit, CyltraceRay};
+use super::types::{ALL_FIELDS, CyltraceHit, CyltraceRay, fields_of};
 use crate::math::Ray;
 use crate::scene::{self, Scene};
-use crate::tracer::{BuildTime, Options, Tracer};
+use crate::tracer::{BuildTime, HitFields, Options, Tracer};
 
 /// `struct cyltrace_scene`: a scene, and its tracer once rays are traced.
 pub struct CyltraceScene {
@@ -83,20 +83,38 @@ pub unsafe extern "C" fn cyltrace_closest(
     count: usize,
     hits: *mut CyltraceHit,
 ) -> c_int {
+    let answer = |tracer: &Tracer, ray: &Ray| first_hit(tracer, ray, ALL_FIELDS);
     // SAFETY: the caller's promise is the one that is asked for.
-    unsafe {
-        for_each_ray(
-            "cyltrace_closest",
-            scene,
-            rays,
-            count,
-            hits,
-            |tracer, ray| {
-                let hit = tracer.closest(ray);
-                hit.as_ref().map_or(CyltraceHit::MISS, CyltraceHit::from)
-            },
-        )
-    }
+    unsafe { for_each_ray("cyltrace_closest", scene, rays, count, hits, answer) }
+}
+
+/// The first hit of each of `count` rays, with only some fields worked out: a sum of
+/// `CYLTRACE_FIELD_...`.
+///
+/// # Safety
+/// As for [`cyltrace_closest`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cyltrace_closest_with(
+    scene: *const CyltraceScene,
+    rays: *const CyltraceRay,
+    count: usize,
+    fields: u32,
+    hits: *mut CyltraceHit,
+) -> c_int {
+    let function = "cyltrace_closest_with";
+    let Some(fields) =
+        guarded(|| fields_of(fields).map_err(|error| format!("{function}: {error}")))
+    else {
+        return CYLTRACE_ERROR;
+    };
+    let answer = |tracer: &Tracer, ray: &Ray| first_hit(tracer, ray, fields);
+    // SAFETY: the caller's promise is the one that is asked for.
+    unsafe { for_each_ray(function, scene, rays, count, hits, answer) }
+}
+
+fn first_hit(tracer: &Tracer, ray: &Ray, fields: HitFields) -> CyltraceHit {
+    let hit = tracer.closest_with(ray, fields);
+    hit.as_ref().map_or(CyltraceHit::MISS, CyltraceHit::from)
 }
 
 /// Whether each of `count` rays hits anything: 1 or 0.

@@ -9,7 +9,7 @@ use crate::check::{Finding, Place};
 use crate::math::Ray;
 use crate::scene::GREATEST_DEPTH;
 use crate::solid::{Crossing, Part, SolidKind};
-use crate::tracer::Hit;
+use crate::tracer::{HitFields, PartialHit};
 
 /// Most placements inside each other.
 pub const CYLTRACE_GREATEST_DEPTH: usize = 64;
@@ -20,6 +20,43 @@ const _: () = assert!(CYLTRACE_GREATEST_DEPTH == GREATEST_DEPTH);
 pub const CYLTRACE_TELLS_NORMAL: u32 = 1;
 /// [`CyltraceHit::tells`]: `primitive`, `part` and `instance` are told.
 pub const CYLTRACE_TELLS_PLACE: u32 = 2;
+
+/// [`cyltrace_closest_with`](super::cyltrace_closest_with): `point`.
+pub const CYLTRACE_FIELD_POINT: u32 = 1;
+/// [`cyltrace_closest_with`](super::cyltrace_closest_with): `normal`.
+pub const CYLTRACE_FIELD_NORMAL: u32 = 2;
+/// [`cyltrace_closest_with`](super::cyltrace_closest_with): `u` and `v`.
+pub const CYLTRACE_FIELD_UV: u32 = 4;
+/// [`cyltrace_closest_with`](super::cyltrace_closest_with): `error`.
+pub const CYLTRACE_FIELD_ERROR: u32 = 8;
+/// [`cyltrace_closest_with`](super::cyltrace_closest_with): `instance_count` and `instance`.
+pub const CYLTRACE_FIELD_PATH: u32 = 16;
+/// [`cyltrace_closest_with`](super::cyltrace_closest_with): all of them.
+pub const CYLTRACE_FIELD_ALL: u32 = 31;
+
+/// The fields and their codes.
+const FIELDS: [(HitFields, u32); 5] = [
+    (HitFields::POINT, CYLTRACE_FIELD_POINT),
+    (HitFields::NORMAL, CYLTRACE_FIELD_NORMAL),
+    (HitFields::UV, CYLTRACE_FIELD_UV),
+    (HitFields::ERROR, CYLTRACE_FIELD_ERROR),
+    (HitFields::PATH, CYLTRACE_FIELD_PATH),
+];
+
+/// The fields of `CYLTRACE_FIELD_ALL`: all that `struct cyltrace_hit` has.
+pub(super) const ALL_FIELDS: HitFields = HitFields::all().difference(HitFields::SPAWN);
+
+/// The fields of a sum of their codes. The error is a message: another number is in it.
+pub(super) fn fields_of(codes: u32) -> Result<HitFields, String> {
+    if codes & !CYLTRACE_FIELD_ALL != 0 {
+        return Err(format!(
+            "fields is {codes}: it is a sum of CYLTRACE_FIELD_..., at most {CYLTRACE_FIELD_ALL}"
+        ));
+    }
+    let is_in = |(_, code): &&(HitFields, u32)| codes & code != 0;
+    let fields = FIELDS.iter().filter(is_in).map(|(field, _)| *field);
+    Ok(fields.collect())
+}
 
 /// [`CyltraceHit::part`]: the curved wall.
 pub const CYLTRACE_SIDE: u32 = 0;
@@ -113,7 +150,7 @@ impl From<&CyltraceRay> for Ray {
     }
 }
 
-/// `struct cyltrace_hit`: see [`Hit`]; all zeros is a miss.
+/// `struct cyltrace_hit`: see [`Hit`](crate::tracer::Hit); all zeros is a miss.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CyltraceHit {
@@ -210,30 +247,35 @@ fn part_code(part: Part) -> u32 {
     known.expect("every part has a code").1
 }
 
-impl From<&Hit> for CyltraceHit {
-    fn from(hit: &Hit) -> Self {
+/// Fields that were not requested are NaN; without its path, a hit has no instances.
+impl From<&PartialHit> for CyltraceHit {
+    fn from(hit: &PartialHit) -> Self {
+        let (u, v) = hit.uv().unwrap_or((f64::NAN, f64::NAN));
+        let path = hit.instance().unwrap_or_default();
         let mut instance = [0; CYLTRACE_GREATEST_DEPTH];
-        instance[..hit.instance.len()].copy_from_slice(&hit.instance);
+        instance[..path.len()].copy_from_slice(path);
+        let tells_normal = hit.normal().map_or(0, |_| CYLTRACE_TELLS_NORMAL);
+        let tells_place = hit.instance().map_or(0, |_| CYLTRACE_TELLS_PLACE);
         Self {
-            t: hit.t,
-            point: hit.point.to_array(),
-            normal: hit.normal.to_array(),
-            error: hit.error,
-            u: hit.u,
-            v: hit.v,
+            t: hit.t(),
+            point: hit.point().unwrap_or(DVec3::NAN).to_array(),
+            normal: hit.normal().unwrap_or(DVec3::NAN).to_array(),
+            error: hit.error().unwrap_or(f64::NAN),
+            u,
+            v,
             is_hit: 1,
-            tells: CYLTRACE_TELLS_NORMAL | CYLTRACE_TELLS_PLACE,
-            prototype: hit.prototype.0,
-            primitive: hit.primitive,
-            part: part_code(hit.part),
-            crossing: match hit.crossing {
+            tells: tells_normal | tells_place,
+            prototype: hit.prototype().0,
+            primitive: hit.primitive(),
+            part: part_code(hit.part()),
+            crossing: match hit.crossing() {
                 Crossing::Enter => CYLTRACE_ENTER,
                 Crossing::Leave => CYLTRACE_LEAVE,
             },
-            material: hit.material.0.into(),
-            instance_count: hit.instance.len() as u32,
+            material: hit.material().0.into(),
+            instance_count: path.len() as u32,
             instance,
-            solid: match hit.solid {
+            solid: match hit.solid() {
                 SolidKind::Cylinder => CYLTRACE_SOLID_CYLINDER,
                 SolidKind::Cone => CYLTRACE_SOLID_CONE,
                 SolidKind::RoundedCone => CYLTRACE_SOLID_ROUNDED_CONE,

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::math::Ray;
 use crate::solid::Part;
-use crate::tracer::Tracer;
+use crate::tracer::{HitFields, Tracer};
 
 /// Finds the first hit of a ray with the scene that it is checked against, from
 /// any number of threads.
@@ -37,14 +37,15 @@ pub struct Place {
 
 impl Intersector for Tracer {
     fn closest(&self, ray: &Ray) -> Option<Finding> {
-        let hit = Self::closest(self, ray)?;
+        let first = self.first_hit(ray)?;
+        let hit = self.hit_with(ray, &first, HitFields::NORMAL);
         Some(Finding {
-            t: hit.t,
-            normal: Some(hit.normal),
+            t: hit.t(),
+            normal: hit.normal(),
             place: Some(Place {
-                instance: hit.instance,
-                primitive: hit.primitive,
-                part: hit.part,
+                instance: first.instance().to_vec(),
+                primitive: hit.primitive(),
+                part: hit.part(),
             }),
         })
     }

@@ -3,43 +3,53 @@
 use std::fmt::Write;
 
 use cyltrace::scene::Scene;
-use cyltrace::tracer::{Containing, Hit};
+use cyltrace::tracer::{Containing, HitFields, PartialHit};
 
 /// The header line.
 pub const HEADER: &str =
     "ray,hit,t,x,y,z,nx,ny,nz,prototype,solid,primitive,part,crossing,instance,u,v,error\n";
 
+/// The fields of a hit that the columns contain.
+pub const FIELDS: HitFields = HitFields::all().difference(HitFields::SPAWN);
+
 /// The cells of a miss after `ray` and `hit`: all 16 empty.
 const MISS: &str = ",,,,,,,,,,,,,,,";
 
-/// Appends the row of ray number `ray`.
-pub fn push_row(rows: &mut String, ray: u64, hit: Option<&Hit>, scene: &Scene) {
+/// Appends the row of ray number `ray`, whose hit has all of [`FIELDS`].
+pub fn push_row(rows: &mut String, ray: u64, hit: Option<&PartialHit>, scene: &Scene) {
     let Some(hit) = hit else {
         push(rows, format_args!("{ray},0,{MISS}\n"));
         return;
     };
     push(rows, format_args!("{ray},1"));
-    let numbers = [hit.t, hit.point.x, hit.point.y, hit.point.z];
-    for value in numbers.into_iter().chain(hit.normal.to_array()) {
-        push_number(rows, value);
+    push_number(rows, hit.t());
+    for vector in [hit.point(), hit.normal()] {
+        for value in requested(vector).to_array() {
+            push_number(rows, value);
+        }
     }
     rows.push(',');
-    push_text(rows, &scene.prototypes[hit.prototype.0 as usize].name);
+    push_text(rows, &scene.prototypes[hit.prototype().0 as usize].name);
     push(
         rows,
         format_args!(
             ",{},{},{},{},",
-            hit.solid.name(),
-            hit.primitive,
-            hit.part.name(),
-            hit.crossing.name()
+            hit.solid().name(),
+            hit.primitive(),
+            hit.part().name(),
+            hit.crossing().name()
         ),
     );
-    push_path(rows, &hit.instance);
-    for value in [hit.u, hit.v, hit.error] {
+    push_path(rows, requested(hit.instance()));
+    let (u, v) = requested(hit.uv());
+    for value in [u, v, requested(hit.error())] {
         push_number(rows, value);
     }
     rows.push('\n');
+}
+
+fn requested<T>(field: Option<T>) -> T {
+    field.expect("a row's hit has all of `FIELDS`")
 }
 
 /// The header line of a table of points.

@@ -11,7 +11,7 @@ use std::time::Instant;
 use anyhow::anyhow;
 use cyltrace::math::Ray;
 use cyltrace::scene::{NumberRow, NumberTable, SceneError};
-use cyltrace::tracer::{DEFAULT_BATCH, Hit, Options, Tracer};
+use cyltrace::tracer::{DEFAULT_BATCH, Options, PartialHit, Tracer};
 use glam::DVec3;
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -86,15 +86,16 @@ fn trace_rays(arguments: &TraceArguments, path: &Path) -> anyhow::Result<()> {
         items: "rays",
         answer: &|tracer, rows, number, ray| {
             let mut hits = 0;
-            let mut push = |hit: &Hit| {
+            let mut push = |hit: &PartialHit| {
                 hit_table::push_row(rows, number, Some(hit), tracer.scene());
                 hits += 1;
             };
             if all {
                 tracer
                     .all_hits(ray, DEFAULT_BATCH)
+                    .with(hit_table::FIELDS)
                     .for_each(|hit| push(&hit));
-            } else if let Some(hit) = tracer.closest(ray) {
+            } else if let Some(hit) = tracer.closest_with(ray, hit_table::FIELDS) {
                 push(&hit);
             }
             if hits == 0 {

@@ -22,7 +22,7 @@ use glam::{DVec2, DVec3};
 use super::{Lights, PixelSampler};
 use crate::math::Ray;
 use crate::scene::{AimedCamera, Integrator, Material};
-use crate::tracer::{Hit, Tracer};
+use crate::tracer::{HitFields, PartialHit, Tracer};
 
 /// How many rays were traced, by purpose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -86,7 +86,7 @@ impl Sample {
 #[derive(Default)]
 pub(super) struct Batch {
     rays: Vec<Ray>,
-    hits: Vec<Option<Hit>>,
+    hits: Vec<Option<PartialHit>>,
     /// The colours of the samples, in their order.
     pub colors: Vec<DVec3>,
     occlusion: Occlusion,
@@ -131,11 +131,16 @@ impl View<'_> {
             self.camera.ray(position)
         }));
         rays.camera += samples.len() as u64;
-        self.tracer.closest_batch(&batch.rays, &mut batch.hits);
+        let fields = match self.integrator {
+            Integrator::Normal => HitFields::NORMAL,
+            Integrator::Ao | Integrator::Sun => HitFields::NORMAL | HitFields::SPAWN,
+        };
+        self.tracer
+            .closest_batch_with(&batch.rays, fields, &mut batch.hits);
 
         batch.colors.clear();
-        let color = |hit: &Option<Hit>| match (self.integrator, hit) {
-            (Integrator::Normal, Some(hit)) => hit.normal * 0.5 + 0.5,
+        let color = |hit: &Option<PartialHit>| match (self.integrator, hit) {
+            (Integrator::Normal, Some(hit)) => normal(hit) * 0.5 + 0.5,
             (Integrator::Normal, None) | (Integrator::Ao | Integrator::Sun, Some(_)) => DVec3::ZERO,
             (Integrator::Ao, None) => DVec3::ONE,
             (Integrator::Sun, None) => self.lights.miss(),
@@ -151,7 +156,7 @@ impl View<'_> {
                 }
                 for (color, hit) in batch.colors.iter_mut().zip(&batch.hits) {
                     if let Some(hit) = hit {
-                        *color *= self.materials[usize::from(hit.material.0)].color;
+                        *color *= self.materials[usize::from(hit.material().0)].color;
                     }
                 }
             }
@@ -166,10 +171,10 @@ impl View<'_> {
         };
         let shadows = &mut batch.occlusion;
         shadows.clear();
-        let cosine = |ray: &Ray, hit: &Hit| facing_normal(ray, hit).dot(sun.direction);
+        let cosine = |ray: &Ray, hit: &PartialHit| facing_normal(ray, hit).dot(sun.direction);
         for (sample, (ray, hit)) in batch.rays.iter().zip(&batch.hits).enumerate() {
             if let Some(hit) = hit.as_ref().filter(|hit| cosine(ray, hit) > 0.0) {
-                shadows.push(sample, hit.spawn(sun.direction));
+                shadows.push(sample, spawn(hit, sun.direction));
             }
         }
         rays.shadow += shadows.rays.len() as u64;
@@ -196,7 +201,7 @@ impl View<'_> {
             if let Some(hit) = hit {
                 let numbers = samples[number].direction();
                 let direction = cosine_direction(facing_normal(ray, hit), numbers);
-                openings.push(number, hit.spawn(direction));
+                openings.push(number, spawn(hit, direction));
             }
         }
         rays.ao += openings.rays.len() as u64;
@@ -207,12 +212,22 @@ impl View<'_> {
 }
 
 /// The unit normal on the side that the ray comes from.
-fn facing_normal(ray: &Ray, hit: &Hit) -> DVec3 {
-    if hit.normal.dot(ray.direction) > 0.0 {
-        -hit.normal
+fn facing_normal(ray: &Ray, hit: &PartialHit) -> DVec3 {
+    let normal = normal(hit);
+    if normal.dot(ray.direction) > 0.0 {
+        -normal
     } else {
-        hit.normal
+        normal
     }
+}
+
+fn normal(hit: &PartialHit) -> DVec3 {
+    hit.normal().expect("every integrator requests normals")
+}
+
+fn spawn(hit: &PartialHit, direction: DVec3) -> Ray {
+    hit.spawn(direction)
+        .expect("every integrator that spawns rays requests it")
 }
 
 /// A direction about the unit vector `normal` whose density is the cosine

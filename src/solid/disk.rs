@@ -184,8 +184,8 @@ impl ConvexSolid for Disk {
             point,
             error: UNIT_ROUNDOFF * (point.length() + 16.0 * self.radius),
             normal: around.axis,
-            u: around.u,
             v: (around.distance / self.radius).min(1.0),
+            first: around.angle(),
         }
     }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::passing::Line;
-use super::surface::turn;
+use super::surface::FirstParameter;
 use super::{Chord, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint, ball};
 use crate::math::{Bounds, UNIT_ROUNDOFF, unit};
 
@@ -110,8 +110,12 @@ impl ConvexSolid for Sphere {
             point,
             error: UNIT_ROUNDOFF * (point.length() + 8.0 * self.radius),
             normal,
-            u: turn(normal, DVec3::X, DVec3::Y),
             v: (0.5 + 0.5 * normal.z).clamp(0.0, 1.0),
+            // About z, angles count from x.
+            first: FirstParameter::Angle {
+                axis: DVec3::Z,
+                outward: normal,
+            },
         }
     }
 
@@ -141,7 +145,7 @@ mod tests {
             (-DVec3::ZERO, 0.0, 1.0),
         ] {
             let found = sphere.surface_point(Part::Side, from);
-            assert_eq!((found.u, found.v), (u, v), "{from}");
+            assert_eq!((found.u(), found.v), (u, v), "{from}");
             assert_eq!(found.point, sphere.centre + found.normal * 2.0, "{from}");
         }
     }

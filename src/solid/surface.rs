@@ -22,6 +22,10 @@
 //!
 //! Together `u (|q| + 3 |a| + 12 radius)`; second-order terms and the rounding
 //! of the bound itself are covered by counting 4 and 16 instead of 3 and 12.
+//!
+//! The angle `u` takes an arc tangent, which costs as much as everything else here,
+//! and most callers do not use it. A surface point therefore contains what `u` depends
+//! on, and [`SurfacePoint::u`] computes it.
 
 use glam::DVec3;
 
@@ -37,10 +41,33 @@ pub struct SurfacePoint {
     pub error: f64,
     /// Outward unit normal, within 16 units of 2^-53 of the normal at `point`.
     pub normal: DVec3,
-    /// Angle around the axis divided by 2π, in [0, 1).
-    pub u: f64,
     /// Axial position from `p0` to `p1`, in [0, 1].
     pub v: f64,
+    /// What [`SurfacePoint::u`] computes.
+    pub(super) first: FirstParameter,
+}
+
+impl SurfacePoint {
+    /// Angle around the axis divided by 2π, in [0, 1).
+    #[must_use]
+    pub fn u(&self) -> f64 {
+        match self.first {
+            FirstParameter::Angle { axis, outward } => {
+                let (reference, across) = angle_frame(axis);
+                turn(outward, reference, across)
+            }
+            FirstParameter::Share(share) => share,
+        }
+    }
+}
+
+/// The parameter `u` of a surface point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum FirstParameter {
+    /// The angle of a unit vector around an axis, which is one too.
+    Angle { axis: DVec3, outward: DVec3 },
+    /// The number itself.
+    Share(f64),
 }
 
 /// The point of `part` nearest to `p0 + from_p0`.
@@ -53,12 +80,12 @@ pub struct SurfacePoint {
 pub fn surface_point(cylinder: &Cylinder, part: Part, from_p0: DVec3) -> SurfacePoint {
     let (p0, p1, radius) = (cylinder.p0(), cylinder.p1(), cylinder.radius());
     let a = p1 - p0;
+    let around = Around::new(a, from_p0);
     let Around {
         axis,
         outward,
         distance,
-        u,
-    } = Around::new(a, from_p0);
+    } = around;
 
     let v = match part {
         Part::Side => (from_p0.dot(a) / a.length_squared()).clamp(0.0, 1.0),
@@ -82,8 +109,8 @@ pub fn surface_point(cylinder: &Cylinder, part: Part, from_p0: DVec3) -> Surface
         point,
         error,
         normal,
-        u,
         v,
+        first: around.angle(),
     }
 }
 
@@ -96,15 +123,12 @@ pub(super) struct Around {
     pub outward: DVec3,
     /// The distance from the axis.
     pub distance: f64,
-    /// The angle divided by 2π, in [0, 1), and 0 on the axis.
-    pub u: f64,
 }
 
 impl Around {
     /// Of the point `from_p0` and the axis `a`, which starts at `p0`.
     pub fn new(a: DVec3, from_p0: DVec3) -> Self {
         let axis = a.normalize();
-        let (reference, across) = angle_frame(axis);
         let from_axis = from_p0 - a * (from_p0.dot(a) / a.length_squared());
         let radial = from_axis - axis * from_axis.dot(axis);
         let distance = radial.length();
@@ -112,19 +136,26 @@ impl Around {
         let outward = if distance > 0.0 {
             radial / distance
         } else {
-            reference
+            angle_frame(axis).0
         };
         Self {
             axis,
             outward,
             distance,
-            u: turn(outward, reference, across),
+        }
+    }
+
+    /// The angle of the point, which is 0 on the axis.
+    pub fn angle(&self) -> FirstParameter {
+        FirstParameter::Angle {
+            axis: self.axis,
+            outward: self.outward,
         }
     }
 }
 
 /// The angle of `outward` from `reference` towards `across`, in turns, in [0, 1).
-pub(super) fn turn(outward: DVec3, reference: DVec3, across: DVec3) -> f64 {
+fn turn(outward: DVec3, reference: DVec3, across: DVec3) -> f64 {
     // A zero of either sign is the same direction.
     let (y, x) = (outward.dot(across) + 0.0, outward.dot(reference) + 0.0);
     let turn = libm::atan2(y, x) / std::f64::consts::TAU;
@@ -166,7 +197,7 @@ mod tests {
             (DVec3::new(0.0, -0.6, 0.5), 0.75),
         ] {
             let found = surface_point(&cylinder, Part::Side, from);
-            assert_eq!((found.u, found.v), (u, 0.25), "{from:?}");
+            assert_eq!((found.u(), found.v), (u, 0.25), "{from:?}");
             assert!((found.point - DVec3::new(from.x, from.y, 0.6) / 1.2).length() < 1e-15);
             assert_eq!(found.normal, DVec3::new(from.x, from.y, 0.0) / 0.6);
         }
@@ -175,7 +206,7 @@ mod tests {
     #[test]
     fn angle_just_below_zero_stays_below_one() {
         let from = DVec3::new(0.5, -1e-30, 1.0);
-        let u = surface_point(&unit_cylinder(), Part::Side, from).u;
+        let u = surface_point(&unit_cylinder(), Part::Side, from).u();
         assert!((0.0..1.0).contains(&u), "{u}");
     }
 
@@ -190,7 +221,7 @@ mod tests {
         assert_eq!(found.v, 1.0);
         let middle = surface_point(&cylinder, Part::Cap0, DVec3::ZERO);
         assert_eq!(
-            (middle.point, middle.normal, middle.u),
+            (middle.point, middle.normal, middle.u()),
             (DVec3::ZERO, -DVec3::Z, 0.0)
         );
     }

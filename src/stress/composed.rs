@@ -140,7 +140,7 @@ fn is_face(composition: &Composition, ray: &Ray, met: &ComposedMeeting, faces: &
     let named = |face: &&Face| face.leaf == met.leaf && face.part == met.meeting.part;
     faces.iter().filter(named).any(|face| {
         let at = |anchor| (ray.origin - anchor) + ray.direction * met.meeting.t;
-        let (surface, _) = composition.surface(met, at);
+        let surface = composition.surface(met, at);
         // At an apex any normal is as good.
         face.normal
             .is_none_or(|normal| normal.dot(surface.normal) > 0.0)

@@ -23,7 +23,7 @@
 use super::frame::LocalRay;
 use super::query::{Found, Keep, Query};
 use super::resolve::Which;
-use super::{Hit, Tracer};
+use super::{Hit, HitFields, PartialHit, Tracer};
 use crate::math::Ray;
 
 /// A batch that suits most rays: a second traversal is needed for few, and
@@ -65,6 +65,26 @@ impl<'a> AllHits<'a> {
         }
     }
 
+    /// The same hits, with only those fields worked out that are in `fields`.
+    pub fn with(mut self, fields: HitFields) -> impl Iterator<Item = PartialHit> + 'a {
+        std::iter::from_fn(move || Some(PartialHit::new(self.next_hit(fields)?, fields)))
+    }
+
+    /// The next hit, with some fields worked out.
+    fn next_hit(&mut self, fields: HitFields) -> Option<Hit> {
+        if self.known.as_slice().is_empty() && !self.is_complete {
+            self.search()?;
+        }
+        let found = self.known.next()?;
+        let (ray, factor) = self.ray?;
+        let root = self.tracer.root.as_ref()?;
+        let which = Which::This(found.met);
+        let hit = self
+            .tracer
+            .resolved(root, (&ray, factor), &found.place, which, fields);
+        Some(hit)
+    }
+
     /// Finds the next hits, if there can be any.
     fn search(&mut self) -> Option<()> {
         let (ray, _) = self.ray?;
@@ -90,17 +110,7 @@ impl Iterator for AllHits<'_> {
     type Item = Hit;
 
     fn next(&mut self) -> Option<Hit> {
-        if self.known.as_slice().is_empty() && !self.is_complete {
-            self.search()?;
-        }
-        let found = self.known.next()?;
-        let (ray, factor) = self.ray?;
-        let root = self.tracer.root.as_ref()?;
-        let which = Which::This(found.met);
-        Some(
-            self.tracer
-                .resolved(root, &ray, factor, &found.place, which),
-        )
+        self.next_hit(HitFields::all())
     }
 }
 

@@ -5,8 +5,8 @@
 //! walks them with an f64 ray, or with a packet of those that go the same way
 //! (`batch`): Embree's f32 rays only find candidates (`frame`), the callbacks of a
 //! prototype solve or hand on to a placed prototype (`prototype`), the query keeps
-//! the best hits (`query`), and what the caller wants to know of them is worked out
-//! at the end (`resolve`).
+//! the best hits (`query`), and the fields that the caller requests are worked out at the
+//! end (`partial_hit`, `resolve`).
 
 mod all_hits;
 mod batch;
@@ -19,6 +19,7 @@ mod frame;
 mod hit;
 mod options;
 mod outliers;
+mod partial_hit;
 mod prototype;
 mod query;
 mod resolve;
@@ -37,6 +38,7 @@ pub(crate) use frame::{Frame, LocalRay};
 pub use hit::Hit;
 pub use options::{BuildTime, Layout, Options};
 pub use outliers::{Outlier, outliers};
+pub use partial_hit::{HitFields, PartialHit};
 pub use statistics::Statistics;
 pub use workers::workers;
 
@@ -123,6 +125,13 @@ impl Tracer {
         Some(self.hit(ray, &first))
     }
 
+    /// As [`Tracer::closest`], with only those fields worked out that are in `fields`.
+    #[must_use]
+    pub fn closest_with(&self, ray: &Ray, fields: HitFields) -> Option<PartialHit> {
+        let first = self.first_hit(ray)?;
+        Some(self.hit_with(ray, &first, fields))
+    }
+
     /// As [`Tracer::closest`], without working out anything but where on the ray
     /// the hit is, and of which solid. [`Tracer::hit`] has the rest.
     #[must_use]
@@ -142,10 +151,23 @@ impl Tracer {
     /// with something else.
     #[must_use]
     pub fn hit(&self, ray: &Ray, first: &FirstHit) -> Hit {
+        self.hit_of_first(ray, first, HitFields::all())
+    }
+
+    /// As [`Tracer::hit`], with only those fields worked out that are in `fields`.
+    ///
+    /// # Panics
+    /// As [`Tracer::hit`].
+    #[must_use]
+    pub fn hit_with(&self, ray: &Ray, first: &FirstHit, fields: HitFields) -> PartialHit {
+        PartialHit::new(self.hit_of_first(ray, first, fields), fields)
+    }
+
+    fn hit_of_first(&self, ray: &Ray, first: &FirstHit, fields: HitFields) -> Hit {
         let root = self.root.as_ref().expect("a hit is in a scene with a root");
         let (ray, factor) = self.in_use(ray).expect("a ray that hits is valid");
         let which = Which::FirstAt(first.nearest.t);
-        self.resolved(root, &ray, factor, &first.nearest.place, which)
+        self.resolved(root, (&ray, factor), &first.nearest.place, which, fields)
     }
 
     /// As [`Tracer::closest`], without Embree: every placement and every solid
@@ -245,16 +267,16 @@ impl Tracer {
         (first, query.callbacks)
     }
 
-    /// The answer for a hit of the ray in use.
+    /// The answer for a hit of the ray in use, with the factor that turns its `t` back.
     fn resolved(
         &self,
         root: &Arc<Prototype>,
-        ray: &Ray,
-        factor: f64,
+        (ray, factor): (&Ray, f64),
         place: &Place,
         which: Which,
+        fields: HitFields,
     ) -> Hit {
-        let mut hit = resolve::resolve(&self.scene, root, ray, place, which);
+        let mut hit = resolve::resolve(&self.scene, root, ray, place, which, fields);
         hit.t *= factor;
         hit
     }

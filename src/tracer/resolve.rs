@@ -1,9 +1,8 @@
 //! From the best hit of a query to the answer in world space.
 //!
-//! Point, normal, parameters and bounds are worked out once, for the hit that
-//! won. The path of placements is walked down again, with the very steps of the
-//! query, to the ray in the solid's own space; the surface point found there is
-//! then carried up.
+//! The fields that the user requests are worked out once, for the hit that won. The path of
+//! placements is walked down again, with the very steps of the query, to the ray in the
+//! solid's own space; the surface point found there is then carried up.
 //!
 //! **The error of the point.** The true surface is that of the solid's exact
 //! numbers, carried through the exact placements. The point starts within the
@@ -22,11 +21,14 @@
 
 use std::sync::Arc;
 
-use super::Hit;
+use glam::{DAffine3, DVec3};
+use smallvec::SmallVec;
+
 use super::frame::LocalRay;
 use super::prototype::Prototype;
 use super::query::Place;
 use super::traced::{Met, TracedSolid};
+use super::{Hit, HitFields};
 use crate::math::{ChildFromParent, PlacementErrors, Ray, UNIT_ROUNDOFF};
 use crate::scene::{CylinderRecord, MaterialIndex, Scene, SolidRecord};
 use crate::solid::{Meeting, SolidKind, SpawnMargin, SurfacePoint, surface_point, triple_product};
@@ -44,7 +46,8 @@ pub(crate) enum Which {
 struct LocalHit {
     meeting: Meeting,
     surface: SurfacePoint,
-    margin: SpawnMargin,
+    /// `None` where no rays are spawned.
+    margin: Option<SpawnMargin>,
     primitive: u32,
     material: MaterialIndex,
 }
@@ -54,6 +57,7 @@ struct Search<'a> {
     ray: &'a LocalRay,
     t_min: f64,
     which: Which,
+    fields: HitFields,
 }
 
 impl Search<'_> {
@@ -79,7 +83,7 @@ impl Search<'_> {
         LocalHit {
             meeting,
             surface,
-            margin: SpawnMargin::new(&cylinder, &surface),
+            margin: self.margin(|| SpawnMargin::new(&cylinder, &surface)),
             primitive: record.primitive(),
             material: record.material(),
         }
@@ -87,32 +91,95 @@ impl Search<'_> {
 
     fn on_solid<S: TracedSolid>(&self, record: &SolidRecord<S>) -> LocalHit {
         let met = self.met(|t| record.solid.first(self.ray, self.t_min, t));
-        let (surface, margin) = record.solid.surface(self.ray, &met);
+        let surface = record.solid.surface(self.ray, &met);
         LocalHit {
             meeting: met.meeting,
             surface,
-            margin,
+            margin: self.margin(|| record.solid.spawn_margin(&met, &surface)),
             primitive: record.primitive,
             material: record.material,
         }
     }
+
+    fn margin(&self, margin: impl FnOnce() -> SpawnMargin) -> Option<SpawnMargin> {
+        self.fields.contains(HitFields::SPAWN).then(margin)
+    }
 }
 
-/// The answer for a hit of a query with `ray`.
+/// The fields that depend on the normal, and those that depend on the error.
+const OF_NORMAL: HitFields = HitFields::NORMAL.union(HitFields::SPAWN);
+const OF_ERROR: HitFields = HitFields::ERROR.union(HitFields::SPAWN);
+
+/// A surface point on its way up to the world. What is not needed is NaN; the point, which
+/// costs least, is always there.
+struct Carried {
+    fields: HitFields,
+    point: DVec3,
+    normal: DVec3,
+    error: f64,
+    margin: Option<SpawnMargin>,
+}
+
+impl Carried {
+    /// In the solid's own space.
+    fn new(fields: HitFields, surface: &SurfacePoint, margin: Option<SpawnMargin>) -> Self {
+        let mut carried = Self {
+            fields,
+            point: surface.point,
+            normal: DVec3::NAN,
+            error: f64::NAN,
+            margin,
+        };
+        if fields.intersects(OF_NORMAL) {
+            carried.normal = surface.normal;
+        }
+        if fields.intersects(OF_ERROR) {
+            carried.error = surface.error;
+        }
+        carried
+    }
+
+    /// From a child's space to its parent's.
+    fn carry(&mut self, way: &ChildFromParent, parent_from_child: &DAffine3) {
+        let child_point = self.point;
+        let moved = parent_from_child.matrix3 * child_point;
+        self.point = moved + parent_from_child.translation;
+        if self.fields.intersects(OF_NORMAL) {
+            self.normal = way.parent_normal(self.normal);
+        }
+        if !self.fields.intersects(OF_ERROR) {
+            return;
+        }
+        let errors = PlacementErrors::new(parent_from_child, way);
+        let terms = (parent_from_child.matrix3.abs() * child_point.abs()).length();
+        let rounding = UNIT_ROUNDOFF * (4.0 * terms + self.point.length());
+        self.error = errors.stretch * self.error + rounding;
+        if let Some(margin) = &mut self.margin {
+            margin.size *= errors.stretch;
+            margin.displacement = errors.stretch * margin.displacement
+                + errors.inverse_error * (moved.length() + self.error + margin.size);
+            margin.normal_error = errors.condition * (margin.normal_error + 16.0 * UNIT_ROUNDOFF);
+        }
+    }
+}
+
+/// The answer for a hit of a query with `ray`. Of the fields that [`HitFields`] names, those
+/// that are not in `fields` are NaN, and the path is empty.
 pub(crate) fn resolve(
     scene: &Scene,
     root: &Arc<Prototype>,
     ray: &Ray,
     place: &Place,
     which: Which,
+    fields: HitFields,
 ) -> Hit {
     // Down to the prototype that was hit.
     let mut local = LocalRay::new(ray);
-    let mut placements = Vec::with_capacity(place.path.len());
+    let mut placements = SmallVec::<[(ChildFromParent, &DAffine3); 4]>::new();
     Prototype::along_way(root, place, |group, placement| {
         if let Some(placement) = placement {
             let way = ChildFromParent::new(&placement.parent_from_child);
-            placements.push((way, placement.parent_from_child));
+            placements.push((way, &placement.parent_from_child));
             local = local.in_child(&way);
         }
         local = group.frame.approach(&local);
@@ -124,6 +191,7 @@ pub(crate) fn resolve(
         ray: &local,
         t_min: ray.t_min,
         which,
+        fields,
     };
     let (solids, position) = (&description.solids, place.member.record as usize);
     let local = match place.member.kind {
@@ -140,40 +208,48 @@ pub(crate) fn resolve(
     let LocalHit {
         meeting,
         surface,
-        mut margin,
+        margin,
         primitive,
         material,
     } = local;
 
     // Up again to the world.
-    let (mut point, mut normal, mut error) = (surface.point, surface.normal, surface.error);
+    let mut carried = Carried::new(fields, &surface, margin);
     for (way, parent_from_child) in placements.iter().rev() {
-        let errors = PlacementErrors::new(parent_from_child, way);
-        let terms = (parent_from_child.matrix3.abs() * point.abs()).length();
-        let moved = parent_from_child.matrix3 * point;
-        point = moved + parent_from_child.translation;
-        normal = way.parent_normal(normal);
-        error = errors.stretch * error + UNIT_ROUNDOFF * (4.0 * terms + point.length());
-        margin.size *= errors.stretch;
-        margin.displacement = errors.stretch * margin.displacement
-            + errors.inverse_error * (moved.length() + error + margin.size);
-        margin.normal_error = errors.condition * (margin.normal_error + 16.0 * UNIT_ROUNDOFF);
+        carried.carry(way, parent_from_child);
     }
+    let Carried {
+        point,
+        normal,
+        error,
+        margin,
+        ..
+    } = carried;
+    let (u, v) = if fields.contains(HitFields::UV) {
+        (surface.u(), surface.v)
+    } else {
+        (f64::NAN, f64::NAN)
+    };
+    let instance = if fields.contains(HitFields::PATH) {
+        place.path.to_vec()
+    } else {
+        Vec::new()
+    };
 
     Hit {
         t: meeting.t,
         point,
         error,
         normal,
-        u: surface.u,
-        v: surface.v,
+        u,
+        v,
         prototype: place.prototype,
         solid: place.member.kind,
         primitive,
         part: meeting.part,
         crossing: meeting.crossing,
-        instance: place.path.to_vec(),
+        instance,
         material,
-        spawn_offset: margin.offset(point, error),
+        spawn_offset: margin.map_or(f64::NAN, |margin| margin.offset(point, error)),
     }
 }

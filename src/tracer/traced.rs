@@ -67,9 +67,11 @@ pub(crate) trait TracedSolid: Listed + Send + Sync {
     /// Hands on all of them.
     fn each_meeting(&self, ray: &LocalRay, t_min: f64, t_max: f64, keep: impl FnMut(Met));
 
-    /// The point of the surface where the ray meets it, and what a query that
-    /// starts there may be displaced by.
-    fn surface(&self, ray: &LocalRay, met: &Met) -> (SurfacePoint, SpawnMargin);
+    /// The point of the surface where the ray meets it.
+    fn surface(&self, ray: &LocalRay, met: &Met) -> SurfacePoint;
+
+    /// By how much a query that starts at that point may be displaced.
+    fn spawn_margin(&self, met: &Met, surface: &SurfacePoint) -> SpawnMargin;
 
     /// Whether the closed solid holds a point.
     fn contains(&self, point: DVec3) -> bool;
@@ -112,11 +114,14 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
         }
     }
 
-    fn surface(&self, ray: &LocalRay, met: &Met) -> (SurfacePoint, SpawnMargin) {
+    fn surface(&self, ray: &LocalRay, met: &Met) -> SurfacePoint {
         let Meeting { part, t_local, .. } = met.meeting;
         let from_anchor = ray.origin_from(self.anchor()) + ray.direction * t_local;
-        let surface = self.surface_point(part, from_anchor);
-        (surface, SpawnMargin::of_solid(self, &surface))
+        self.surface_point(part, from_anchor)
+    }
+
+    fn spawn_margin(&self, _: &Met, surface: &SurfacePoint) -> SpawnMargin {
+        SpawnMargin::of_solid(self, surface)
     }
 
     fn contains(&self, point: DVec3) -> bool {
@@ -171,10 +176,14 @@ impl TracedSolid for Composition {
         });
     }
 
-    fn surface(&self, ray: &LocalRay, met: &Met) -> (SurfacePoint, SpawnMargin) {
+    fn surface(&self, ray: &LocalRay, met: &Met) -> SurfacePoint {
         self.surface(&met.into(), |anchor| {
             ray.origin_from(anchor) + ray.direction * met.meeting.t_local
         })
+    }
+
+    fn spawn_margin(&self, met: &Met, surface: &SurfacePoint) -> SpawnMargin {
+        self.spawn_margin(&met.into(), surface)
     }
 
     fn contains(&self, point: DVec3) -> bool {

@@ -12,6 +12,7 @@ use cyltrace::math::{Random, Ray};
 use cyltrace::scene;
 use cyltrace::solid::{Crossing, Part};
 use cyltrace::tracer::{Options, Tracer};
+use glam::DVec3;
 
 /// A loaded scene that is freed in the end.
 struct Loaded(*mut CyltraceScene);
@@ -109,6 +110,90 @@ fn rays_get_the_tracer_s_answers() {
         );
     }
     assert!((50..490).contains(&seen), "{seen}");
+}
+
+/// A rod that is placed twice.
+const PLACED: &str = r#"
+[[prototype]]
+name = "rod"
+[[prototype.cylinder]]
+p0 = [0, 0, 0]
+p1 = [1, 2, 3]
+radius = 0.7
+[[instance]]
+of = "rod"
+translate = [-1, 0, 0]
+[[instance]]
+of = "rod"
+rotate_x = 30
+scale = 1.5
+"#;
+
+#[test]
+fn rays_get_the_fields_that_are_requested_and_no_others() {
+    let folder = tempfile::tempdir().expect("directory");
+    let path = folder.path().join("placed.toml");
+    std::fs::write(&path, PLACED).expect("written");
+    let loaded = Loaded::at(path.to_str().expect("UTF-8"));
+    // Down onto the scene, so that some rays hit and some miss.
+    let rays: Vec<CyltraceRay> = (0..200)
+        .map(|number| {
+            let mut random = Random::new(2, number);
+            let from = DVec3::new(random.uniform(-4.0, 4.0), random.uniform(-4.0, 4.0), 9.0);
+            CyltraceRay::from(&Ray::new(from, random.direction() - DVec3::Z * 3.0))
+        })
+        .collect();
+    let closest_with = |fields: u32| {
+        let mut hits = vec![CyltraceHit::MISS; rays.len()];
+        let (given, found) = (rays.as_ptr(), hits.as_mut_ptr());
+        // SAFETY: both arrays have as many elements as there are rays.
+        let code = unsafe { cyltrace_closest_with(loaded.0, given, rays.len(), fields, found) };
+        (code, hits)
+    };
+    let mut whole = vec![CyltraceHit::MISS; rays.len()];
+    // SAFETY: both arrays have as many elements as there are rays.
+    let code = unsafe { cyltrace_closest(loaded.0, rays.as_ptr(), rays.len(), whole.as_mut_ptr()) };
+    assert_eq!(code, CYLTRACE_OK);
+    let hit_count = whole.iter().filter(|hit| hit.is_hit == 1).count();
+    assert!((20..190).contains(&hit_count), "{hit_count}");
+    assert!(whole.iter().any(|hit| hit.instance[0] == 1));
+
+    for fields in 0..=CYLTRACE_FIELD_ALL {
+        let (code, hits) = closest_with(fields);
+        assert_eq!(code, CYLTRACE_OK);
+        let is_requested = |field: u32| fields & field != 0;
+        for (hit, whole) in hits.iter().zip(&whole) {
+            // What the header says of the whole hit without the other fields.
+            let mut expected = *whole;
+            if whole.is_hit == 1 {
+                if !is_requested(CYLTRACE_FIELD_POINT) {
+                    expected.point = [f64::NAN; 3];
+                }
+                if !is_requested(CYLTRACE_FIELD_NORMAL) {
+                    expected.normal = [f64::NAN; 3];
+                    expected.tells &= !CYLTRACE_TELLS_NORMAL;
+                }
+                if !is_requested(CYLTRACE_FIELD_UV) {
+                    (expected.u, expected.v) = (f64::NAN, f64::NAN);
+                }
+                if !is_requested(CYLTRACE_FIELD_ERROR) {
+                    expected.error = f64::NAN;
+                }
+                if !is_requested(CYLTRACE_FIELD_PATH) {
+                    expected.instance_count = 0;
+                    expected.instance = [0; CYLTRACE_GREATEST_DEPTH];
+                    expected.tells &= !CYLTRACE_TELLS_PLACE;
+                }
+            }
+            // The text of a number names its bits; all NaN are the same.
+            assert_eq!(format!("{hit:?}"), format!("{expected:?}"), "{fields}");
+        }
+    }
+
+    let (code, _) = closest_with(CYLTRACE_FIELD_ALL + 1);
+    assert_eq!(code, CYLTRACE_ERROR);
+    let refusal = "cyltrace_closest_with: fields is 32: ";
+    assert!(last_error().starts_with(refusal), "{}", last_error());
 }
 
 /// One of each kind at x = 0, 10, 20 ...
@@ -394,7 +479,7 @@ fn settings_beyond_their_limits_are_refused() {
 #[test]
 fn arrays_that_no_program_can_have_are_refused() {
     let loaded = Loaded::new("scenes/minimal.toml");
-    let rays = [CyltraceRay::from(&Ray::new(glam::DVec3::ZERO, glam::DVec3::X)); 2];
+    let rays = [CyltraceRay::from(&Ray::new(DVec3::ZERO, DVec3::X)); 2];
     let mut hits = [CyltraceHit::MISS; 2];
     let mut occluded = [0_u8; 2];
     let greatest = isize::MAX as usize;
@@ -445,7 +530,7 @@ fn rays_of_sizes_that_are_not_supported_are_misses() {
 #[test]
 fn null_pointers_and_missing_files_are_refused() {
     let loaded = Loaded::new("scenes/minimal.toml");
-    let ray = CyltraceRay::from(&Ray::new(glam::DVec3::ZERO, glam::DVec3::X));
+    let ray = CyltraceRay::from(&Ray::new(DVec3::ZERO, DVec3::X));
     let mut outcome = CyltraceCheckOutcome::NOTHING;
     // SAFETY: null, or locals.
     unsafe {

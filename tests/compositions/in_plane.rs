@@ -127,7 +127,7 @@ fn parts_and_normals_are_those_of_faces_that_are_there() {
     let met = meetings(&rest, at(0.25, 0.5, -5.0), DVec3::Z);
     assert_eq!((met[0].meeting.t, met[0].leaf), (6.0, 0));
     assert!(met[0].is_reversed);
-    let (surface, _) = rest.surface(&met[0], |anchor| at(0.25, 0.5, 1.0) - anchor);
+    let surface = rest.surface(&met[0], |anchor| at(0.25, 0.5, 1.0) - anchor);
     assert_eq!(surface.normal, DVec3::NEG_Z);
 }
 
@@ -362,7 +362,7 @@ fn compare(name: &str, composition: &Composition, seed: u64) -> [u64; 3] {
         for one in &found {
             let point = origin + direction * one.meeting.t;
             let part = one.meeting.part;
-            let (surface, _) = composition.surface(one, |anchor| point - anchor);
+            let surface = composition.surface(one, |anchor| point - anchor);
             assert!(
                 reference.has_face(point, one.leaf, part, surface.normal),
                 "{}\n{one:?} {}",

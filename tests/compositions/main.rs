@@ -102,7 +102,7 @@ fn drilled_block_is_met_as_it_looks() {
         .iter()
         .map(|met| {
             let on_ray = at(-5.0, 0.0, 0.5) + DVec3::X * met.meeting.t_local;
-            let (surface, _) = block.surface(met, |anchor| on_ray - anchor);
+            let surface = block.surface(met, |anchor| on_ray - anchor);
             assert_eq!(surface.point, on_ray);
             surface.normal
         })

@@ -145,7 +145,7 @@ fn judge<S: Judged>(stated: &S, ray: &Ray) -> Tally {
             show()
         );
         assert!(
-            (0.0..=1.0).contains(&met.u) && (0.0..=1.0).contains(&met.v),
+            (0.0..=1.0).contains(&met.u()) && (0.0..=1.0).contains(&met.v),
             "{}",
             show()
         );

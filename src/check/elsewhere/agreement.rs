@@ -40,7 +40,7 @@
 //! *silhouette band*.
 
 use super::deviation::Deviation;
-use super::met::{Found, Met, find};
+use super::met::{Found, Met, find, path};
 use super::surfaces::Surfaces;
 use super::tolerance::{Allowance, Tolerance, way};
 use crate::check::Witness;
@@ -48,7 +48,7 @@ use crate::math::Ray;
 use crate::oracle::{ExactAffine, placed_hits_of_any};
 use crate::report::figure;
 use crate::scene::Scene;
-use crate::tracer::{DEFAULT_BATCH, Hit, Tracer};
+use crate::tracer::{DEFAULT_BATCH, HitFields, PartialHit, Tracer};
 
 /// Hits of one ray whose solids are looked at.
 const MOST_HITS: usize = 256;
@@ -152,8 +152,8 @@ impl Agreement {
         told: Option<f64>,
         most_listed: usize,
     ) {
-        let exact = tracer.closest(ray);
-        let exact_t = exact.as_ref().map(|hit| hit.t);
+        let exact = tracer.closest_with(ray, HitFields::PATH);
+        let exact_t = exact.as_ref().map(PartialHit::t);
         self.rays += 1;
         self.hits += u64::from(exact.is_some());
         let Some(way) = way(ray, told, exact_t, surfaces.greatest_coordinate()) else {
@@ -261,13 +261,13 @@ fn judge(
     (tracer, surfaces, deviation): (&Tracer, &Surfaces, Deviation),
     ray: &Ray,
     told: Option<f64>,
-    exact: Option<&Hit>,
+    exact: Option<&PartialHit>,
     allowance: &Allowance,
 ) -> Verdict {
     let speed = ray.direction.length();
     let offset = match (told, exact) {
         (None, None) => return Verdict::Agrees(0.0),
-        (Some(told), Some(exact)) => (told - exact.t).abs(),
+        (Some(told), Some(exact)) => (told - exact.t()).abs(),
         _ => f64::INFINITY,
     };
     // Without any allowance, the same `t` agrees.
@@ -279,9 +279,10 @@ fn judge(
         return Verdict::Disagrees;
     }
     let mut met: Vec<Met> = Vec::new();
-    for hit in tracer.all_hits(ray, DEFAULT_BATCH).take(MOST_HITS) {
+    let hits = tracer.all_hits(ray, DEFAULT_BATCH).with(HitFields::PATH);
+    for hit in hits.take(MOST_HITS) {
         match met.iter_mut().find(|met| met.is_of(&hit)) {
-            Some(known) => known.at.push(hit.t),
+            Some(known) => known.at.push(hit.t()),
             None => met.push(Met::new(tracer.scene(), &hit, deviation)),
         }
     }
@@ -331,8 +332,8 @@ fn judge(
 
 /// The exact `t` of the first hit with the solid of a hit, by the oracle; `None` when
 /// it misses, and for a composition.
-fn oracle_t(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<f64> {
-    let (placements, found) = find(scene, &hit.instance, hit.primitive);
+fn oracle_t(scene: &Scene, ray: &Ray, hit: &PartialHit) -> Option<f64> {
+    let (placements, found) = find(scene, path(hit), hit.primitive());
     let world_from_object = placements
         .iter()
         .fold(ExactAffine::identity(), |whole, one| {

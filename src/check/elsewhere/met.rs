@@ -8,7 +8,7 @@ use super::tolerance::{Allowance, Margin, farthest, least_radius};
 use crate::math::Ray;
 use crate::scene::{PrototypeIndex, Scene};
 use crate::solid::{AnySolid, Composition};
-use crate::tracer::Hit;
+use crate::tracer::PartialHit;
 
 /// A solid that a ray meets.
 pub(super) struct Met<'a> {
@@ -27,8 +27,9 @@ pub(super) struct Met<'a> {
 }
 
 impl<'a> Met<'a> {
-    pub fn new(scene: &'a Scene, hit: &Hit, deviation: Deviation) -> Self {
-        let (placements, found) = find(scene, &hit.instance, hit.primitive);
+    /// The solid of a hit whose path was requested.
+    pub fn new(scene: &'a Scene, hit: &PartialHit, deviation: Deviation) -> Self {
+        let (placements, found) = find(scene, path(hit), hit.primitive());
         let whole = placements
             .iter()
             .fold(DAffine3::IDENTITY, |whole, &one| whole * *one);
@@ -47,19 +48,19 @@ impl<'a> Met<'a> {
             .iter()
             .map(|one| farthest(&one.bounds().transformed(&whole)));
         Self {
-            solid: (hit.instance.clone(), hit.primitive),
+            solid: (path(hit).to_vec(), hit.primitive()),
             extent: extents.fold(0.0, f64::max),
             spare_radius: frame.least_length(slack.spare_radius(least_radius(parts))),
             slack,
             frame,
             found,
-            at: vec![hit.t],
+            at: vec![hit.t()],
         }
     }
 
     /// Whether it is the solid of a hit.
-    pub fn is_of(&self, hit: &Hit) -> bool {
-        self.solid.1 == hit.primitive && self.solid.0 == hit.instance
+    pub fn is_of(&self, hit: &PartialHit) -> bool {
+        self.solid.1 == hit.primitive() && self.solid.0 == path(hit)
     }
 
     /// What an answer about it may be off.
@@ -107,6 +108,11 @@ impl<'a> Met<'a> {
             Found::Composed(_) => false,
         }
     }
+}
+
+/// The path of a hit, which this check requests of all hits.
+pub(super) fn path(hit: &PartialHit) -> &[u32] {
+    hit.instance().expect("the check requests paths")
 }
 
 /// A solid of a scene.

@@ -21,10 +21,10 @@ use rayon::prelude::*;
 use crate::check::elsewhere::user_mesh::{TracedMesh, TriangleHit};
 use crate::math::Ray;
 use crate::render::{png_bytes, srgb_encode};
-use crate::scene::{AimedCamera, Film, Placement, PrototypeIndex, Scene};
+use crate::scene::{AimedCamera, Film, MaterialIndex, Placement, PrototypeIndex, Scene};
 use crate::solid::tessellation::{Fit, Mesh, deviation_of, mesh_of, mesh_size_of};
 use crate::solid::{AnySolid, SolidKind};
-use crate::tracer::{DEFAULT_BATCH, Hit, Tracer};
+use crate::tracer::{DEFAULT_BATCH, HitFields, PartialHit, Tracer};
 
 /// Solids along a ray that the mesh may hold: as many of these as the memory
 /// allows.
@@ -91,7 +91,7 @@ pub fn pictures(
     max_memory: u64,
 ) -> Result<Option<Pictures>, PicturesError> {
     let camera = AimedCamera::new(&tracer.scene().camera, &tracer.bounds(), film);
-    let pixels: Vec<(Ray, Vec<Hit>)> = (0..film.width * film.height)
+    let pixels: Vec<(Ray, Vec<Seen>)> = (0..film.width * film.height)
         .into_par_iter()
         .map(|pixel| {
             let at = DVec2::new(
@@ -121,12 +121,12 @@ pub fn pictures(
     let shown: Vec<Shown> = pixels
         .par_iter()
         .map(|(ray, hits)| {
-            if let Some(hit) = hits.first().filter(|hit| is_composed(hit)) {
+            if let Some(hit) = hits.first().filter(|hit| hit.is_composed()) {
                 let color = color_of(tracer.scene(), hit);
                 return Shown::composition(shade(color, hit.normal, ray));
             }
             let exact = hits.first().and_then(|hit| {
-                let solid = solids.get(&key(hit))?;
+                let solid = solids.get(&hit.key)?;
                 Some((hit, solid))
             });
             let found = traced.closest(ray);
@@ -157,15 +157,41 @@ pub fn pictures(
     }))
 }
 
-fn key(hit: &Hit) -> Key {
-    (hit.instance.clone(), hit.primitive)
+/// What the pictures need of a hit.
+struct Seen {
+    t: f64,
+    normal: DVec3,
+    key: Key,
+    kind: SolidKind,
+    material: MaterialIndex,
+}
+
+impl Seen {
+    const FIELDS: HitFields = HitFields::NORMAL.union(HitFields::PATH);
+
+    /// Of a hit that has these fields.
+    fn new(hit: &PartialHit) -> Option<Self> {
+        Some(Self {
+            t: hit.t(),
+            normal: hit.normal()?,
+            key: (hit.instance()?.to_vec(), hit.primitive()),
+            kind: hit.solid(),
+            material: hit.material(),
+        })
+    }
+
+    fn is_composed(&self) -> bool {
+        use SolidKind::{Difference, Intersection, Union};
+        matches!(self.kind, Union | Intersection | Difference)
+    }
 }
 
 /// The first hit with each of the first solids that a ray meets.
-fn first_of_each_solid(tracer: &Tracer, ray: &Ray) -> Vec<Hit> {
-    let mut hits: Vec<Hit> = Vec::new();
-    for hit in tracer.all_hits(ray, DEFAULT_BATCH).take(MOST_HITS) {
-        if hits.iter().all(|known| key(known) != key(&hit)) {
+fn first_of_each_solid(tracer: &Tracer, ray: &Ray) -> Vec<Seen> {
+    let mut hits: Vec<Seen> = Vec::new();
+    let all = tracer.all_hits(ray, DEFAULT_BATCH).with(Seen::FIELDS);
+    for hit in all.take(MOST_HITS).filter_map(|hit| Seen::new(&hit)) {
+        if hits.iter().all(|known| known.key != hit.key) {
             hits.push(hit);
             if hits.len() == DEPTHS[0] {
                 break;
@@ -179,7 +205,7 @@ fn first_of_each_solid(tracer: &Tracer, ray: &Ray) -> Vec<Hit> {
 /// ray take more than `max_memory`.
 fn chosen(
     scene: &Scene,
-    pixels: &[(Ray, Vec<Hit>)],
+    pixels: &[(Ray, Vec<Seen>)],
     segments: u32,
     max_memory: u64,
 ) -> Option<HashMap<Key, Placed>> {
@@ -187,8 +213,10 @@ fn chosen(
     DEPTHS.into_iter().find_map(|depth| {
         let mut solids = HashMap::new();
         for (_, hits) in pixels {
-            for hit in hits.iter().take(depth).filter(|hit| !is_composed(hit)) {
-                solids.entry(key(hit)).or_insert_with(|| placed(scene, hit));
+            for hit in hits.iter().take(depth).filter(|hit| !hit.is_composed()) {
+                solids
+                    .entry(hit.key.clone())
+                    .or_insert_with(|| placed(scene, hit));
             }
         }
         let sizes = solids
@@ -199,17 +227,13 @@ fn chosen(
     })
 }
 
-fn is_composed(hit: &Hit) -> bool {
-    use SolidKind::{Difference, Intersection, Union};
-    matches!(hit.solid, Union | Intersection | Difference)
-}
-
 /// The solid of a hit.
-fn placed(scene: &Scene, hit: &Hit) -> Placed {
-    let (world_from_object, prototype) = place(scene, &hit.instance);
+fn placed(scene: &Scene, hit: &Seen) -> Placed {
+    let (instance, number) = &hit.key;
+    let (world_from_object, prototype) = place(scene, instance);
     let (_, solid) = scene.prototypes[prototype.0 as usize]
         .singles()
-        .find(|(primitive, _)| *primitive == hit.primitive)
+        .find(|(primitive, _)| primitive == number)
         .expect("a hit names a solid of its prototype");
     Placed {
         solid,
@@ -219,7 +243,7 @@ fn placed(scene: &Scene, hit: &Hit) -> Placed {
     }
 }
 
-fn color_of(scene: &Scene, hit: &Hit) -> DVec3 {
+fn color_of(scene: &Scene, hit: &Seen) -> DVec3 {
     scene.materials[usize::from(hit.material.0)].color
 }
 
@@ -269,7 +293,7 @@ impl Shown {
 
     fn of(
         ray: &Ray,
-        exact: Option<(&Hit, &Placed)>,
+        exact: Option<(&Seen, &Placed)>,
         found: Option<(TriangleHit, DVec3)>,
         segments: u32,
     ) -> Self {
@@ -306,7 +330,7 @@ impl Shown {
 }
 
 /// By how much `t` may differ to first order, as the head of this file has it.
-fn chord_error(ray: &Ray, hit: &Hit, solid: &Placed, segments: u32) -> f64 {
+fn chord_error(ray: &Ray, hit: &Seen, solid: &Placed, segments: u32) -> f64 {
     let direction = solid.object_from_world.transform_vector3(ray.direction);
     let normal = solid.world_from_object.matrix3.transpose() * hit.normal;
     deviation_of(&solid.solid, segments, Fit::Inscribed) / normal.normalize().dot(direction).abs()

@@ -123,6 +123,13 @@ impl Composition {
         }
     }
 
+    /// The solids that it is composed of, in the order of [`Composition::operands`].
+    fn leaves(&self) -> SmallVec<[&AnySolid; 8]> {
+        let mut leaves = SmallVec::new();
+        self.for_each_leaf(false, &mut |solid, _| leaves.push(solid));
+        leaves
+    }
+
     /// The memory that it holds beside itself.
     #[must_use]
     pub fn heap_bytes(&self) -> usize {
@@ -190,8 +197,7 @@ impl Composition {
     /// Where a point is, as stated.
     #[must_use]
     pub fn locate(&self, point: DVec3) -> Location {
-        let mut solids = SmallVec::<[&AnySolid; 8]>::new();
-        self.for_each_leaf(false, &mut |solid, _| solids.push(solid));
+        let solids = self.leaves();
         let located: SmallVec<[Location; 8]> =
             solids.iter().map(|solid| solid.locate(point)).collect();
         let mut is_within: SmallVec<[bool; 8]> = located
@@ -244,7 +250,7 @@ impl Composition {
 
     /// The point of a part of a leaf's surface that is nearest to a point that is
     /// seen from the leaf's anchor, with the normal that points out of the
-    /// composition; and what a query that starts there may be displaced by.
+    /// composition.
     ///
     /// # Panics
     /// When there is no such leaf.
@@ -253,14 +259,22 @@ impl Composition {
         &self,
         met: &ComposedMeeting,
         from_anchor: impl FnOnce(DVec3) -> DVec3,
-    ) -> (SurfacePoint, SpawnMargin) {
-        let Operand { solid, .. } = self.operands()[met.leaf as usize];
+    ) -> SurfacePoint {
+        let solid = self.leaves()[met.leaf as usize];
         let part = met.meeting.part;
         let mut surface = solid.surface_point(part, from_anchor(solid.anchor()));
         if met.is_reversed {
             surface.normal = -surface.normal;
         }
-        let margin = solid.spawn_margin(&surface);
-        (surface, margin)
+        surface
+    }
+
+    /// As [`SpawnMargin::of_solid`], of a point that [`Composition::surface`] returned.
+    ///
+    /// # Panics
+    /// When there is no such leaf.
+    #[must_use]
+    pub fn spawn_margin(&self, met: &ComposedMeeting, surface: &SurfacePoint) -> SpawnMargin {
+        self.leaves()[met.leaf as usize].spawn_margin(surface)
     }
 }

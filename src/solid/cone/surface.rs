@@ -50,7 +50,7 @@ pub(super) fn surface_point(cone: &Cone, part: Part, from_p0: DVec3) -> SurfaceP
         point,
         error: UNIT_ROUNDOFF * (point.length() + 4.0 * aa.sqrt() + 26.0 * r0.max(r1)),
         normal: normal.normalize(),
-        u: around.u,
         v,
+        first: around.angle(),
     }
 }

@@ -6,6 +6,7 @@ mod passing;
 use glam::DVec3;
 
 use super::exact::{Expression, Number, difference, dot, sign, vector};
+use super::surface::FirstParameter;
 use super::{Chord, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint};
 use crate::math::{Bounds, Orientation, UNIT_ROUNDOFF, power_of_two};
 
@@ -163,8 +164,8 @@ impl ConvexSolid for Cuboid {
             point,
             error: UNIT_ROUNDOFF * (point.length() + 16.0 * half_widths.element_sum()),
             normal: self.axis(axis) * side,
-            u: share((axis + 1) % 3),
             v: share((axis + 2) % 3),
+            first: FirstParameter::Share(share((axis + 1) % 3)),
         }
     }
 

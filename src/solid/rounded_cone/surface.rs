@@ -71,8 +71,8 @@ pub(super) fn surface_point(solid: &RoundedCone, part: Part, from_p0: DVec3) -> 
             point,
             error: UNIT_ROUNDOFF * (point.length() + 6.0 * radius),
             normal,
-            u: around.u,
             v,
+            first: around.angle(),
         }
     };
     match (part, solid.taper()) {
@@ -93,8 +93,8 @@ pub(super) fn surface_point(solid: &RoundedCone, part: Part, from_p0: DVec3) -> 
                 point,
                 error: UNIT_ROUNDOFF * (point.length() + 5.0 * length + 20.0 * r0.max(r1)),
                 normal,
-                u: around.u,
                 v,
+                first: around.angle(),
             }
         }
         (part, _) => unreachable!("{solid:?} has no part {}", part.name()),
@@ -119,7 +119,7 @@ mod tests {
                 let near = solid(axis * power_of_two(exponent));
                 for part in [Part::Cap0, Part::Cap1] {
                     let found = surface_point(&near, part, across);
-                    let turn = (found.u - distant.u).abs();
+                    let turn = (found.u() - distant.u()).abs();
                     assert!(
                         turn.min(1.0 - turn) < 1e-15,
                         "{index}, {exponent}: {found:?}"
@@ -135,7 +135,7 @@ mod tests {
             for share in [0.25, 0.5, 0.75] {
                 let from_p0 = DVec3::new(0.0, 2.5, share * length);
                 let found = surface_point(&near, Part::Side, from_p0);
-                assert_eq!((found.u, found.v), (0.25, share), "{exponent}");
+                assert_eq!((found.u(), found.v), (0.25, share), "{exponent}");
                 assert_eq!((found.point.y, found.normal.y), (2.0, 1.0), "{exponent}");
             }
         }

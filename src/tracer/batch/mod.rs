@@ -11,7 +11,7 @@ mod order;
 mod usual;
 
 use super::prototype::Prototype;
-use super::{FirstHit, Hit, Tracer};
+use super::{FirstHit, Hit, HitFields, PartialHit, Tracer};
 use crate::embree::GREATEST_PACKET;
 use crate::math::Ray;
 use habit::Habit;
@@ -50,11 +50,31 @@ impl Tracer {
     /// The hits of many rays, in their order, as [`Tracer::closest`] finds
     /// them.
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut Vec<Option<Hit>>) {
+        self.resolve_batch(rays, hits, |ray, first| self.hit(ray, first));
+    }
+
+    /// As [`Tracer::closest_batch`], with only those fields worked out that are in `fields`.
+    pub fn closest_batch_with(
+        &self,
+        rays: &[Ray],
+        fields: HitFields,
+        hits: &mut Vec<Option<PartialHit>>,
+    ) {
+        self.resolve_batch(rays, hits, |ray, first| self.hit_with(ray, first, fields));
+    }
+
+    /// The hits of many rays, worked out by `hit`.
+    fn resolve_batch<T>(
+        &self,
+        rays: &[Ray],
+        hits: &mut Vec<Option<T>>,
+        hit: impl Fn(&Ray, &FirstHit) -> T,
+    ) {
         let mut first = Vec::new();
         self.first_hits(rays, &mut first);
         let pairs = rays.iter().zip(first);
         hits.clear();
-        hits.extend(pairs.map(|(ray, first)| Some(self.hit(ray, &first?))));
+        hits.extend(pairs.map(|(ray, first)| Some(hit(ray, &first?))));
     }
 
     /// Whether each of many rays meets any surface, in their order, as

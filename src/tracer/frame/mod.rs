@@ -89,7 +89,12 @@ impl Frame {
     /// The ray as the solvers of this prototype get it. A ray that comes to a
     /// prototype has not been moved in it: its base is zero.
     pub fn approach(&self, ray: &LocalRay) -> LocalRay {
-        self.approached(ray).0
+        let origin = ray.origin_from(self.centre) * self.scale;
+        if is_far(origin) {
+            self.approached(ray).0
+        } else {
+            *ray
+        }
     }
 
     /// That ray, and its point nearest to the centre.
@@ -119,7 +124,7 @@ impl Frame {
             inverse_square,
             nearest,
             place: origin + direction * nearest,
-            is_far: !(origin.abs().max_element() <= FAR),
+            is_far: is_far(origin),
         }
     }
 
@@ -206,8 +211,7 @@ impl Frame {
         window.start = window.past_nearest(t_min, -1.0);
         let start = origin + direction * window.start;
         // Written so that NaN is elsewhere.
-        let is_inside = start.length_squared() <= self.radius * self.radius
-            && origin.abs().max_element() <= FAR;
+        let is_inside = start.length_squared() <= self.radius * self.radius && !is_far(origin);
         let end = window.past_nearest(t_max, 1.0);
         is_inside.then(|| self.entry_at(start, direction, window, end))
     }
@@ -283,6 +287,12 @@ impl Frame {
         let leave = leave.x.min(leave.y).min(leave.z).min(length);
         enter <= leave * (1.0 + 16.0 * UNIT_ROUNDOFF)
     }
+}
+
+/// Whether a ray that starts at `origin`, in the frame, has to be moved nearer. NaN is far.
+#[inline(always)]
+fn is_far(origin: DVec3) -> bool {
+    !(origin.abs().max_element() <= FAR)
 }
 
 /// Below this, a component of a direction whose largest is from 1 to 2 is zero to Embree:
