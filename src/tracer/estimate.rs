@@ -69,10 +69,10 @@ impl Layout {
 
     /// Bytes of the tracer's copies of so many cylinders: in a block, eight
     /// numbers of each of eight cylinders.
-    fn copies_bytes(self, cylinders: u64, records: Records) -> u64 {
+    fn copies_bytes(self, cylinders: u64) -> u64 {
         match self {
             Self::Single => 0,
-            Self::Block => block_bytes(cylinders, records),
+            Self::Block => block_bytes(cylinders),
         }
     }
 }
@@ -106,7 +106,7 @@ impl MemoryEstimate {
             if !prototype.is_used {
                 continue;
             }
-            let copies = layout.copies_bytes(cylinders, prototype.records);
+            let copies = layout.copies_bytes(cylinders);
             sum.copies_bytes = sum.copies_bytes.saturating_add(copies);
             let cylinders = layout.primitives(cylinders);
             let primitives = cylinders
@@ -176,8 +176,8 @@ fn wave(primitives: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::embree::{
-        Box32, Device, DeviceOptions, GREATEST_PACKET, Ray32, RaySet, Reached, SceneBuilder,
-        UserGeometry,
+        Box32, Device, DeviceOptions, GREATEST_PACKET, Ray32, RaySet, Rays32, Reached,
+        SceneBuilder, UserGeometry,
     };
     use crate::math::Random;
     use crate::scene::{OtherSolids, PrototypeIndex};
@@ -208,13 +208,14 @@ mod tests {
             &self,
             _: Reached,
             _: RaySet,
+            _: &Rays32,
             _: &mut [f32; GREATEST_PACKET],
             (): &mut (),
         ) -> RaySet {
             RaySet::EMPTY
         }
 
-        fn occluded_packet(&self, _: Reached, _: RaySet, (): &mut ()) -> RaySet {
+        fn occluded_packet(&self, _: Reached, _: RaySet, _: &Rays32, (): &mut ()) -> RaySet {
             RaySet::EMPTY
         }
     }
