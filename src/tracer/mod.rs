@@ -14,6 +14,7 @@ mod build;
 mod contains;
 pub mod counters;
 mod estimate;
+mod filter;
 mod first_hit;
 mod frame;
 mod hit;

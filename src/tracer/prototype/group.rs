@@ -159,8 +159,7 @@ impl Group {
     pub fn kept_bytes(&self) -> usize {
         let blocks = match self.workshop.layout {
             Layout::Block if self.is_touched() => {
-                let records = self.cylinders.records().records();
-                block_bytes(u64::from(self.cylinders.len()), records) as usize
+                block_bytes(u64::from(self.cylinders.len())) as usize
             }
             Layout::Block | Layout::Single => 0,
         };
