@@ -33,6 +33,7 @@ pub use all_hits::{AllHits, DEFAULT_BATCH};
 pub use build::TracerError;
 pub use contains::Containing;
 pub use estimate::MemoryEstimate;
+pub use filter::FilterLosses;
 pub use first_hit::FirstHit;
 pub(crate) use frame::{Frame, LocalRay};
 pub use hit::Hit;

@@ -108,7 +108,7 @@ impl CylinderFilter {
     }
 
     /// The same with a share of what has to be added: less than all of it loses hits.
-    fn with_margins(cylinders: &[Cylinder], frame: &Frame, share: f64) -> Self {
+    pub(super) fn with_margins(cylinders: &[Cylinder], frame: &Frame, share: f64) -> Self {
         let cell = Cell::around(cylinders.iter().map(Cylinder::bounds), frame);
         let mut filter = Self {
             cell,

@@ -55,9 +55,13 @@
 
 mod cell;
 mod cylinders;
+mod losses;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use cell::{Cell, NearRay};
 pub(crate) use cylinders::CylinderFilter;
+pub use losses::FilterLosses;
 
 use crate::embree::{GREATEST_PACKET, Ray32, RaySet, Rays32};
 use crate::math::{LANES, LaneMask};

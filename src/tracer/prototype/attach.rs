@@ -38,9 +38,10 @@ fn attach<E: Ends>(
     builder: &mut SceneBuilder<Query>,
 ) -> Result<(), embree::Error> {
     let known = KnownCylinders::<E>::new(cylinders.clone());
-    let attached = match layout {
-        Layout::Block => builder.attach_user(Blocked::new(known, threads)),
-        Layout::Single => builder.attach_user(Single(known)),
+    let attached = if layout.has_blocks(u64::from(cylinders.len())) {
+        builder.attach_user(Blocked::new(known, threads))
+    } else {
+        builder.attach_user(Single(known))
     };
     attached.map(|_| ())
 }
