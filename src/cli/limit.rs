@@ -25,24 +25,27 @@ pub struct MemoryArguments {
     /// [default: what the system has available]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<u64>,
-    /// How cylinders lie in memory: one a primitive of Embree's, or blocks of
-    /// eight, which is less in Embree and suits rays that have nothing in common
-    #[arg(long, value_name = "NAME", value_enum, default_value_t = LayoutName::Single)]
+    /// What is a primitive of Embree's: a solid, or a block of eight that are near each
+    /// other, which is faster and less in Embree
+    #[arg(long, value_name = "NAME", value_enum, default_value_t = LayoutName::Auto)]
     pub layout: LayoutName,
 }
 
 /// A layout by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LayoutName {
-    /// One cylinder a primitive.
+    /// Blocks where they are faster.
+    Auto,
+    /// One solid a primitive.
     Single,
-    /// Eight cylinders a primitive.
+    /// Eight solids a primitive.
     Block,
 }
 
 impl From<LayoutName> for Layout {
     fn from(name: LayoutName) -> Self {
         match name {
+            LayoutName::Auto => Self::Auto,
             LayoutName::Single => Self::Single,
             LayoutName::Block => Self::Block,
         }
@@ -64,7 +67,7 @@ pub struct Limit {
     /// None where the system does not say.
     bytes: Option<u64>,
     is_stated: bool,
-    /// How cylinders will lie in memory.
+    /// What will be a primitive of Embree's.
     layout: Layout,
 }
 

@@ -11,6 +11,7 @@
 
 use super::abort::AbortOnPanic;
 use super::isa::MaxIsa;
+use super::packet::Rays32;
 use super::query::Query;
 use super::ray::Ray32;
 use super::ray_set::{GREATEST_PACKET, RaySet};
@@ -190,9 +191,11 @@ unsafe fn intersect_lanes<G: UserGeometry, const N: usize>(
     // SAFETY: the caller's promise.
     let lanes = unsafe { Lanes::<N>::read(valid, words) };
     let rays = lanes.rays();
+    // SAFETY: the caller's promise.
+    let rays32 = unsafe { lanes.rays32(words) };
     let mut t_far = [f32::NEG_INFINITY; GREATEST_PACKET];
     let guard = AbortOnPanic::new("intersect_packet");
-    let hits = geometry.intersect_packet(at, rays, &mut t_far, packet) & rays;
+    let hits = geometry.intersect_packet(at, rays, &rays32, &mut t_far, packet) & rays;
     guard.passed();
 
     // SAFETY: the caller's promise, here and below; alignment is that of words.
@@ -277,8 +280,10 @@ unsafe fn occluded_lanes<G: UserGeometry, const N: usize>(
     // SAFETY: the caller's promise.
     let lanes = unsafe { Lanes::<N>::read(valid, words) };
     let rays = lanes.rays();
+    // SAFETY: the caller's promise.
+    let rays32 = unsafe { lanes.rays32(words) };
     let guard = AbortOnPanic::new("occluded_packet");
-    let hits = geometry.occluded_packet(at, rays, packet) & rays;
+    let hits = geometry.occluded_packet(at, rays, &rays32, packet) & rays;
     guard.passed();
 
     // SAFETY: the caller's promise, as in `intersect_lanes`.
@@ -357,6 +362,53 @@ impl<const N: usize> Lanes<N> {
         }
         let of_lane = |lane| ((self.active >> lane & 1) as u16) << self.ray(lane);
         RaySet::from_bits((0..N).fold(0, |bits, lane| bits | of_lane(lane)))
+    }
+
+    /// Embree's rays by their numbers; what is at other numbers has no meaning.
+    ///
+    /// # Safety
+    /// Invariant 7: there are `N` lanes of rays.
+    #[inline(always)]
+    unsafe fn rays32(&self, words: *const u32) -> Rays32 {
+        let mut rays = Rays32 {
+            origin: [[0.0; GREATEST_PACKET]; 3],
+            direction: [[0.0; GREATEST_PACKET]; 3],
+            t_far: [0.0; GREATEST_PACKET],
+        };
+        // SAFETY: the caller's promise.
+        unsafe {
+            for axis in 0..3 {
+                self.place(words, word::RAY_ORIGIN + axis, &mut rays.origin[axis]);
+                self.place(words, word::RAY_DIRECTION + axis, &mut rays.direction[axis]);
+            }
+            self.place(words, word::RAY_T_FAR, &mut rays.t_far);
+        }
+        rays
+    }
+
+    /// Puts a component of the lanes where their rays' numbers say.
+    ///
+    /// # Safety
+    /// As [`Lanes::rays32`].
+    #[inline(always)]
+    unsafe fn place(
+        &self,
+        words: *const u32,
+        component: usize,
+        of_rays: &mut [f32; GREATEST_PACKET],
+    ) {
+        // SAFETY: the caller's promise; alignment is that of words, all bits of which are
+        // allowed in f32.
+        let lanes = unsafe { &*words.add(component * N).cast::<[f32; N]>() };
+        if let Some(first) = self.first {
+            of_rays[first..][..N].copy_from_slice(lanes);
+            return;
+        }
+        for lane in 0..N {
+            if self.active >> lane & 1 != 0 {
+                of_rays[self.ray(lane)] = lanes[lane];
+            }
+        }
     }
 
     /// The active lane of a ray that has one.

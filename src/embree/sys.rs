@@ -24,7 +24,9 @@ pub const INVALID_ID: u32 = u32::MAX;
 /// The components of a ray and hit of any number of lanes are 32-bit words;
 /// component `c` of lane `i` is word `c * lanes + i`.
 pub mod word {
+    pub const RAY_ORIGIN: usize = 0;
     pub const RAY_T_NEAR: usize = 3;
+    pub const RAY_DIRECTION: usize = 4;
     pub const RAY_T_FAR: usize = 8;
     pub const RAY_ID: usize = 10;
     pub const HIT_NORMAL_X: usize = 12;
@@ -37,6 +39,8 @@ pub mod word {
 // For one lane the words are the fields of the single-ray structures.
 const _: () = {
     let hit = offset_of!(RTCRayHit, hit);
+    assert!(offset_of!(RTCRay, org_x) == 4 * word::RAY_ORIGIN);
+    assert!(offset_of!(RTCRay, dir_x) == 4 * word::RAY_DIRECTION);
     assert!(offset_of!(RTCRay, tnear) == 4 * word::RAY_T_NEAR);
     assert!(offset_of!(RTCRay, tfar) == 4 * word::RAY_T_FAR);
     assert!(offset_of!(RTCRay, id) == 4 * word::RAY_ID);

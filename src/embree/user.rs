@@ -12,6 +12,7 @@ use super::callback::Callbacks;
 use super::device::Device;
 use super::error::Error;
 use super::float_mode::with_default_float_mode;
+use super::packet::Rays32;
 use super::query::Query;
 use super::ray::{Box32, Ray32};
 use super::ray_set::{GREATEST_PACKET, RaySet};
@@ -64,6 +65,9 @@ pub trait UserGeometry: Send + Sync + 'static {
     /// are in the answer, for which `t_far` then holds where they end, by their
     /// numbers; what it holds before and for others has no meaning.
     ///
+    /// `rays32` has Embree's own rays by their numbers, as the `ray` of
+    /// [`intersect`](Self::intersect) is; the numbers of other rays have no meaning.
+    ///
     /// `rays` may be any part of the packet. It need not hold all rays that may
     /// meet the box: for the others this is called again. And it may hold rays
     /// that do not meet the box, or end before it: Embree asks for all when one
@@ -72,6 +76,7 @@ pub trait UserGeometry: Send + Sync + 'static {
         &self,
         at: Reached,
         rays: RaySet,
+        rays32: &Rays32,
         t_far: &mut [f32; GREATEST_PACKET],
         packet: &mut <Self::Query as Query>::Packet,
     ) -> RaySet;
@@ -83,6 +88,7 @@ pub trait UserGeometry: Send + Sync + 'static {
         &self,
         at: Reached,
         rays: RaySet,
+        rays32: &Rays32,
         packet: &mut <Self::Query as Query>::Packet,
     ) -> RaySet;
 }

@@ -61,18 +61,19 @@ const REFERENCE: u64 = 32;
 impl Layout {
     /// Primitives for so many cylinders.
     fn primitives(self, cylinders: u64) -> u64 {
-        match self {
-            Self::Single => cylinders,
-            Self::Block => cylinders.div_ceil(LANES as u64),
+        if self.has_blocks(cylinders) {
+            cylinders.div_ceil(LANES as u64)
+        } else {
+            cylinders
         }
     }
 
-    /// Bytes of the tracer's copies of so many cylinders: in a block, eight
-    /// numbers of each of eight cylinders.
-    fn copies_bytes(self, cylinders: u64, records: Records) -> u64 {
-        match self {
-            Self::Single => 0,
-            Self::Block => block_bytes(cylinders, records),
+    /// Bytes that the tracer keeps of so many cylinders beside their records.
+    fn copies_bytes(self, cylinders: u64) -> u64 {
+        if self.has_blocks(cylinders) {
+            block_bytes(cylinders)
+        } else {
+            0
         }
     }
 }
@@ -82,7 +83,7 @@ impl Layout {
 pub struct MemoryEstimate {
     /// The records of solids and placements, those that are not built too.
     pub records_bytes: u64,
-    /// The tracer's copies of cylinders.
+    /// The filters of blocks, and which records are in each.
     pub copies_bytes: u64,
     /// Embree's trees.
     pub embree_bytes: u64,
@@ -106,7 +107,7 @@ impl MemoryEstimate {
             if !prototype.is_used {
                 continue;
             }
-            let copies = layout.copies_bytes(cylinders, prototype.records);
+            let copies = layout.copies_bytes(cylinders);
             sum.copies_bytes = sum.copies_bytes.saturating_add(copies);
             let cylinders = layout.primitives(cylinders);
             let primitives = cylinders
@@ -176,8 +177,8 @@ fn wave(primitives: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::embree::{
-        Box32, Device, DeviceOptions, GREATEST_PACKET, Ray32, RaySet, Reached, SceneBuilder,
-        UserGeometry,
+        Box32, Device, DeviceOptions, GREATEST_PACKET, Ray32, RaySet, Rays32, Reached,
+        SceneBuilder, UserGeometry,
     };
     use crate::math::Random;
     use crate::scene::{OtherSolids, PrototypeIndex};
@@ -208,13 +209,14 @@ mod tests {
             &self,
             _: Reached,
             _: RaySet,
+            _: &Rays32,
             _: &mut [f32; GREATEST_PACKET],
             (): &mut (),
         ) -> RaySet {
             RaySet::EMPTY
         }
 
-        fn occluded_packet(&self, _: Reached, _: RaySet, (): &mut ()) -> RaySet {
+        fn occluded_packet(&self, _: Reached, _: RaySet, _: &Rays32, (): &mut ()) -> RaySet {
             RaySet::EMPTY
         }
     }
@@ -313,11 +315,11 @@ mod tests {
         let single = estimate(1_000_001, Records::F64, Layout::Single);
         assert_eq!((single.records_bytes, single.copies_bytes), (64_000_064, 0));
         let block = estimate(1_000_001, Records::F64, Layout::Block);
-        assert_eq!(block.copies_bytes, 125_001 * 512);
+        assert_eq!(block.copies_bytes, 125_001 * 64 + 1_000_001 * 4);
         assert_eq!(block.building_bytes, (1 << 17) * 32);
         let block32 = estimate(1_000_001, Records::F32, Layout::Block);
         assert_eq!(block32.records_bytes, 32_000_032);
-        assert_eq!(block32.copies_bytes, 125_001 * 256);
+        assert_eq!(block32.copies_bytes, block.copies_bytes);
         assert_eq!(block32.embree_bytes, block.embree_bytes);
         let as_many = estimate(125_001, Records::F64, Layout::Single);
         assert_eq!(block.embree_bytes, as_many.embree_bytes);

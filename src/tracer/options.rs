@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 
 use crate::embree::MaxIsa;
+use crate::math::LANES;
 use crate::scene::ViewVolume;
 
 /// How a tracer is built. No choice changes an answer, but for what [`view`](Self::view)
@@ -13,7 +14,7 @@ pub struct Options {
     pub threads: Option<NonZeroUsize>,
     /// The widest instruction set that is used; the machine's best if `None`.
     pub max_isa: Option<MaxIsa>,
-    /// How cylinders lie in memory.
+    /// What is a primitive to Embree.
     pub layout: Layout,
     /// When prototypes are built.
     pub build: BuildTime,
@@ -22,17 +23,33 @@ pub struct Options {
     pub view: Option<ViewVolume>,
 }
 
-/// How the cylinders of a prototype lie in memory, and what is a primitive to
-/// Embree. `docs/performance.md` has the figures.
+/// What is a primitive to Embree. `docs/performance.md` has the figures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Layout {
-    /// A primitive each, which suits packets: rays that go the same way share
-    /// all work on a cylinder.
+    /// As suits what a prototype contains: blocks where they are faster.
     #[default]
+    Auto,
+    /// A primitive for each solid, the plainest form.
     Single,
-    /// Eight near ones a primitive, side by side, which suits single rays: they
-    /// are put to all eight at once. Less memory in Embree, more beside it.
+    /// A primitive for each block of eight solids that are near each other. Embree's ray is
+    /// put to small copies of all of them at once, and only what it may meet is
+    /// solved. Embree's tree is smaller.
     Block,
+}
+
+/// [`Layout::Auto`] makes blocks from so many solids of a kind in a prototype on. Fewer do
+/// not fill two blocks, and a tree over them is no deeper than a block.
+const LEAST_FOR_BLOCKS: u64 = LANES as u64 + 1;
+
+impl Layout {
+    /// Whether so many solids of a kind that has a filter are put into blocks.
+    pub(super) fn has_blocks(self, solids: u64) -> bool {
+        match self {
+            Self::Auto => solids >= LEAST_FOR_BLOCKS,
+            Self::Single => false,
+            Self::Block => true,
+        }
+    }
 }
 
 /// When the Embree scene of a prototype is built.

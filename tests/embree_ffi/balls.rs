@@ -8,14 +8,6 @@ use cyltrace::embree::{
 use cyltrace::math::Random;
 use glam::DVec3;
 
-/// A ray for callbacks that use that of their query.
-pub const UNUSED: Ray32 = Ray32 {
-    origin: [0.0; 3],
-    direction: [1.0; 3],
-    t_near: 0.0,
-    t_far: 0.0,
-};
-
 /// The methods for packets of a geometry that answers for each ray by itself.
 macro_rules! one_by_one {
     () => {
@@ -23,11 +15,12 @@ macro_rules! one_by_one {
             &self,
             at: cyltrace::embree::Reached,
             rays: cyltrace::embree::RaySet,
+            rays32: &cyltrace::embree::Rays32,
             t_far: &mut [f32; cyltrace::embree::GREATEST_PACKET],
             packet: &mut crate::balls::BallPacket,
         ) -> cyltrace::embree::RaySet {
             crate::balls::intersect_each(rays, t_far, |ray| {
-                self.intersect(at, &crate::balls::UNUSED, &mut packet[ray])
+                self.intersect(at, &rays32.ray(ray), &mut packet[ray])
             })
         }
 
@@ -35,10 +28,11 @@ macro_rules! one_by_one {
             &self,
             at: cyltrace::embree::Reached,
             rays: cyltrace::embree::RaySet,
+            rays32: &cyltrace::embree::Rays32,
             packet: &mut crate::balls::BallPacket,
         ) -> cyltrace::embree::RaySet {
             rays.into_iter()
-                .filter(|&ray| self.occluded(at, &crate::balls::UNUSED, &mut packet[ray]))
+                .filter(|&ray| self.occluded(at, &rays32.ray(ray), &mut packet[ray]))
                 .collect()
         }
     };
@@ -51,6 +45,7 @@ macro_rules! no_packets {
             &self,
             _: cyltrace::embree::Reached,
             _rays: cyltrace::embree::RaySet,
+            _: &cyltrace::embree::Rays32,
             _t_far: &mut [f32; cyltrace::embree::GREATEST_PACKET],
             packet: &mut cyltrace::embree::NoPackets,
         ) -> cyltrace::embree::RaySet {
@@ -61,6 +56,7 @@ macro_rules! no_packets {
             &self,
             _: cyltrace::embree::Reached,
             _rays: cyltrace::embree::RaySet,
+            _: &cyltrace::embree::Rays32,
             packet: &mut cyltrace::embree::NoPackets,
         ) -> cyltrace::embree::RaySet {
             match *packet {}
@@ -129,7 +125,8 @@ impl UserGeometry for Balls {
         self.0[primitive as usize].bounds()
     }
 
-    fn intersect(&self, at: Reached, _: &Ray32, query: &mut BallQuery) -> Option<f32> {
+    fn intersect(&self, at: Reached, ray: &Ray32, query: &mut BallQuery) -> Option<f32> {
+        query.assert_is_of(ray);
         query.visits += 1;
         let t = self.0[at.primitive as usize].enter(query)?;
         let is_better = query.best.is_none_or(|best| (t, at.primitive) < best);
@@ -139,7 +136,8 @@ impl UserGeometry for Balls {
         })
     }
 
-    fn occluded(&self, at: Reached, _: &Ray32, query: &mut BallQuery) -> bool {
+    fn occluded(&self, at: Reached, ray: &Ray32, query: &mut BallQuery) -> bool {
+        query.assert_is_of(ray);
         query.visits += 1;
         self.0[at.primitive as usize].enter(query).is_some()
     }
@@ -191,6 +189,14 @@ impl BallQuery {
             t_near: 0.0,
             t_far: self.t_max as f32,
         }
+    }
+
+    /// Fails if Embree's own ray, as callbacks get it, is another one.
+    fn assert_is_of(&self, ray: &Ray32) {
+        let own = self.ray();
+        assert_eq!((ray.origin, ray.direction), (own.origin, own.direction));
+        let found = self.best.map_or(own.t_far, |(t, _)| (t as f32).next_up());
+        assert!(ray.t_far == own.t_far || ray.t_far == found, "{ray:?}");
     }
 
     pub fn brute_force(&self, balls: &[Ball]) -> Option<(f64, u32)> {

@@ -111,6 +111,7 @@ impl UserGeometry for Slab {
         &self,
         _: Reached,
         rays: RaySet,
+        _: &Rays32,
         t_far: &mut [f32; GREATEST_PACKET],
         (): &mut (),
     ) -> RaySet {
@@ -118,7 +119,7 @@ impl UserGeometry for Slab {
         rays
     }
 
-    fn occluded_packet(&self, _: Reached, rays: RaySet, (): &mut ()) -> RaySet {
+    fn occluded_packet(&self, _: Reached, rays: RaySet, _: &Rays32, (): &mut ()) -> RaySet {
         rays
     }
 }

@@ -259,6 +259,7 @@ impl UserGeometry for Nest {
         &self,
         _: Reached,
         rays: RaySet,
+        _: &Rays32,
         t_far: &mut [f32; GREATEST_PACKET],
         packet: &mut BallPacket,
     ) -> RaySet {
@@ -280,7 +281,13 @@ impl UserGeometry for Nest {
         })
     }
 
-    fn occluded_packet(&self, _: Reached, rays: RaySet, packet: &mut BallPacket) -> RaySet {
+    fn occluded_packet(
+        &self,
+        _: Reached,
+        rays: RaySet,
+        _: &Rays32,
+        packet: &mut BallPacket,
+    ) -> RaySet {
         if self.as_single_rays {
             let blocked = rays.into_iter().filter(|&ray| {
                 let query = &mut packet[ray];

@@ -55,6 +55,7 @@ impl UserGeometry for Panicking {
         &self,
         _: Reached,
         _rays: RaySet,
+        _: &Rays32,
         _t_far: &mut [f32; GREATEST_PACKET],
         _packet: &mut (),
     ) -> RaySet {
@@ -62,7 +63,7 @@ impl UserGeometry for Panicking {
         RaySet::EMPTY
     }
 
-    fn occluded_packet(&self, _: Reached, _rays: RaySet, _packet: &mut ()) -> RaySet {
+    fn occluded_packet(&self, _: Reached, _rays: RaySet, _: &Rays32, _packet: &mut ()) -> RaySet {
         self.reach("occluded_packet");
         RaySet::EMPTY
     }

@@ -74,10 +74,26 @@ impl Frame {
         self.centre
     }
 
+    /// Units of the frame in one of the prototype's space.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// A point of the prototype's space in the frame.
+    pub fn place(&self, point: DVec3) -> DVec3 {
+        (point - self.centre) * self.scale
+    }
+
+    /// By how much boxes are grown, in the frame. It covers what Embree's ray may be off
+    /// from the solver's, and roundings of f32 beside: `tracer::filter` derives how much.
+    pub fn slack(&self) -> f64 {
+        self.radius * BOX_GROWTH
+    }
+
     /// The f32 box for a box of the prototype's space, grown and rounded
     /// outward.
     pub fn grown_box(&self, bounds: &Bounds) -> Box32 {
-        let grow = self.radius * BOX_GROWTH;
+        let grow = self.slack();
         let lower = (bounds.lower - self.centre) * self.scale - grow;
         let upper = (bounds.upper - self.centre) * self.scale + grow;
         Box32 {

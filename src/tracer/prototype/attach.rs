@@ -1,13 +1,13 @@
 //! Attaches the solids of a group to its Embree scene: a user geometry for
 //! each kind that it contains.
 
-use super::blocks::BlockedCylinders;
-use super::cylinders::{Cylinders, SingleCylinders};
+use super::blocks::Blocked;
+use super::cylinders::{Cylinders, KnownCylinders};
 use super::described::{Described, SolidList};
 use super::ends::{Capped, Ends, EndsKind, Mixed, Open};
 use super::members::Members;
+use super::solids::Single;
 use crate::embree::{self, SceneBuilder};
-use crate::scene::Records;
 use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
 use crate::tracer::options::Layout;
 use crate::tracer::query::Query;
@@ -37,18 +37,11 @@ fn attach<E: Ends>(
     threads: usize,
     builder: &mut SceneBuilder<Query>,
 ) -> Result<(), embree::Error> {
-    let attached = match layout {
-        Layout::Block if cylinders.fit_blocks() => match cylinders.records().records() {
-            Records::F64 => {
-                builder.attach_user(BlockedCylinders::<E, f64>::new(cylinders, threads))
-            }
-            Records::F32 => {
-                builder.attach_user(BlockedCylinders::<E, f32>::new(cylinders, threads))
-            }
-        },
-        Layout::Block | Layout::Single => {
-            builder.attach_user(SingleCylinders::<E>::new(cylinders.clone()))
-        }
+    let known = KnownCylinders::<E>::new(cylinders.clone());
+    let attached = if layout.has_blocks(u64::from(cylinders.len())) {
+        builder.attach_user(Blocked::new(known, threads))
+    } else {
+        builder.attach_user(Single(known))
     };
     attached.map(|_| ())
 }
@@ -73,7 +66,7 @@ fn attach_list<S: TracedSolid>(
     builder: &mut SceneBuilder<Query>,
 ) -> Result<(), embree::Error> {
     if members.of(S::LIST).len() > 0 {
-        builder.attach_user(SolidList::<S>::new(described, members))?;
+        builder.attach_user(Single(SolidList::<S>::new(described, members)))?;
     }
     Ok(())
 }

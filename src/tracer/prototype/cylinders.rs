@@ -1,17 +1,20 @@
-//! The cylinders of a group as Embree's primitives, one each.
+//! The cylinders of a group.
 
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-use super::blocks::GREATEST_RECORDS;
+use smallvec::SmallVec;
+
 use super::described::Described;
 use super::ends::{Ends, EndsKind};
 use super::members::{List, Members};
 use super::numbers::Numbers;
-use crate::embree::{Box32, GREATEST_PACKET, Ray32, RaySet, Reached, UserGeometry};
+use super::solids::{Filtered, Solids};
+use crate::embree::{Box32, GREATEST_PACKET, RaySet, prefetch};
+use crate::math::LANES;
 use crate::scene::{CylinderList, CylinderRecord};
 use crate::solid::{Cylinder, SolidKind};
-use crate::tracer::counters;
+use crate::tracer::filter::CylinderFilter;
 use crate::tracer::query::{Packet, Query};
 
 /// The cylinders of a group, where the description keeps them.
@@ -59,11 +62,6 @@ impl Cylinders {
         EndsKind::of(self.records())
     }
 
-    /// Whether they are few enough for blocks.
-    pub fn fit_blocks(&self) -> bool {
-        self.records().len() <= GREATEST_RECORDS
-    }
-
     /// The cylinder of a record.
     #[inline(always)]
     pub fn cylinder(&self, record: u32) -> Cylinder {
@@ -76,8 +74,8 @@ impl Cylinders {
     }
 }
 
-/// A user geometry with a primitive for each cylinder.
-pub(super) struct SingleCylinders<E> {
+/// The cylinders of a group whose ends are known to be `E`.
+pub(super) struct KnownCylinders<E> {
     cylinders: Cylinders,
     /// The records, if they are of f64. A callback gets to one from here, not
     /// through scene, prototype and list, each of which it would wait for.
@@ -85,7 +83,7 @@ pub(super) struct SingleCylinders<E> {
     ends: PhantomData<E>,
 }
 
-impl<E: Ends> SingleCylinders<E> {
+impl<E: Ends> KnownCylinders<E> {
     pub fn new(cylinders: Cylinders) -> Self {
         Self {
             records: cylinders.records().shared_f64(),
@@ -94,7 +92,7 @@ impl<E: Ends> SingleCylinders<E> {
         }
     }
 
-    /// The cylinder of a record, of which it is known what ends it has.
+    /// The cylinder of a record.
     #[inline(always)]
     fn cylinder(&self, record: u32) -> Cylinder {
         E::known(match &self.records {
@@ -104,58 +102,63 @@ impl<E: Ends> SingleCylinders<E> {
     }
 }
 
-impl<E: Ends> UserGeometry for SingleCylinders<E> {
-    type Query = Query;
-
-    fn primitive_count(&self) -> u32 {
+impl<E: Ends> Solids for KnownCylinders<E> {
+    fn len(&self) -> u32 {
         self.cylinders.len()
     }
 
-    fn bounds(&self, primitive: u32) -> Box32 {
-        self.cylinders.grown_box(self.cylinders.record(primitive))
+    #[inline(always)]
+    fn record(&self, position: u32) -> u32 {
+        self.cylinders.record(position)
+    }
+
+    fn grown_box(&self, record: u32) -> Box32 {
+        self.cylinders.grown_box(record)
     }
 
     #[inline(always)]
-    fn intersect(&self, at: Reached, _: &Ray32, query: &mut Query) -> Option<f32> {
-        counters::called_back();
-        query.callbacks += 1;
-        let before = query.bound();
-        let record = self.cylinders.record(at.primitive);
+    fn prefetch(&self, record: u32) {
+        if let Some(records) = &self.records {
+            prefetch(&records[record as usize]);
+        }
+    }
+
+    #[inline(always)]
+    fn visit(&self, record: u32, query: &mut Query) {
         query.visit(&self.cylinder(record), &self.cylinders, record);
-        (query.bound() < before).then(|| query.t_far())
     }
 
     #[inline(always)]
-    fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
-        counters::called_back();
-        query.callbacks += 1;
-        query.meets(&self.cylinder(self.cylinders.record(at.primitive)))
+    fn meets(&self, record: u32, query: &Query) -> bool {
+        query.meets(&self.cylinder(record))
     }
 
     #[inline(always)]
-    fn intersect_packet(
+    fn visit_packet(
         &self,
-        at: Reached,
+        record: u32,
         rays: RaySet,
         t_far: &mut [f32; GREATEST_PACKET],
         packet: &mut Packet,
     ) -> RaySet {
-        counters::called_back();
-        packet.callbacks += 1;
-        let record = self.cylinders.record(at.primitive);
-        packet.visit::<E>(
-            &self.cylinder(record),
-            (&self.cylinders, record),
-            rays,
-            t_far,
-        )
+        let place = (&self.cylinders, record);
+        packet.visit::<E>(&self.cylinder(record), place, rays, t_far)
     }
 
     #[inline(always)]
-    fn occluded_packet(&self, at: Reached, rays: RaySet, packet: &mut Packet) -> RaySet {
-        counters::called_back();
-        packet.callbacks += 1;
-        let record = self.cylinders.record(at.primitive);
+    fn meets_packet(&self, record: u32, rays: RaySet, packet: &Packet) -> RaySet {
         packet.meets::<E>(&self.cylinder(record), rays)
+    }
+}
+
+impl<E: Ends> Filtered for KnownCylinders<E> {
+    type Filter = CylinderFilter;
+
+    fn filter(&self, records: &[u32]) -> CylinderFilter {
+        let cylinders: SmallVec<[Cylinder; LANES]> = records
+            .iter()
+            .map(|&record| self.cylinder(record))
+            .collect();
+        CylinderFilter::new(&cylinders, self.cylinders.described().frame())
     }
 }

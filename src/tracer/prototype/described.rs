@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::members::Members;
 use super::numbers::Numbers;
-use crate::embree::{Box32, GREATEST_PACKET, Ray32, RaySet, Reached, UserGeometry};
+use super::solids::Solids;
+use crate::embree::{Box32, GREATEST_PACKET, RaySet, prefetch};
 use crate::math::Bounds;
 use crate::scene::{self, PrototypeIndex, Scene};
-use crate::tracer::counters;
 use crate::tracer::frame::Frame;
 use crate::tracer::query::{Member, Packet, Query};
 use crate::tracer::traced::TracedSolid;
@@ -49,14 +49,18 @@ impl Described {
         self.prototype().primitive(kind, record as usize)
     }
 
+    /// The frame of the Embree scene.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
     /// A box in the frame of the Embree scene.
     pub fn grown_box(&self, bounds: &Bounds) -> Box32 {
         self.frame.grown_box(bounds)
     }
 }
 
-/// The solids of one kind in a group, that are no cylinders: a user geometry with a
-/// primitive for each.
+/// The solids of one kind in a group, that are no cylinders.
 pub(crate) struct SolidList<S> {
     described: Described,
     /// The positions of their records.
@@ -80,12 +84,6 @@ impl<S: TracedSolid> SolidList<S> {
         &records[record as usize].solid
     }
 
-    /// The solid that is a primitive to Embree.
-    #[inline(always)]
-    fn of_primitive(&self, primitive: u32) -> &S {
-        self.solid(self.numbers.number(primitive))
-    }
-
     /// Whose they are.
     #[inline(always)]
     pub fn described(&self) -> &Described {
@@ -93,15 +91,18 @@ impl<S: TracedSolid> SolidList<S> {
     }
 }
 
-impl<S: TracedSolid> UserGeometry for SolidList<S> {
-    type Query = Query;
-
-    fn primitive_count(&self) -> u32 {
+impl<S: TracedSolid> Solids for SolidList<S> {
+    fn len(&self) -> u32 {
         self.numbers.len()
     }
 
-    fn bounds(&self, primitive: u32) -> Box32 {
-        let bounds = self.of_primitive(primitive).bounds();
+    #[inline(always)]
+    fn record(&self, position: u32) -> u32 {
+        self.numbers.number(position)
+    }
+
+    fn grown_box(&self, record: u32) -> Box32 {
+        let bounds = self.solid(record).bounds();
         if bounds.is_empty() {
             // What set operations leave nothing of; Embree wants a box all the same.
             return Box32 {
@@ -112,38 +113,35 @@ impl<S: TracedSolid> UserGeometry for SolidList<S> {
         self.described.grown_box(&bounds)
     }
 
-    fn intersect(&self, at: Reached, _: &Ray32, query: &mut Query) -> Option<f32> {
-        counters::called_back();
-        query.callbacks += 1;
-        let before = query.bound();
-        query.visit_solid(self, self.numbers.number(at.primitive));
-        (query.bound() < before).then(|| query.t_far())
+    #[inline(always)]
+    fn prefetch(&self, record: u32) {
+        prefetch(self.solid(record));
     }
 
-    fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
-        counters::called_back();
-        query.callbacks += 1;
-        query.meets_solid(self.of_primitive(at.primitive))
+    // A call, for a solver with its branches gains nothing from being compiled for each
+    // instruction set.
+    fn visit(&self, record: u32, query: &mut Query) {
+        query.visit_solid(self, record);
+    }
+
+    fn meets(&self, record: u32, query: &Query) -> bool {
+        query.meets_solid(self.solid(record))
     }
 
     // Inlined for the rows of lanes within, as `embree::callback` says.
     #[inline(always)]
-    fn intersect_packet(
+    fn visit_packet(
         &self,
-        at: Reached,
+        record: u32,
         rays: RaySet,
         t_far: &mut [f32; GREATEST_PACKET],
         packet: &mut Packet,
     ) -> RaySet {
-        counters::called_back();
-        packet.callbacks += 1;
-        packet.visit_solid(self, self.numbers.number(at.primitive), rays, t_far)
+        packet.visit_solid(self, record, rays, t_far)
     }
 
     #[inline(always)]
-    fn occluded_packet(&self, at: Reached, rays: RaySet, packet: &mut Packet) -> RaySet {
-        counters::called_back();
-        packet.callbacks += 1;
-        packet.meets_solid(self.of_primitive(at.primitive), rays)
+    fn meets_packet(&self, record: u32, rays: RaySet, packet: &Packet) -> RaySet {
+        packet.meets_solid(self.solid(record), rays)
     }
 }

@@ -17,9 +17,6 @@ pub(crate) trait Ends: Send + Sync + 'static {
 
     /// Eight times those of one cylinder.
     fn of_one(caps: Caps) -> Self::Lanes;
-
-    /// Those of eight.
-    fn of_each(caps: [Caps; LANES]) -> Self::Lanes;
 }
 
 /// All are tubes.
@@ -43,11 +40,6 @@ impl Ends for Open {
     fn of_one(_: Caps) -> AllOpen {
         AllOpen
     }
-
-    #[inline(always)]
-    fn of_each(_: [Caps; LANES]) -> AllOpen {
-        AllOpen
-    }
 }
 
 impl Ends for Capped {
@@ -60,11 +52,6 @@ impl Ends for Capped {
 
     #[inline(always)]
     fn of_one(_: Caps) -> AllCapped {
-        AllCapped
-    }
-
-    #[inline(always)]
-    fn of_each(_: [Caps; LANES]) -> AllCapped {
         AllCapped
     }
 }
@@ -80,11 +67,6 @@ impl Ends for Mixed {
     #[inline(always)]
     fn of_one(caps: Caps) -> MixedCaps {
         MixedCaps([caps; LANES])
-    }
-
-    #[inline(always)]
-    fn of_each(caps: [Caps; LANES]) -> MixedCaps {
-        MixedCaps(caps)
     }
 }
 

@@ -23,7 +23,6 @@ use crate::math::Bounds;
 use crate::scene::{PrototypeIndex, Scene};
 use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, SolidKind, Sphere};
 use crate::tracer::frame::{Frame, LocalRay, PacketEntry, PacketLevel, PacketRays};
-use crate::tracer::options::Layout;
 use crate::tracer::query::{Packet, Query};
 use crate::tracer::traced::TracedSolid;
 
@@ -157,12 +156,12 @@ impl Group {
     /// The bytes that are kept for the members beside the description and
     /// Embree's tree.
     pub fn kept_bytes(&self) -> usize {
-        let blocks = match self.workshop.layout {
-            Layout::Block if self.is_touched() => {
-                let records = self.cylinders.records().records();
-                block_bytes(u64::from(self.cylinders.len()), records) as usize
-            }
-            Layout::Block | Layout::Single => 0,
+        let cylinders = u64::from(self.cylinders.len());
+        let has_blocks = self.is_touched() && self.workshop.layout.has_blocks(cylinders);
+        let blocks = if has_blocks {
+            block_bytes(cylinders) as usize
+        } else {
+            0
         };
         self.members.bytes() + blocks
     }

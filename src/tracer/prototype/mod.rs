@@ -19,12 +19,13 @@ mod members;
 mod numbers;
 mod placements;
 mod sight;
+mod solids;
 
 use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-pub(crate) use blocks::{CylinderBlock, block_bytes};
+pub(crate) use blocks::block_bytes;
 pub(crate) use cylinders::Cylinders;
 pub(crate) use described::{Described, SolidList};
 pub(crate) use ends::Ends;

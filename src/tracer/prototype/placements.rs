@@ -5,7 +5,9 @@ use std::sync::Arc;
 use super::numbers::Numbers;
 use super::sight::Sight;
 use super::{Children, Group};
-use crate::embree::{Box32, GREATEST_PACKET, Instructions, Ray32, RaySet, Reached, UserGeometry};
+use crate::embree::{
+    Box32, GREATEST_PACKET, Instructions, Ray32, RaySet, Rays32, Reached, UserGeometry,
+};
 use crate::math::{Bounds, ChildFromParent};
 use crate::scene::{Placement, PrototypeIndex, Scene};
 use crate::tracer::counters;
@@ -124,6 +126,7 @@ impl UserGeometry for Arc<Placements> {
         &self,
         at: Reached,
         rays: RaySet,
+        _: &Rays32,
         t_far: &mut [f32; GREATEST_PACKET],
         packet: &mut Packet,
     ) -> RaySet {
@@ -139,7 +142,13 @@ impl UserGeometry for Arc<Placements> {
         shorter
     }
 
-    fn occluded_packet(&self, at: Reached, rays: RaySet, packet: &mut Packet) -> RaySet {
+    fn occluded_packet(
+        &self,
+        at: Reached,
+        rays: RaySet,
+        _: &Rays32,
+        packet: &mut Packet,
+    ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
         let number = self.in_view.number(at.primitive);

@@ -6,11 +6,11 @@ use glam::DVec3;
 
 use super::found::{Found, InstancePath, Keep, Member, Nearest, Next, Place};
 use crate::embree::{self, Ray32};
-use crate::math::{LaneMask, Lanes, Ray};
+use crate::math::Ray;
 use crate::solid::{ConvexSolid, Cylinder, Meeting, SolidKind, triple_product};
 use crate::tracer::counters;
 use crate::tracer::frame::{Frame, Level, LocalRay};
-use crate::tracer::prototype::{CylinderBlock, Cylinders, Described, Ends, SolidList};
+use crate::tracer::prototype::{Cylinders, Described, SolidList};
 use crate::tracer::traced::{Met, TracedSolid};
 
 /// A query on its way.
@@ -231,38 +231,6 @@ impl Query {
                 place: Place::new(described.index(), member, path),
             });
         }
-    }
-
-    /// As [`Query::visit`] for all cylinders of a block.
-    #[inline(always)]
-    pub fn visit_block<E: Ends>(&mut self, block: &impl CylinderBlock, cylinders: &Cylinders) {
-        if !matches!(self.keep, Keep::First(_)) {
-            for record in block.records() {
-                self.visit_all(&cylinders.cylinder(record), cylinders, record);
-            }
-            return;
-        }
-        let (met, t) = self.first_of_block::<E>(block, self.bound());
-        let mut met = met.bits();
-        while met != 0 {
-            let lane = met.trailing_zeros() as usize;
-            met &= met - 1;
-            let member = Member::new(SolidKind::Cylinder, block.record(lane));
-            self.offer(t.0[lane], cylinders.described(), member);
-        }
-    }
-
-    /// Whether the ray meets a cylinder of a block.
-    #[inline(always)]
-    pub fn meets_block<E: Ends>(&self, block: &impl CylinderBlock) -> bool {
-        self.first_of_block::<E>(block, self.t_max).0.bits() != 0
-    }
-
-    /// Where the ray first meets each cylinder of a block, up to `t_max`.
-    #[inline(always)]
-    fn first_of_block<E: Ends>(&self, block: &impl CylinderBlock, t_max: f64) -> (LaneMask, Lanes) {
-        counters::solved(1);
-        block.first::<E>(&self.level().ray, self.t_min, t_max)
     }
 
     /// The `t_far` that leaves room for all hits that would be kept.

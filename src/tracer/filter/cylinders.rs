@@ -1,0 +1,282 @@
+//! The filter of cylinders.
+//!
+//! The copy of a cylinder is one about the points `c ± b` with a radius `r`, in units of the
+//! cell. `c` and `b` have components of eight bits, and `r` is a multiple of a power of two.
+//!
+//! # What is added
+//!
+//! Let the cylinder, in units, have the ends `p0`, `p1` and the radius ρ, let `s` be the slack and
+//! σ the sine between its axis and `b`. A point within `s` of it is a point `a` of the
+//! axis, and at most ρ across the axis and `s` from there. So it is within
+//!
+//! ```text
+//! r0 = off + ρ + s,        off = max over the ends of |(p - c) × b| / |b|            (1)
+//! h0 = max over the ends of |(p - c)·b| / |b| + ρ σ + s                             (2)
+//! ```
+//!
+//! of the line `c + y b`, and of the plane through `c` across it: both are greatest at an end.
+//! `b` is made long enough that `|b| >= h0`. It may be longer than the cylinder: a short
+//! thick one gets a longer `b`, whose direction is more exact, so that ρ σ is less.
+//!
+//! # The test
+//!
+//! For the line `x + T d` from `c`, with `n = b × d`, `w = x·n`, `B = |b|`, the roots of the distance
+//! from the axis, and its place along the axis, are
+//!
+//! ```text
+//! T |n|² = t ± B √D,   D = r² |n|² - w²,   t = (x·b)(d·b) - (x·d) B²               (3)
+//! y B = x·b + T d·b                                                                 (4)
+//! ```
+//!
+//! The part of the line inside the wall, that between the ends and that which is the ray are
+//! intervals. Three intervals of a line have a point in common if every two have (Helly), so
+//!
+//! ```text
+//! D >= 0
+//! t + B √D >= start |n|²,   t - B √D <= end |n|²                     wall and ray   (5)
+//! |(x·b) |n|² + t (d·b)| <= B² |n|² + |d·b| B √D                     wall and ends  (6)
+//! the range of y B from start to end meets [-B², B²]                  ray and ends  (7)
+//! ```
+//!
+//! and nothing is divided. A lane whose `b` is zero passes.
+//!
+//! # Roundings
+//!
+//! Products and sums of f32 have a relative error of v = 2^-24. Every length is below `Y` = 512, `start` and `end` are below it too, `b` and `B²` are exact, `|d|` is 1. Where a
+//! term is rounded several times the bounds are added:
+//!
+//! ```text
+//! x: v Y    n: 3 v B    w: 7 v Y B    |n|²: 9 v B²    x·b, (x·d) B: 4 v Y B    d·b: 3 v B
+//! t: 15 v Y B²    T |n|²: 10 v Y B²    √D B, given D: 3 v Y B²    left of (6): 35 v Y B³
+//! right of (6): 15 v Y B³    (4): 8 v Y B
+//! ```
+//!
+//! From `|w| <= r0 |n|` follows with the computed `w` and `n` that `|w| <= r0 |n| + 10 v Y B`, and
+//! squared, as `(p + q)² <= (1 + ε) p² + (1 + 1/ε) q²` with ε = 2^-7 and 2 (10 v Y B)² more for `D`:
+//!
+//! ```text
+//! D <= (1 + 2^-7) r0² |n|² - w² + 131 (10 v Y)² B²,   131 (10 v Y)² = 2^-16.3       (8)
+//! ```
+//!
+//! So the kept `r` is at least `r0 (1 + 2^-7)`, whose square has 2^-7 to spare for the roundings of (8)
+//! itself, and `D` gets [`MARGIN`]² B² with a margin of 2^-7: twice the root of 2^-16.3. The
+//! computed `D` is then not below that of a cylinder of radius r0.
+//! (5) is wrong by up to (15 + 10 + 3 + 2) v Y B² = 2^-10 B², and gets `MARGIN` B². (6) is wrong by up to
+//! 50 v Y B³ = 2^-9.3 B³ and gets 2^-10 (B² + 1) B², which is at least 2^-9 B³. (7) is wrong
+//! by up to 2^-12 B and gets `MARGIN` B². They move a surface by less than a unit.
+
+use glam::DVec3;
+
+use super::cell::{dot, greater, less};
+use super::{Cell, Filter, NearRay};
+use crate::math::LANES;
+use crate::solid::Cylinder;
+use crate::tracer::frame::Frame;
+
+/// What the tests have to spare for their roundings, as the head of this file derives: it
+/// makes a wall thicker by less than 1 % of its radius or of a unit.
+const MARGIN: f32 = 1.0 / (1 << 7) as f32;
+
+/// What (6) has to spare: it makes a cylinder longer by 1/1024.
+const END_MARGIN: f32 = 1.0 / (1 << 10) as f32;
+
+/// The kept radius over r0 of (1).
+const THICKER: f64 = 1.0 + 1.0 / (1 << 7) as f64;
+
+/// The roundings of f64 in what is kept are far below this share of it.
+const OUTWARD: f64 = 1.0 + 1.0 / (1_u64 << 40) as f64;
+
+/// A block's cylinders.
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CylinderFilter {
+    cell: Cell,
+    /// Middles.
+    c: [[u8; LANES]; 3],
+    /// Half axes.
+    b: [[i8; LANES]; 3],
+    /// Radii, `2^exponent` to a unit; 0 where there is no cylinder.
+    r: [u8; LANES],
+}
+
+const _: () = assert!(size_of::<CylinderFilter>() == 64);
+
+impl CylinderFilter {
+    /// That of up to eight cylinders of a group with this frame.
+    pub fn new(cylinders: &[Cylinder], frame: &Frame) -> Self {
+        Self::with_margins(cylinders, frame, 1.0)
+    }
+
+    /// The same with a share of what has to be added: less than all of it loses hits.
+    pub(super) fn with_margins(cylinders: &[Cylinder], frame: &Frame, share: f64) -> Self {
+        let cell = Cell::around(cylinders.iter().map(Cylinder::bounds), frame);
+        let mut filter = Self {
+            cell,
+            c: [[0; LANES]; 3],
+            b: [[0; LANES]; 3],
+            r: [0; LANES],
+        };
+        let units = f64::from(cell.units());
+        let mut radii = [0.0; LANES];
+        for (lane, cylinder) in cylinders.iter().enumerate() {
+            let one = InCell {
+                ends: [cylinder.p0(), cylinder.p1()].map(|p| cell.place(p, frame)),
+                radius: cylinder.radius() * frame.scale() * units,
+                slack: frame.slack() * units,
+                share,
+            };
+            let (c, b, radius) = one.copy();
+            for axis in 0..3 {
+                filter.c[axis][lane] = c[axis] as u8;
+                filter.b[axis][lane] = b[axis] as i8;
+            }
+            radii[lane] = radius;
+        }
+        let greatest = radii.iter().copied().fold(0.0, f64::max);
+        let fits = |exponent: &u8| greatest * f64::from(1_u32 << exponent) <= 255.0;
+        filter.cell.exponent = (0..16).rev().find(fits).unwrap_or(0);
+        let steps = f64::from(1_u32 << filter.cell.exponent);
+        filter.r = radii.map(|radius| (radius * steps).ceil() as u8);
+        filter
+    }
+
+    #[inline(always)]
+    fn lane(&self, lane: usize, ray: &NearRay) -> Lane {
+        let steps = f32::from_bits((127 - u32::from(self.cell.exponent)) << 23);
+        let b = [
+            f32::from(self.b[0][lane]),
+            f32::from(self.b[1][lane]),
+            f32::from(self.b[2][lane]),
+        ];
+        let (o, d) = (ray.origin, ray.direction);
+        let x = [
+            o[0] - f32::from(self.c[0][lane]),
+            o[1] - f32::from(self.c[1][lane]),
+            o[2] - f32::from(self.c[2][lane]),
+        ];
+        let n = [
+            b[1] * d[2] - b[2] * d[1],
+            b[2] * d[0] - b[0] * d[2],
+            b[0] * d[1] - b[1] * d[0],
+        ];
+        let (nn, w, bb) = (dot(n, n), dot(x, n), dot(b, b));
+        let r = f32::from(self.r[lane]) * steps;
+        Lane {
+            x,
+            b,
+            nn,
+            bb,
+            discriminant: r * r * nn + MARGIN * MARGIN * bb - w * w,
+            is_there: self.r[lane] > 0,
+        }
+    }
+}
+
+/// What is worked out of a line and a lane; see the head of this file.
+struct Lane {
+    x: [f32; 3],
+    b: [f32; 3],
+    nn: f32,
+    bb: f32,
+    discriminant: f32,
+    is_there: bool,
+}
+
+impl Filter for CylinderFilter {
+    #[inline(always)]
+    fn cell(&self) -> &Cell {
+        &self.cell
+    }
+
+    #[inline(always)]
+    fn may_pass(&self, lane: usize, ray: &NearRay) -> bool {
+        let Lane {
+            discriminant,
+            is_there,
+            ..
+        } = self.lane(lane, ray);
+        (discriminant >= 0.0) & is_there
+    }
+
+    #[inline(always)]
+    fn may_meet(&self, lane: usize, ray: &NearRay) -> bool {
+        let Lane {
+            x,
+            b,
+            nn,
+            bb,
+            discriminant,
+            is_there,
+        } = self.lane(lane, ray);
+        let d = ray.direction;
+        let (db, xb, xd) = (dot(d, b), dot(x, b), dot(x, d));
+        let root = (greater(discriminant, 0.0) * bb).sqrt();
+        let t = xb * db - xd * bb;
+        let wall = root + MARGIN * bb;
+        let (at_start, at_end) = (xb + ray.start * db, xb + ray.end * db);
+        let ends = bb + MARGIN * bb;
+        let middle = (xb * nn + t * db).abs();
+        let reach = bb * (nn + END_MARGIN * (bb + 1.0)) + db.abs() * root;
+        (discriminant >= 0.0)
+            & is_there
+            & (t + wall >= ray.start * nn)
+            & (t - wall <= ray.end * nn)
+            & (middle <= reach)
+            & (less(at_start, at_end) <= ends)
+            & (greater(at_start, at_end) >= -ends)
+    }
+}
+
+/// A cylinder in units of its cell.
+struct InCell {
+    ends: [DVec3; 2],
+    radius: f64,
+    slack: f64,
+    /// How much of (1) and (2) is added: all but in a test.
+    share: f64,
+}
+
+impl InCell {
+    /// Its `c`, `b` and least `r`.
+    fn copy(&self) -> (DVec3, DVec3, f64) {
+        let [p0, p1] = self.ends;
+        let c = (0.5 * (p0 + p1)).round();
+        let half = 0.5 * (p1 - p0);
+        // Rounding turns `b` by about 0.6 / |b|: the least sum of |b| and ρ times that.
+        let mut length = half.length().max((0.6 * self.radius).sqrt()).max(1.0);
+        loop {
+            let b = (half.normalize() * length).round();
+            if b.abs().max_element() > f64::from(i8::MAX) || !b.is_finite() {
+                return (c, DVec3::ZERO, self.thick(0.0));
+            }
+            let reach = self.reach(c, b);
+            if b.length() >= reach {
+                return (c, b, self.thick(self.off(c, b)));
+            }
+            length = reach.max(length + 0.25);
+        }
+    }
+
+    /// h0 of (2).
+    fn reach(&self, c: DVec3, b: DVec3) -> f64 {
+        let [p0, p1] = self.ends;
+        let along = |p: DVec3| (p - c).dot(b).abs() / b.length();
+        let axis = p1 - p0;
+        let sine = axis.cross(b).length() / (axis.length() * b.length());
+        let own = 0.5 * axis.length();
+        let added = along(p0).max(along(p1)) - own + self.radius * sine + self.slack;
+        (own + self.share * added) * OUTWARD
+    }
+
+    /// `off` of (1).
+    fn off(&self, c: DVec3, b: DVec3) -> f64 {
+        let across = |p: DVec3| (p - c).cross(b).length() / b.length();
+        across(self.ends[0]).max(across(self.ends[1]))
+    }
+
+    /// The radius to keep, r0 of (1) and what roundings need.
+    fn thick(&self, off: f64) -> f64 {
+        let added = (off + self.radius + self.slack) * THICKER * OUTWARD - self.radius;
+        self.radius + self.share * added
+    }
+}

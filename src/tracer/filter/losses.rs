@@ -1,0 +1,50 @@
+//! What filters lose, for tests that draw solids and rays.
+
+use super::{CylinderFilter, survivors};
+use crate::math::{Bounds, LANES, Ray};
+use crate::solid::{Cylinder, triple_product};
+use crate::tracer::frame::{Frame, LocalRay};
+
+/// What rays find of a block, solved in f64, and what its filter leaves of that.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FilterLosses {
+    /// Pairs of a ray and a solid that it hits.
+    pub hits: u64,
+    /// Those that do not survive; always 0 with the whole margins.
+    pub lost: u64,
+    /// Pairs that survive without a hit.
+    pub spare: u64,
+}
+
+impl FilterLosses {
+    /// Puts rays to the filter of up to eight cylinders of a prototype that fills the box
+    /// `whole`. The filter is made with a share of the margins that it needs.
+    ///
+    /// # Panics
+    /// If there are more cylinders.
+    #[must_use]
+    pub fn of_cylinders(cylinders: &[Cylinder], whole: &Bounds, rays: &[Ray], share: f64) -> Self {
+        assert!(cylinders.len() <= LANES, "a block has no more");
+        let frame = Frame::new(whole);
+        let filter = CylinderFilter::with_margins(cylinders, &frame, share);
+        let mut losses = Self::default();
+        for ray in rays {
+            let (t_min, t_max) = (ray.t_min, ray.t_max);
+            let Some((level, ray32)) = frame.enter(&LocalRay::new(ray), t_min, t_max) else {
+                continue;
+            };
+            let local = level.ray;
+            let survivors = survivors(&filter, &ray32);
+            for (lane, one) in cylinders.iter().enumerate() {
+                let from_p0 = local.origin_from(one.p0());
+                let (direction, shift) = (local.direction, local.shift);
+                let met = triple_product::first(one, from_p0, direction, shift, t_min, t_max);
+                let survives = survivors >> lane & 1 == 1;
+                losses.hits += u64::from(met.is_some());
+                losses.lost += u64::from(met.is_some() && !survives);
+                losses.spare += u64::from(met.is_none() && survives);
+            }
+        }
+        losses
+    }
+}

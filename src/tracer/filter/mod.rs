@@ -1,0 +1,201 @@
+//! Which solids of a block Embree's own f32 ray may meet: what is left is solved in f64.
+//!
+//! A block is up to [`LANES`] solids that are near each other, one primitive of Embree's. A
+//! *filter* is one cache line with a small copy of each of them, in the frame of their group:
+//! numbers of eight bits in a [`Cell`] that contains them all. A copy contains its
+//! solid, and all that can be wrong with the ray, so a solid whose copy the ray misses is
+//! not hit. Survivors are solved as they are where each solid is a primitive of its own, so
+//! that answers are the same bits.
+//!
+//! # What a copy must contain
+//!
+//! Write v = 2^-24, `O` for the greatest distance of the origin of Embree's rays from the
+//! centre of the frame, which is at least its radius R, and let a hit be at the parameter τ
+//! of Embree's ray `o + τ d`, in the frame. What the solver calls a hit is within the solid,
+//! and Embree's ray at τ is off from the solver's, by no more than a part of the slack `S`:
+//! [`Frame::slack`]. From the ray that enters a frame that is 3.1 v R (`docs/derivations.md`,
+//! section 4: 1 for the origin, 2 for the direction, 0.01 for f64).
+//!
+//! [`Cell::near`] moves the ray to its point that is nearest to the middle of the cell, with
+//! a direction of length 1, in units of the cell; numbers are then of the cell's size, as are
+//! their roundings, wherever the ray comes from. A cell is inside a cube about the frame's
+//! centre of half side 1.07 R, so that its points are within 1.9 R of the centre, and within
+//! 3 O of `o`. Displacements, in the frame:
+//!
+//! | source | across the ray | along it |
+//! |---|---|---|
+//! | components of the direction times one over its length, each rounded: v, on a way of 2 O | 2 v O | |
+//! | `o - corner`, times the unit, a rounding each, of 3 O | 6 v O | |
+//! | the move: a product, v on a way of 3 O; the sum is rounded by v of a number of the cell | 3 v O | |
+//! | the end of the ray: its length rounded twice and a product, of 2 O | | 6 v O |
+//!
+//! The length that divides need not be exact: the same number multiplies the end. Together
+//! they are below 13 v O, and with the ray's own 3.1 v R below 17 v O. So
+//!
+//! ```text
+//! S >= (how far Embree's ray is from the solver's) + 14 v O                        (1)
+//! ```
+//!
+//! which the growth of boxes, 32 v R, gives where rays enter a frame at its sphere.
+//! A cell is the union of its solids' boxes, each grown by S or more. So, if there is a hit:
+//! there is a `T` in the range of the near ray such that its point is within S of the
+//! solid, and in the cell.
+//!
+//! # Roundings in the cell
+//!
+//! A point of the cell is within 221 units of its middle (half the diagonal of 255), and so
+//! is the ray's point that is nearest to it, if the ray has a point in the cell. That point is
+//! computed to within 36 v O, below twice the slack, and a cell has units of which the slack is at
+//! most 32. So the near ray's origin is within 285 of the middle, no more than 285 away from
+//! any point in question, and ranges are clipped to [`LONGEST`], 320. It is within 506 of every
+//! point of the cell. A kind of solid derives from that what roundings its test needs: 2^-24 of such
+//! numbers, a small part of a unit.
+//!
+//! [`LONGEST`]: cell::LONGEST
+
+mod cell;
+mod cylinders;
+mod losses;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use cell::{Cell, NearRay};
+pub(crate) use cylinders::CylinderFilter;
+pub use losses::FilterLosses;
+
+use crate::embree::{GREATEST_PACKET, Ray32, RaySet, Rays32};
+use crate::math::{LANES, LaneMask};
+
+/// The size of every filter: a cache line.
+pub(crate) const FILTER_BYTES: usize = 64;
+
+/// The copies of up to [`LANES`] solids, and which of them a ray may meet.
+pub(crate) trait Filter: Send + Sync + 'static {
+    /// The cell that contains them.
+    fn cell(&self) -> &Cell;
+
+    /// Whether a ray may meet the solid of a lane; `false` for a lane without one. Loops over
+    /// lanes, and over rays, become vector instructions where there is no branch in it.
+    fn may_meet(&self, lane: usize, ray: &NearRay) -> bool;
+
+    /// A part of [`may_meet`](Self::may_meet) that is cheaper and rejects most rays.
+    #[inline(always)]
+    fn may_pass(&self, _lane: usize, _ray: &NearRay) -> bool {
+        true
+    }
+}
+
+/// The lanes whose solids a ray may meet, as bits.
+#[inline(always)]
+pub(crate) fn survivors(filter: &impl Filter, ray: &Ray32) -> u8 {
+    let ray = filter.cell().near(ray);
+    let mut may_meet = LaneMask::splat(false);
+    for lane in 0..LANES {
+        may_meet.0[lane] = filter.may_meet(lane, &ray);
+    }
+    may_meet.bits()
+}
+
+/// Rays of a packet near a cell, in rows.
+pub(crate) struct NearPacket {
+    rows: [NearRow; ROWS],
+    wanted: RaySet,
+}
+
+/// Rows of lanes that hold a packet.
+const ROWS: usize = GREATEST_PACKET / LANES;
+
+/// Eight rays near a cell.
+struct NearRow {
+    origin: [[f32; LANES]; 3],
+    direction: [[f32; LANES]; 3],
+    start: [f32; LANES],
+    end: [f32; LANES],
+}
+
+impl NearRow {
+    const NOWHERE: Self = Self {
+        origin: [[0.0; LANES]; 3],
+        direction: [[0.0; LANES]; 3],
+        start: [0.0; LANES],
+        end: [0.0; LANES],
+    };
+
+    #[inline(always)]
+    fn ray(&self, lane: usize) -> NearRay {
+        NearRay {
+            origin: [
+                self.origin[0][lane],
+                self.origin[1][lane],
+                self.origin[2][lane],
+            ],
+            direction: [
+                self.direction[0][lane],
+                self.direction[1][lane],
+                self.direction[2][lane],
+            ],
+            start: self.start[lane],
+            end: self.end[lane],
+        }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, ray: &NearRay) {
+        for axis in 0..3 {
+            self.origin[axis][lane] = ray.origin[axis];
+            self.direction[axis][lane] = ray.direction[axis];
+        }
+        self.start[lane] = ray.start;
+        self.end[lane] = ray.end;
+    }
+}
+
+impl NearPacket {
+    /// Those of a packet's rays that are `wanted`.
+    #[inline(always)]
+    pub fn new(cell: &Cell, rays: &Rays32, wanted: RaySet) -> Self {
+        let mut rows = [NearRow::NOWHERE; ROWS];
+        for row in 0..ROWS {
+            if in_row(wanted, row) == 0 {
+                continue;
+            }
+            let mut near = NearRow::NOWHERE;
+            for lane in 0..LANES {
+                near.set(lane, &cell.near(&rays.ray(row * LANES + lane)));
+            }
+            rows[row] = near;
+        }
+        Self { rows, wanted }
+    }
+
+    /// The rays that may meet the solid of a lane.
+    #[inline(always)]
+    pub fn survivors(&self, filter: &impl Filter, lane: usize) -> RaySet {
+        let mut bits = 0;
+        for row in 0..ROWS {
+            if in_row(self.wanted, row) == 0 {
+                continue;
+            }
+            let rays = &self.rows[row];
+            let mut may_pass = LaneMask::splat(false);
+            for ray in 0..LANES {
+                may_pass.0[ray] = filter.may_pass(lane, &rays.ray(ray));
+            }
+            if !may_pass.any() {
+                continue;
+            }
+            let mut may_meet = LaneMask::splat(false);
+            for ray in 0..LANES {
+                may_meet.0[ray] = filter.may_meet(lane, &rays.ray(ray));
+            }
+            bits |= u16::from(may_meet.bits()) << (row * LANES);
+        }
+        RaySet::from_bits(bits) & self.wanted
+    }
+}
+
+/// The rays of a row, as bits.
+#[inline(always)]
+fn in_row(rays: RaySet, row: usize) -> u8 {
+    (rays.bits() >> (row * LANES)) as u8
+}
