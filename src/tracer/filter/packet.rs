@@ -135,28 +135,39 @@ impl NearPacket {
 fn bundle(rows: &[NearRow; ROWS], wanted: RaySet) -> Option<(NearRay, f32)> {
     let number = wanted.into_iter().next()?;
     let first = rows[number / LANES].ray(number % LANES);
-    let mut square = 0.0_f32;
+    let mut greatest = [0.0; LANES];
     for (row, rays) in rows.iter().enumerate() {
         let in_row = LaneMask::from_bits(in_row(wanted, row));
-        let mut squares = [0.0; LANES];
-        for (lane, square) in squares.iter_mut().enumerate() {
-            let ray = rays.ray(lane);
-            let [x, y, z] = [0, 1, 2].map(|axis| {
-                let moved = (ray.origin[axis] - first.origin[axis]).abs();
-                moved + LONGEST * (ray.direction[axis] - first.direction[axis]).abs()
-            });
-            let apart = x * x + (y * y + z * z);
-            *square = if in_row.0[lane] { apart } else { 0.0 };
+        for lane in 0..LANES {
+            let apart = square_apart(&rays.ray(lane), &first);
+            let apart = if in_row.0[lane] { apart } else { 0.0 };
+            greatest[lane] = greater(greatest[lane], apart);
         }
-        // In halves, for a row has no sum of its own in the processor.
-        for half in [4, 2, 1] {
-            for lane in 0..half {
-                squares[lane] = greater(squares[lane], squares[lane + half]);
-            }
-        }
-        square = greater(square, squares[0]);
     }
-    (square <= MOST_APART * MOST_APART).then(|| (first, square.sqrt() * APART))
+    // In halves, for a row has no greatest of its own in the processor.
+    for half in [4, 2, 1] {
+        for lane in 0..half {
+            greatest[lane] = greater(greatest[lane], greatest[lane + half]);
+        }
+    }
+    let square = greatest[0];
+    if square > MOST_APART * MOST_APART {
+        return None;
+    }
+    Some((first, square.sqrt() * APART))
+}
+
+/// The square of the most that two rays are apart.
+#[inline(always)]
+fn square_apart(one: &NearRay, other: &NearRay) -> f32 {
+    let mut square = 0.0;
+    for axis in 0..3 {
+        let moved = (one.origin[axis] - other.origin[axis]).abs();
+        let turned = (one.direction[axis] - other.direction[axis]).abs();
+        let apart = moved + LONGEST * turned;
+        square += apart * apart;
+    }
+    square
 }
 
 /// The rays of a row, as bits.
