@@ -24,7 +24,7 @@ const MIDDLE: f32 = 127.5;
 
 /// The longest way along a ray that counts, in units. A point of the cell is within 221 of
 /// its middle, and the ray's nearest point is computed to within 64.
-const LONGEST: f32 = 320.0;
+pub(super) const LONGEST: f32 = 320.0;
 
 /// A cube of the frame, with a corner at a multiple of 1/[`GRID`], and sides of 255 units of
 /// its own.

@@ -64,6 +64,9 @@
 //! (5) is wrong by up to (15 + 10 + 3 + 2) v Y B² = 2^-10 B², and gets `MARGIN` B². (6) is wrong by up to
 //! 50 v Y B³ = 2^-9.3 B³ and gets 2^-10 (B² + 1) B², which is at least 2^-9 B³. (7) is wrong
 //! by up to 2^-12 B and gets `MARGIN` B². They move a surface by less than a unit.
+//!
+//! A ray that stands for others up to 256 away passes the axis within r0 and their
+//! distance. `Y` is 768 for it: 131 (10 v Y)² = 2^-15.1 is still below the square of the margin.
 
 use glam::DVec3;
 
@@ -141,7 +144,7 @@ impl CylinderFilter {
     }
 
     #[inline(always)]
-    fn lane(&self, lane: usize, ray: &NearRay) -> Lane {
+    fn lane(&self, lane: usize, ray: &NearRay, apart: f32) -> Lane {
         let steps = f32::from_bits((127 - u32::from(self.cell.exponent)) << 23);
         let b = [
             f32::from(self.b[0][lane]),
@@ -160,7 +163,7 @@ impl CylinderFilter {
             b[0] * d[1] - b[1] * d[0],
         ];
         let (nn, w, bb) = (dot(n, n), dot(x, n), dot(b, b));
-        let r = f32::from(self.r[lane]) * steps;
+        let r = f32::from(self.r[lane]) * steps + apart;
         Lane {
             x,
             b,
@@ -189,12 +192,12 @@ impl Filter for CylinderFilter {
     }
 
     #[inline(always)]
-    fn may_pass(&self, lane: usize, ray: &NearRay) -> bool {
+    fn may_pass(&self, lane: usize, ray: &NearRay, apart: f32) -> bool {
         let Lane {
             discriminant,
             is_there,
             ..
-        } = self.lane(lane, ray);
+        } = self.lane(lane, ray, apart);
         (discriminant >= 0.0) & is_there
     }
 
@@ -207,7 +210,7 @@ impl Filter for CylinderFilter {
             bb,
             discriminant,
             is_there,
-        } = self.lane(lane, ray);
+        } = self.lane(lane, ray, 0.0);
         let d = ray.direction;
         let (db, xb, xd) = (dot(d, b), dot(x, b), dot(x, d));
         let root = (greater(discriminant, 0.0) * bb).sqrt();

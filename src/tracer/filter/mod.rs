@@ -18,25 +18,25 @@
 //!
 //! [`Cell::near`] moves the ray to its point that is nearest to the middle of the cell, with
 //! a direction of length 1, in units of the cell; numbers are then of the cell's size, as are
-//! their roundings, wherever the ray comes from. A cell is inside a cube about the frame's
-//! centre of half side 1.07 R, so that its points are within 1.9 R of the centre, and within
-//! 3 O of `o`. Displacements, in the frame:
+//! their roundings, wherever the ray comes from. The corner and the middle of a cell have
+//! coordinates of at most 1.01 R from the centre, so they are within 3 O of `o`; and a hit is within
+//! 2 O of it. Displacements, in the frame:
 //!
 //! | source | across the ray | along it |
 //! |---|---|---|
 //! | components of the direction times one over its length, each rounded: v, on a way of 2 O | 2 v O | |
 //! | `o - corner`, times the unit, a rounding each, of 3 O | 6 v O | |
-//! | the move: a product, v on a way of 3 O; the sum is rounded by v of a number of the cell | 3 v O | |
+//! | the move: a product and a sum, on a way of 3 O; the sum is of the size of the cell, 2 O | 5 v O | |
 //! | the end of the ray: its length rounded twice and a product, of 2 O | | 6 v O |
 //!
-//! The length that divides need not be exact: the same number multiplies the end. Together
-//! they are below 13 v O, and with the ray's own 3.1 v R below 17 v O. So
+//! The length that divides need not be exact: the same number multiplies the end. In sum they
+//! are below 20 v O:
 //!
 //! ```text
-//! S >= (how far Embree's ray is from the solver's) + 14 v O                        (1)
+//! S >= (how far Embree's ray is from the solver's) + 20 v O                        (1)
 //! ```
 //!
-//! which the growth of boxes, 32 v R, gives where rays enter a frame at its sphere.
+//! The growth of boxes, 32 v R, is more than the 23.2 v R that rays need which enter a frame at its sphere.
 //! A cell is the union of its solids' boxes, each grown by S or more. So, if there is a hit:
 //! there is a `T` in the range of the near ray such that its point is within S of the
 //! solid, and in the cell.
@@ -56,14 +56,16 @@
 mod cell;
 mod cylinders;
 mod losses;
+mod packet;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use cell::{Cell, NearRay};
 pub(crate) use cylinders::CylinderFilter;
 pub use losses::FilterLosses;
+pub(crate) use packet::NearPacket;
 
-use crate::embree::{GREATEST_PACKET, Ray32, RaySet, Rays32};
+use crate::embree::Ray32;
 use crate::math::{LANES, LaneMask};
 
 /// The size of every filter: a cache line.
@@ -78,9 +80,14 @@ pub(crate) trait Filter: Send + Sync + 'static {
     /// lanes, and over rays, become vector instructions where there is no branch in it.
     fn may_meet(&self, lane: usize, ray: &NearRay) -> bool;
 
-    /// A part of [`may_meet`](Self::may_meet) that is cheaper and rejects most rays.
+    /// Whether any line within `apart` of a ray, between -[`LONGEST`] and [`LONGEST`], may meet the
+    /// solid of a lane: a cheaper test that rejects most. `apart` is at most [`MOST_APART`],
+    /// and greater than the distance by 1 %. `true` says nothing.
+    ///
+    /// [`LONGEST`]: cell::LONGEST
+    /// [`MOST_APART`]: packet::MOST_APART
     #[inline(always)]
-    fn may_pass(&self, _lane: usize, _ray: &NearRay) -> bool {
+    fn may_pass(&self, _lane: usize, _ray: &NearRay, _apart: f32) -> bool {
         true
     }
 }
@@ -94,108 +101,4 @@ pub(crate) fn survivors(filter: &impl Filter, ray: &Ray32) -> u8 {
         may_meet.0[lane] = filter.may_meet(lane, &ray);
     }
     may_meet.bits()
-}
-
-/// Rays of a packet near a cell, in rows.
-pub(crate) struct NearPacket {
-    rows: [NearRow; ROWS],
-    wanted: RaySet,
-}
-
-/// Rows of lanes that hold a packet.
-const ROWS: usize = GREATEST_PACKET / LANES;
-
-/// Eight rays near a cell.
-struct NearRow {
-    origin: [[f32; LANES]; 3],
-    direction: [[f32; LANES]; 3],
-    start: [f32; LANES],
-    end: [f32; LANES],
-}
-
-impl NearRow {
-    const NOWHERE: Self = Self {
-        origin: [[0.0; LANES]; 3],
-        direction: [[0.0; LANES]; 3],
-        start: [0.0; LANES],
-        end: [0.0; LANES],
-    };
-
-    #[inline(always)]
-    fn ray(&self, lane: usize) -> NearRay {
-        NearRay {
-            origin: [
-                self.origin[0][lane],
-                self.origin[1][lane],
-                self.origin[2][lane],
-            ],
-            direction: [
-                self.direction[0][lane],
-                self.direction[1][lane],
-                self.direction[2][lane],
-            ],
-            start: self.start[lane],
-            end: self.end[lane],
-        }
-    }
-
-    #[inline(always)]
-    fn set(&mut self, lane: usize, ray: &NearRay) {
-        for axis in 0..3 {
-            self.origin[axis][lane] = ray.origin[axis];
-            self.direction[axis][lane] = ray.direction[axis];
-        }
-        self.start[lane] = ray.start;
-        self.end[lane] = ray.end;
-    }
-}
-
-impl NearPacket {
-    /// Those of a packet's rays that are `wanted`.
-    #[inline(always)]
-    pub fn new(cell: &Cell, rays: &Rays32, wanted: RaySet) -> Self {
-        let mut rows = [NearRow::NOWHERE; ROWS];
-        for row in 0..ROWS {
-            if in_row(wanted, row) == 0 {
-                continue;
-            }
-            let mut near = NearRow::NOWHERE;
-            for lane in 0..LANES {
-                near.set(lane, &cell.near(&rays.ray(row * LANES + lane)));
-            }
-            rows[row] = near;
-        }
-        Self { rows, wanted }
-    }
-
-    /// The rays that may meet the solid of a lane.
-    #[inline(always)]
-    pub fn survivors(&self, filter: &impl Filter, lane: usize) -> RaySet {
-        let mut bits = 0;
-        for row in 0..ROWS {
-            if in_row(self.wanted, row) == 0 {
-                continue;
-            }
-            let rays = &self.rows[row];
-            let mut may_pass = LaneMask::splat(false);
-            for ray in 0..LANES {
-                may_pass.0[ray] = filter.may_pass(lane, &rays.ray(ray));
-            }
-            if !may_pass.any() {
-                continue;
-            }
-            let mut may_meet = LaneMask::splat(false);
-            for ray in 0..LANES {
-                may_meet.0[ray] = filter.may_meet(lane, &rays.ray(ray));
-            }
-            bits |= u16::from(may_meet.bits()) << (row * LANES);
-        }
-        RaySet::from_bits(bits) & self.wanted
-    }
-}
-
-/// The rays of a row, as bits.
-#[inline(always)]
-fn in_row(rays: RaySet, row: usize) -> u8 {
-    (rays.bits() >> (row * LANES)) as u8
 }

@@ -46,9 +46,8 @@ impl<S: Filtered> Blocked<S> {
             .collect();
         cluster(&mut items, LANES, threads);
         let records: Vec<u32> = items.into_iter().map(|item| item.number).collect();
-        let blocks = records.chunks(LANES);
         Self {
-            filters: blocks.map(|records| solids.filter(records)).collect(),
+            filters: filters(&solids, &records, threads),
             solids,
             records,
         }
@@ -87,12 +86,43 @@ impl<S: Filtered> Blocked<S> {
             }
         } else {
             let packet = NearPacket::new(filter.cell(), rays32, rays);
-            for (lane, near) in near.iter_mut().enumerate() {
-                *near = packet.survivors(filter, lane);
+            let mut lanes = packet.lanes(filter);
+            while lanes != 0 {
+                let lane = lanes.trailing_zeros() as usize;
+                lanes &= lanes - 1;
+                near[lane] = packet.survivors(filter, lane);
             }
         }
         near
     }
+}
+
+/// Fewer filters than this are made on one thread, which takes less than a millisecond.
+const LEAST_FOR_THREADS: usize = 1 << 11;
+
+/// The filters of records in the order of blocks.
+fn filters<S: Filtered>(solids: &S, records: &[u32], threads: usize) -> Vec<S::Filter> {
+    let made = move |records: &[u32]| -> Vec<S::Filter> {
+        let blocks = records.chunks(LANES);
+        blocks.map(|records| solids.filter(records)).collect()
+    };
+    let blocks = records.len().div_ceil(LANES);
+    if threads < 2 || blocks < LEAST_FOR_THREADS {
+        return made(records);
+    }
+    // Not on a pool of rayon's: see `cluster`.
+    let mut filters = Vec::with_capacity(blocks);
+    std::thread::scope(|scope| {
+        let parts = records.chunks(blocks.div_ceil(threads) * LANES);
+        let parts: Vec<_> = parts.map(|part| scope.spawn(move || made(part))).collect();
+        for part in parts {
+            match part.join() {
+                Ok(part) => filters.extend(part),
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }
+    });
+    filters
 }
 
 /// Some records of a block.
