@@ -229,6 +229,7 @@ impl<E: Ends, S: Stored> UserGeometry for BlockedCylinders<E, S> {
     fn intersect(&self, at: Reached, _: &Ray32, query: &mut Query) -> Option<f32> {
         counters::called_back();
         query.callbacks += 1;
+        query.reach(at.instance, self.cylinders.described());
         let before = query.bound();
         query.visit_block::<E>(&self.blocks[at.primitive as usize], &self.cylinders);
         (query.bound() < before).then(|| query.t_far())
@@ -238,6 +239,7 @@ impl<E: Ends, S: Stored> UserGeometry for BlockedCylinders<E, S> {
     fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
         counters::called_back();
         query.callbacks += 1;
+        query.reach(at.instance, self.cylinders.described());
         query.meets_block::<E>(&self.blocks[at.primitive as usize])
     }
 
@@ -251,6 +253,7 @@ impl<E: Ends, S: Stored> UserGeometry for BlockedCylinders<E, S> {
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
+        packet.reach(at.instance, self.cylinders.described());
         let block = &self.blocks[at.primitive as usize];
         let mut shorter = RaySet::EMPTY;
         for lane in 0..block.len() {
@@ -264,6 +267,7 @@ impl<E: Ends, S: Stored> UserGeometry for BlockedCylinders<E, S> {
     fn occluded_packet(&self, at: Reached, rays: RaySet, packet: &mut Packet) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
+        packet.reach(at.instance, self.cylinders.described());
         let block = &self.blocks[at.primitive as usize];
         let mut blocked = RaySet::EMPTY;
         for lane in 0..block.len() {

@@ -119,6 +119,7 @@ impl<E: Ends> UserGeometry for SingleCylinders<E> {
     fn intersect(&self, at: Reached, _: &Ray32, query: &mut Query) -> Option<f32> {
         counters::called_back();
         query.callbacks += 1;
+        query.reach(at.instance, self.cylinders.described());
         let before = query.bound();
         let record = self.cylinders.record(at.primitive);
         query.visit(&self.cylinder(record), &self.cylinders, record);
@@ -129,6 +130,7 @@ impl<E: Ends> UserGeometry for SingleCylinders<E> {
     fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
         counters::called_back();
         query.callbacks += 1;
+        query.reach(at.instance, self.cylinders.described());
         query.meets(&self.cylinder(self.cylinders.record(at.primitive)))
     }
 
@@ -142,6 +144,7 @@ impl<E: Ends> UserGeometry for SingleCylinders<E> {
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
+        packet.reach(at.instance, self.cylinders.described());
         let record = self.cylinders.record(at.primitive);
         packet.visit::<E>(
             &self.cylinder(record),
@@ -155,6 +158,7 @@ impl<E: Ends> UserGeometry for SingleCylinders<E> {
     fn occluded_packet(&self, at: Reached, rays: RaySet, packet: &mut Packet) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
+        packet.reach(at.instance, self.cylinders.described());
         let record = self.cylinders.record(at.primitive);
         packet.meets::<E>(&self.cylinder(record), rays)
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::members::Members;
 use super::numbers::Numbers;
 use crate::embree::{Box32, GREATEST_PACKET, Ray32, RaySet, Reached, UserGeometry};
-use crate::math::Bounds;
+use crate::math::{Bounds, ChildFromParent};
 use crate::scene::{self, PrototypeIndex, Scene};
 use crate::tracer::counters;
 use crate::tracer::frame::Frame;
@@ -47,6 +47,18 @@ impl Described {
     pub fn primitive(&self, member: Member) -> u32 {
         let Member { kind, record } = member;
         self.prototype().primitive(kind, record as usize)
+    }
+
+    /// Where the solids' Embree scene is.
+    #[inline(always)]
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// The way into the solids' prototype through a placement in another one.
+    pub fn way_from(&self, parent: PrototypeIndex, placement: u32) -> ChildFromParent {
+        let placements = &self.scene.prototypes[parent.0 as usize].placements;
+        ChildFromParent::new(&placements[placement as usize].parent_from_child)
     }
 
     /// A box in the frame of the Embree scene.
@@ -115,6 +127,7 @@ impl<S: TracedSolid> UserGeometry for SolidList<S> {
     fn intersect(&self, at: Reached, _: &Ray32, query: &mut Query) -> Option<f32> {
         counters::called_back();
         query.callbacks += 1;
+        query.reach(at.instance, &self.described);
         let before = query.bound();
         query.visit_solid(self, self.numbers.number(at.primitive));
         (query.bound() < before).then(|| query.t_far())
@@ -123,6 +136,7 @@ impl<S: TracedSolid> UserGeometry for SolidList<S> {
     fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
         counters::called_back();
         query.callbacks += 1;
+        query.reach(at.instance, &self.described);
         query.meets_solid(self.of_primitive(at.primitive))
     }
 
@@ -137,6 +151,7 @@ impl<S: TracedSolid> UserGeometry for SolidList<S> {
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
+        packet.reach(at.instance, &self.described);
         packet.visit_solid(self, self.numbers.number(at.primitive), rays, t_far)
     }
 
@@ -144,6 +159,7 @@ impl<S: TracedSolid> UserGeometry for SolidList<S> {
     fn occluded_packet(&self, at: Reached, rays: RaySet, packet: &mut Packet) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
+        packet.reach(at.instance, &self.described);
         packet.meets_solid(self.of_primitive(at.primitive), rays)
     }
 }
