@@ -18,7 +18,8 @@ use locate::{Embree, VARIABLES, locate};
 
 /// The C functions that Rust calls itself; all others stay out of the bindings.
 const FUNCTIONS: &str = "cyltrace_.*|rtc(New|Release)(Device|Scene|Geometry)\
-    |rtc(Attach|Commit)Geometry|rtc(Commit|JoinCommit)Scene|rtcGetSceneBounds|rtcSetSceneFlags\
+    |rtc(Attach|Commit)Geometry|rtcAttachGeometryByID|rtc(Commit|JoinCommit)Scene\
+    |rtcGetSceneBounds|rtcSetSceneFlags\
     |rtcGetDevice(Property|Error)|rtcSetDevice(Error|MemoryMonitor)Function\
     |rtcSetGeometry(InstancedScene|Transform|Mask|UserData|UserPrimitiveCount)|rtcSetNewGeometryBuffer\
     |rtcSetGeometry(Bounds|Intersect|Occluded|IntersectFilter)Function";

@@ -1,17 +1,18 @@
 //! Embree's own instances: a committed scene placed in another by an f32 map.
 //!
-//! The tracer places prototypes itself, in f64. These are here to be measured
-//! against it and to witness its answers; they hold what Embree intersects by
-//! itself. One level of them is what every build of Embree has.
+//! Embree inverts the map in f32, takes its f32 ray through it, and traces the scene
+//! with that; callbacks within get [`Reached::instance`](super::Reached). One level of
+//! instances is what every build of Embree has.
 
 use std::sync::Arc;
 
 use super::error::Error;
+use super::query::Query;
 use super::ray::is_inside;
 use super::scene::{GeometryHandle, GeometryId, Scene, SceneBuilder};
 use super::sys;
 
-impl SceneBuilder<()> {
+impl<Q: Query> SceneBuilder<Q> {
     /// Adds an instance of `scene`, which it keeps. The map takes the scene's
     /// space to this one; it is three rows of three coefficients and a shift.
     ///
@@ -24,9 +25,33 @@ impl SceneBuilder<()> {
     /// instances itself; when it is of another device, or Embree refuses.
     pub fn attach_instance(
         &mut self,
-        scene: &Arc<Scene<()>>,
+        scene: &Arc<Scene<Q>>,
         parent_from_scene: &[[f32; 4]; 3],
     ) -> Result<GeometryId, Error> {
+        let instance = self.new_instance(scene, parent_from_scene)?;
+        self.attach(&instance)
+    }
+
+    /// As [`attach_instance`](Self::attach_instance), with a number that the caller
+    /// chooses. Embree's memory grows with the greatest number.
+    ///
+    /// # Errors
+    /// Likewise, and when the number is taken.
+    pub fn attach_instance_as(
+        &mut self,
+        number: GeometryId,
+        scene: &Arc<Scene<Q>>,
+        parent_from_scene: &[[f32; 4]; 3],
+    ) -> Result<(), Error> {
+        let instance = self.new_instance(scene, parent_from_scene)?;
+        self.attach_as(number, &instance)
+    }
+
+    fn new_instance(
+        &mut self,
+        scene: &Arc<Scene<Q>>,
+        parent_from_scene: &[[f32; 4]; 3],
+    ) -> Result<GeometryHandle, Error> {
         check_map(parent_from_scene)?;
         if !scene.is_of(self.device()) {
             return Err(Error::OtherDevice);
@@ -51,7 +76,7 @@ impl SceneBuilder<()> {
             );
         }
         self.device().check("set an instance's map")?;
-        self.attach(&instance)
+        Ok(instance)
     }
 }
 

@@ -5,7 +5,7 @@
 //! which thread learns of an error; so threads are counted in and out here, and
 //! the last one out makes the scene or the error that all of them get.
 
-use std::sync::{Condvar, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, OnceLock, PoisonError};
 
 use super::error::Error;
 use super::float_mode::with_default_float_mode;
@@ -19,7 +19,7 @@ use super::sys;
 /// It is for scenes that are built when a ray first needs them: threads that get
 /// there while the build goes on join it rather than wait for it.
 pub struct JointCommit<Q: Query> {
-    built: OnceLock<Result<Scene<Q>, Error>>,
+    built: OnceLock<Result<Arc<Scene<Q>>, Error>>,
     work: Mutex<Work>,
     /// Told when `built` is.
     finished: Condvar,
@@ -64,7 +64,7 @@ impl<Q: Query> JointCommit<Q> {
     /// # Errors
     /// Those of [`SceneBuilder::commit`](super::SceneBuilder::commit), the same for
     /// every thread.
-    pub fn join(&self) -> Result<&Scene<Q>, Error> {
+    pub fn join(&self) -> Result<&Arc<Scene<Q>>, Error> {
         if self.built.get().is_none() {
             self.build();
         }
@@ -110,6 +110,7 @@ impl<Q: Query> JointCommit<Q> {
     fn finish(&self, work: &mut Work) {
         let parts = work.parts.take().expect("one builder is the last");
         let built = work.error.take().map_or_else(|| parts.into_scene(), Err);
+        let built = built.map(Arc::new);
         assert!(self.built.set(built).is_ok(), "one builder is the last");
         self.finished.notify_all();
     }

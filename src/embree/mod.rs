@@ -34,7 +34,7 @@
 //!    time. A geometry's `Query` is its scene's `Q`; the filter function that
 //!    collects hits `H` is set in scenes whose `Q` is `Vec<H>`, by code that
 //!    exists for those only; of their `Packet` there is no value. An instanced scene has the `Q` of the scene that
-//!    it is placed in, which is `()`. A nested query borrows from the reference
+//!    it is placed in, so that callbacks in an instance get the same pointer. A nested query borrows from the reference
 //!    its callback was given and ends before it.
 //! 5. **Builders write, scenes read.** Until [`SceneBuilder::commit`] one owner
 //!    holds the Embree scene and no query can run; afterwards nothing is
@@ -56,7 +56,7 @@
 //! # What is left out, and why
 //! | Embree | why |
 //! |---|---|
-//! | instances of more than one level, instance arrays | placements are user geometry: f64 transforms, any depth |
+//! | instances of more than one level, instance arrays | further levels are user geometry: f64 transforms, any depth |
 //! | ray streams | gone in Embree 4 |
 //! | filter functions but the one that collects, ray masks | a user geometry itself accepts or refuses; all masks are ones |
 //! | motion blur, subdivision, grids, ray-facing discs, other curves | nothing here moves or is made of them |

@@ -14,7 +14,7 @@ use super::sys;
 use super::user::{UserData, UserGeometry, new_user_geometry};
 
 /// The number of a geometry in its scene; they count from 0 in the order in
-/// which they were attached.
+/// which they were attached, but for instances with numbers of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct GeometryId(pub u32);
 
@@ -66,6 +66,11 @@ impl Drop for GeometryHandle {
     }
 }
 
+/// A scene that others have instances of, whatever its queries.
+trait Instanced: Send + Sync {}
+
+impl<Q: Query> Instanced for Scene<Q> {}
+
 /// An Embree scene and what has to outlive it; the order of the fields is the
 /// order in which they are dropped (invariant 2).
 pub(super) struct Parts {
@@ -74,7 +79,7 @@ pub(super) struct Parts {
     /// holds a pointer into it. There is no second owner.
     user_data: Vec<(GeometryId, Arc<dyn UserData>)>,
     /// Scenes that this one has instances of.
-    instanced: Vec<Arc<Scene<()>>>,
+    instanced: Vec<Arc<dyn Instanced>>,
     device: Device,
 }
 
@@ -153,19 +158,35 @@ impl<Q: Query> SceneBuilder<Q> {
     }
 
     /// Keeps a scene as long as this one.
-    pub(super) fn keep(&mut self, scene: Arc<Scene<()>>) {
+    pub(super) fn keep(&mut self, scene: Arc<Scene<Q>>) {
         self.parts.instanced.push(scene);
     }
 
     /// Commits a geometry and gives the scene a reference to it.
     pub(super) fn attach(&mut self, geometry: &GeometryHandle) -> Result<GeometryId, Error> {
-        // SAFETY: invariants 1 and 5.
-        unsafe { sys::rtcCommitGeometry(geometry.raw()) };
-        self.device().check("commit a geometry")?;
+        self.commit_geometry(geometry)?;
         // SAFETY: invariants 1 and 5.
         let id = unsafe { sys::rtcAttachGeometry(self.parts.handle.0, geometry.raw()) };
         self.device().check("attach a geometry")?;
         Ok(GeometryId(id))
+    }
+
+    /// As [`attach`](Self::attach), with a number that is chosen.
+    pub(super) fn attach_as(
+        &mut self,
+        number: GeometryId,
+        geometry: &GeometryHandle,
+    ) -> Result<(), Error> {
+        self.commit_geometry(geometry)?;
+        // SAFETY: invariants 1 and 5.
+        unsafe { sys::rtcAttachGeometryByID(self.parts.handle.0, geometry.raw(), number.0) };
+        self.device().check("attach a geometry by its number")
+    }
+
+    fn commit_geometry(&self, geometry: &GeometryHandle) -> Result<(), Error> {
+        // SAFETY: invariants 1 and 5.
+        unsafe { sys::rtcCommitGeometry(geometry.raw()) };
+        self.device().check("commit a geometry")
     }
 
     /// Builds the hierarchy. `bounds` of user geometries is called from this

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::prototype::{Prototype, Workshop};
+use super::prototype::{Outlines, Prototype, Workshop};
 use crate::embree;
 use crate::math::{ChildFromParent, PlacementErrors};
 use crate::scene::{
@@ -231,9 +231,11 @@ pub(crate) fn make(
     scene: &Arc<Scene>,
     plan: &Plan,
 ) -> Vec<Option<Arc<Prototype>>> {
+    let mut outlines = Outlines::new(scene, &plan.order);
     let mut made = vec![None; scene.prototypes.len()];
     for &index in &plan.order {
-        made[index.0 as usize] = Prototype::new(workshop, scene, index, &made);
+        let groups = (index, outlines.take(index));
+        made[index.0 as usize] = Prototype::new(workshop, scene, groups, &made);
     }
     made
 }

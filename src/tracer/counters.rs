@@ -13,7 +13,8 @@ pub struct Counts {
     pub callbacks: u64,
     /// Rays put to a cylinder, or to a block of cylinders, which counts once.
     pub solves: u64,
-    /// Rays handed on to a placed prototype.
+    /// Rays handed on to a placed prototype. A packet that a callback in an instance of
+    /// Embree's needs there counts once.
     pub placements: u64,
 }
 

@@ -33,6 +33,7 @@ use std::sync::Arc;
 pub use all_hits::{AllHits, DEFAULT_BATCH};
 pub use build::TracerError;
 pub use contains::Containing;
+use estimate::INSTANCE_BYTES;
 pub use estimate::MemoryEstimate;
 pub use filter::FilterLosses;
 pub use first_hit::FirstHit;
@@ -87,7 +88,6 @@ impl Tracer {
             device: device.clone(),
             layout: options.layout,
             view: options.view,
-            instructions: device.instructions(),
             packet_width: device.packet_width(),
             threads: options
                 .threads
@@ -226,7 +226,8 @@ impl Tracer {
             other_solids_unique: self.counted.other_solids_unique,
             other_solids_instanced: self.counted.other_solids_instanced,
             instances: self.counted.instances,
-            embree_bytes: self.device.memory_bytes(),
+            embree_instances: self.embree_instances(),
+            embree_bytes: self.device.memory_bytes() + self.uncounted_bytes(),
             records_bytes: self.counted.described_bytes + kept,
             skipped: self
                 .counted
@@ -234,6 +235,19 @@ impl Tracer {
             embree_version: self.device.version().to_string(),
             isa: self.isa.to_owned(),
         }
+    }
+
+    /// Embree's memory that it does not count: that of instances, before version 4.
+    fn uncounted_bytes(&self) -> usize {
+        if self.device.version().major >= 4 {
+            return 0;
+        }
+        (self.embree_instances() * INSTANCE_BYTES) as usize
+    }
+
+    fn embree_instances(&self) -> u64 {
+        let prototypes = self.prototypes.iter().flatten();
+        prototypes.map(|prototype| prototype.instances()).sum()
     }
 
     /// The scene that was built.

@@ -23,6 +23,8 @@ pub struct Statistics {
     /// Placements in the scene, those within placed prototypes counted each
     /// time.
     pub instances: u128,
+    /// Placements that are instances of Embree's own, of what is built.
+    pub embree_instances: u64,
     /// Memory that Embree holds.
     pub embree_bytes: usize,
     /// Memory of the records of solids and placements.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use cyltrace::embree::{
     Box32, Coherence, Device, DeviceOptions, Error, GREATEST_PACKET, GeometryId, NativeHit,
-    PacketWidth, Ray32, RaySet, Rays32, Reached, Scene, SceneBuilder, UserGeometry,
+    PacketWidth, Query, Ray32, RaySet, Rays32, Reached, Scene, SceneBuilder, UserGeometry,
 };
 
 const IDENTITY: [[f32; 4]; 3] = [
@@ -227,4 +227,105 @@ fn instance_of_another_device_s_scene_is_refused() {
     let other = device();
     let found = builder(&other).attach_instance(&child, &IDENTITY);
     assert_eq!(found, Err(Error::OtherDevice));
+}
+
+/// The instances that callbacks were in, in order.
+#[derive(Default)]
+struct Visits(Vec<Option<GeometryId>>);
+
+impl Query for Visits {
+    type Packet = Self;
+}
+
+/// The unit cube, which says where it is reached and is never hit.
+struct Witness;
+
+impl UserGeometry for Witness {
+    type Query = Visits;
+
+    fn primitive_count(&self) -> u32 {
+        1
+    }
+
+    fn bounds(&self, _: u32) -> Box32 {
+        Box32 {
+            lower: [0.0; 3],
+            upper: [1.0; 3],
+        }
+    }
+
+    fn intersect(&self, at: Reached, ray: &Ray32, visits: &mut Visits) -> Option<f32> {
+        // Embree's ray is in the child's space: the instances below move by 10 each.
+        assert!(ray.origin[0].abs() < 1.0, "{ray:?}");
+        visits.0.push(at.instance);
+        None
+    }
+
+    fn occluded(&self, at: Reached, ray: &Ray32, visits: &mut Visits) -> bool {
+        self.intersect(at, ray, visits).is_some()
+    }
+
+    fn intersect_packet(
+        &self,
+        at: Reached,
+        _: RaySet,
+        _: &Rays32,
+        _: &mut [f32; GREATEST_PACKET],
+        visits: &mut Visits,
+    ) -> RaySet {
+        visits.0.push(at.instance);
+        RaySet::EMPTY
+    }
+
+    fn occluded_packet(&self, at: Reached, _: RaySet, _: &Rays32, visits: &mut Visits) -> RaySet {
+        visits.0.push(at.instance);
+        RaySet::EMPTY
+    }
+}
+
+#[test]
+fn callbacks_learn_the_number_that_was_chosen_for_their_instance() {
+    let device = device();
+    let mut child = SceneBuilder::<Visits>::new(&device).unwrap();
+    child.attach_user(Witness).unwrap();
+    let child = Arc::new(child.commit().unwrap());
+    let mut parent = SceneBuilder::<Visits>::new(&device).unwrap();
+    let numbers = [7, 2, 1000].map(GeometryId);
+    for (place, number) in numbers.into_iter().enumerate() {
+        let mut map = IDENTITY;
+        map[0][3] = 10.0 * (place as f32 + 1.0);
+        parent.attach_instance_as(number, &child, &map).unwrap();
+    }
+    let taken = parent.attach_instance_as(GeometryId(7), &child, &IDENTITY);
+    assert!(taken.is_err(), "{taken:?}");
+    // Further geometry gets a number that is free.
+    let further = parent.attach_instance(&child, &IDENTITY).unwrap();
+    assert!(!numbers.contains(&further), "{further:?}");
+    let scene = parent.commit().unwrap();
+
+    let all = [further, numbers[0], numbers[1], numbers[2]];
+    for (place, number) in all.into_iter().enumerate() {
+        let expected = vec![Some(number)];
+        let x = 10.0 * place as f32 + 0.5;
+        let up = ray([x, 0.5, -1.0], [0.0, 0.0, 1.0]);
+        let mut visits = Visits::default();
+        scene.closest(&up, &mut visits);
+        assert_eq!(visits.0, expected);
+        visits.0.clear();
+        assert!(!scene.any(&up, &mut visits));
+        assert_eq!(visits.0, expected);
+        let rays = Rays32 {
+            origin: [[x; _], [0.5; _], [-1.0; _]],
+            direction: [[0.0; _], [0.0; _], [1.0; _]],
+            t_far: [f32::INFINITY; _],
+        };
+        for width in PacketWidth::ALL {
+            let all = RaySet::first(width.rays());
+            visits.0.clear();
+            scene.closest_packet(&rays, all, width, Coherence::Incoherent, &mut visits);
+            scene.any_packet(&rays, all, width, Coherence::Incoherent, &mut visits);
+            assert!(!visits.0.is_empty(), "{width:?}");
+            assert!(visits.0.iter().all(|one| *one == expected[0]), "{width:?}");
+        }
+    }
 }

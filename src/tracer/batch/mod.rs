@@ -99,7 +99,7 @@ impl Tracer {
         alone: impl Fn(&Ray) -> (T, u32),
         together: impl Fn(&Prototype, &mut Usual, &mut Vec<T>),
     ) {
-        let (mut habit, mut usual) = (Habit::default(), Usual::new());
+        let (mut habit, mut usual) = (Habit::default(), Usual::new(self.device.instructions()));
         let mut answer = |rays: &[Ray], answers: &mut Vec<T>| match &self.root {
             Some(root) if self.are_packet(rays, &mut habit) && usual.fill(self, rays) => {
                 together(root, &mut usual, answers);

@@ -1,6 +1,6 @@
 //! The rays of a packet as they are traced.
 
-use crate::embree::{GREATEST_PACKET, RaySet};
+use crate::embree::{GREATEST_PACKET, Instructions, RaySet};
 use crate::math::{LANES, Lanes, Ray};
 use crate::tracer::Tracer;
 use crate::tracer::frame::{LocalRay, PacketRays, ROWS};
@@ -16,11 +16,11 @@ pub(super) struct Usual {
 }
 
 impl Usual {
-    /// No rays yet.
-    pub fn new() -> Self {
+    /// No rays yet, to be computed with these instructions.
+    pub fn new(instructions: Instructions) -> Self {
         Self {
             all: RaySet::EMPTY,
-            packet: Packet::new(),
+            packet: Packet::new(instructions),
             local: PacketRays::NOWHERE,
             factors: [1.0; GREATEST_PACKET],
         }

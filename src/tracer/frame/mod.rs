@@ -18,16 +18,16 @@ mod rays;
 
 use glam::DVec3;
 
-pub(crate) use packet::{Enter, IntoChild, PacketEntry, PacketLevel, PacketRays, ROWS, Rows};
+pub(crate) use packet::{
+    Enter, IntoChild, IntoInstance, PacketEntry, PacketLevel, PacketRays, ROWS, Rows,
+};
 pub(crate) use rays::{Level, LocalRay, Window};
 
 use crate::embree::{Box32, Ray32};
-use crate::math::{
-    Bounds, DoubleDouble, UNIT_ROUNDOFF, f32_above, f32_below, power_of_two, power_of_two_below,
-};
+use crate::math::{Bounds, DoubleDouble, UNIT_ROUNDOFF, f32_above, f32_below, power_of_two_below};
 
-/// By how much boxes are grown on every side, in radii of the bounding sphere.
-/// The proof needs 18 · 2^-24 of it for single rays and 22 · 2^-24 for packets; the
+/// By how much boxes are grown on every side, in radii of the bounding sphere, where the
+/// prototype is in no instance of Embree's. The proof needs 18 · 2^-24 of it for single rays and 22 · 2^-24 for packets; the
 /// next power of two is 2^-19.
 pub(crate) const BOX_GROWTH: f64 = 1.0 / (1 << 19) as f64;
 
@@ -46,6 +46,8 @@ pub(crate) struct Frame {
     scale: f64,
     /// R, the radius of the bounding sphere in the frame, rounded up.
     radius: f64,
+    /// By how much boxes are grown on every side, in the frame.
+    growth: f64,
     /// The prototype's box in the frame, grown.
     lower: DVec3,
     upper: DVec3,
@@ -59,14 +61,23 @@ impl Frame {
         let radius = corner.length() * (1.0 + 8.0 * UNIT_ROUNDOFF);
         let scale = 1.0 / power_of_two_below(radius);
         let radius = radius * scale;
-        let grow = radius * BOX_GROWTH;
+        let growth = radius * BOX_GROWTH;
         Self {
             centre,
             scale,
             radius,
-            lower: (bounds.lower - centre) * scale - grow,
-            upper: (bounds.upper - centre) * scale + grow,
+            growth,
+            lower: (bounds.lower - centre) * scale - growth,
+            upper: (bounds.upper - centre) * scale + growth,
         }
+    }
+
+    /// Grows boxes by at least this share of the radius.
+    pub fn grow_to(&mut self, share: f64) {
+        let further = (self.radius * share - self.growth).max(0.0);
+        self.growth += further;
+        self.lower -= further;
+        self.upper += further;
     }
 
     /// The middle of the prototype's box.
@@ -74,7 +85,7 @@ impl Frame {
         self.centre
     }
 
-    /// Units of the frame in one of the prototype's space.
+    /// Units of the frame in one unit of the prototype's space.
     pub fn scale(&self) -> f64 {
         self.scale
     }
@@ -84,10 +95,16 @@ impl Frame {
         (point - self.centre) * self.scale
     }
 
-    /// By how much boxes are grown, in the frame. It covers what Embree's ray may be off
-    /// from the solver's, and roundings of f32 beside: `tracer::filter` derives how much.
+    /// The radius of the bounding sphere in the frame, from 1 to 2.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// By how much boxes are grown on every side, in the frame. It covers what Embree's
+    /// ray may be off from the solver's on its way through the sphere, in instances too, and
+    /// the roundings of f32 beside: `tracer::filter` derives how much.
     pub fn slack(&self) -> f64 {
-        self.radius * BOX_GROWTH
+        self.growth
     }
 
     /// The f32 box for a box of the prototype's space, grown and rounded
@@ -102,11 +119,17 @@ impl Frame {
         }
     }
 
+    /// Whether a ray starts so far away that it has to be moved nearer.
+    #[inline(always)]
+    fn is_far(&self, ray: &LocalRay) -> bool {
+        is_far(ray.origin_from(self.centre) * self.scale)
+    }
+
     /// The ray as the solvers of this prototype get it. A ray that comes to a
     /// prototype has not been moved in it: its base is zero.
+    #[inline]
     pub fn approach(&self, ray: &LocalRay) -> LocalRay {
-        let origin = ray.origin_from(self.centre) * self.scale;
-        if is_far(origin) {
+        if self.is_far(ray) {
             self.approached(ray).0
         } else {
             *ray
@@ -115,13 +138,8 @@ impl Frame {
 
     /// That ray, and its point nearest to the centre.
     fn approached(&self, ray: &LocalRay) -> (LocalRay, Passing) {
-        self.moved_if_far(ray, self.passing(ray))
-    }
-
-    /// The same, where it is known how the ray passes the centre.
-    #[inline(always)]
-    fn moved_if_far(&self, ray: &LocalRay, passing: Passing) -> (LocalRay, Passing) {
         debug_assert_eq!(ray.base, DVec3::ZERO, "the ray was moved before");
+        let passing = self.passing(ray);
         if passing.is_far {
             self.approach_from_afar(ray, passing.nearest)
         } else {
@@ -193,22 +211,29 @@ impl Frame {
     /// Embree scene, or `None` where nothing in `[t_min, t_max]` can be hit.
     pub fn enter(&self, ray: &LocalRay, t_min: f64, t_max: f64) -> Option<(Level, Ray32)> {
         if let Some(entry) = self.entry_from_inside(ray, t_min, t_max) {
-            let (ray, window) = (*ray, entry.window);
-            return entry
-                .is_inside
-                .then_some((Level { ray, window }, entry.ray32));
+            return entry.of(ray);
         }
         let passing = self.passing(ray);
-        if passing.is_far && self.is_missed_from_afar(&passing) {
+        if passing.is_far {
+            return self.enter_from_afar(ray, &passing, t_min, t_max);
+        }
+        self.entry(ray, &passing, t_min, t_max).of(ray)
+    }
+
+    /// As [`Frame::enter`], for a ray that has to be moved nearer.
+    #[cold]
+    fn enter_from_afar(
+        &self,
+        ray: &LocalRay,
+        passing: &Passing,
+        t_min: f64,
+        t_max: f64,
+    ) -> Option<(Level, Ray32)> {
+        if self.is_missed_from_afar(passing) {
             return None;
         }
-        let (ray, passing) = self.moved_if_far(ray, passing);
-        let entry = self.entry(&ray, &passing, t_min, t_max);
-        let level = Level {
-            ray,
-            window: entry.window,
-        };
-        entry.is_inside.then_some((level, entry.ray32))
+        let (ray, passing) = self.approach_from_afar(ray, passing.nearest);
+        self.entry(&ray, &passing, t_min, t_max).of(&ray)
     }
 
     /// Where a ray enters that starts within the sphere, as most rays from
@@ -267,7 +292,7 @@ impl Frame {
             window,
             ray32: Ray32 {
                 origin: [start.x as f32, start.y as f32, start.z as f32],
-                direction: direction.to_array().map(without_tiny),
+                direction: direction.to_array().map(in_steps),
                 t_near: 0.0,
                 t_far: window.length_to(end),
             },
@@ -288,8 +313,8 @@ impl Frame {
         Level { ray, window }
     }
 
-    /// Whether the stretch of the ray meets the prototype's grown box. The
-    /// growth dwarfs the roundings here.
+    /// Whether the stretch of the ray meets the prototype's grown box, which Embree does not
+    /// test where a scene has few primitives. The growth dwarfs the roundings here.
     #[inline(always)]
     fn meets_box(&self, start: DVec3, direction: DVec3, length: f64) -> bool {
         let inverse = direction.recip();
@@ -311,22 +336,18 @@ fn is_far(origin: DVec3) -> bool {
     !(origin.abs().max_element() <= FAR)
 }
 
-/// Below this, a component of a direction whose largest is from 1 to 2 is zero to Embree:
-/// the least power of two above the 1e-18 of its `rcp_safe`.
-const LEAST_COMPONENT: f64 = power_of_two(-59);
+/// What added to a number below 2 in size and taken off again leaves a multiple of 2^-30.
+const ROUNDER: f64 = 1.5 * (1 << 22) as f64;
 
 /// A component of a direction for Embree, which takes one of at most 1e-18 in size for
 /// +1e-18, whatever its sign. For coherent packets it picks rays of like directions by
 /// the signs of their components, and then relies on the signs of the inverses: so one ray
-/// with -1e-19 beside one with -1e-17 makes the packet miss boxes. Zero has one sign. It
-/// moves a ray by less than 2^-56 on its way of at most 4 through the sphere.
+/// with -1e-19 beside one with -1e-17 makes the packet miss boxes. Multiples of 2^-30 are
+/// zero, which has one sign, or large enough. It moves a ray by less than 2^-29 on its way of at
+/// most 4 through the sphere, a 32nd of what rounding to f32 does.
 #[inline(always)]
-fn without_tiny(component: f64) -> f32 {
-    if component.abs() < LEAST_COMPONENT {
-        0.0
-    } else {
-        component as f32
-    }
+fn in_steps(component: f64) -> f32 {
+    ((component + ROUNDER) - ROUNDER) as f32
 }
 
 /// How a ray passes the middle of a prototype.
@@ -350,4 +371,16 @@ struct Entry {
     ray32: Ray32,
     /// Whether anything can be hit; the rest has no meaning where not.
     is_inside: bool,
+}
+
+impl Entry {
+    /// That of a ray in the prototype's own space, if it is inside.
+    #[inline(always)]
+    fn of(&self, ray: &LocalRay) -> Option<(Level, Ray32)> {
+        let level = Level {
+            ray: *ray,
+            window: self.window,
+        };
+        self.is_inside.then_some((level, self.ray32))
+    }
 }

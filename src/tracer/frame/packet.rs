@@ -108,6 +108,39 @@ impl Kernel for IntoChild<'_> {
     }
 }
 
+/// The rays of a packet as the solvers of a prototype in an instance get them: into the
+/// child, and nearer to it where they are far away.
+pub(crate) struct IntoInstance<'a> {
+    pub rays: &'a PacketRays,
+    pub way: &'a ChildFromParent,
+    pub frame: &'a Frame,
+}
+
+impl Kernel for IntoInstance<'_> {
+    type Answer = PacketRays;
+
+    #[inline(always)]
+    fn run(self) -> PacketRays {
+        let mut in_child = IntoChild {
+            rays: self.rays,
+            way: self.way,
+        }
+        .run();
+        let mut far = [false; GREATEST_PACKET];
+        for row in 0..ROWS {
+            for lane in 0..LANES {
+                far[row * LANES + lane] = self.frame.is_far(&in_child.ray(row, lane));
+            }
+        }
+        for number in RaySet::of(&far) {
+            let (row, lane) = (number / LANES, number % LANES);
+            let nearer = self.frame.approach(&in_child.ray(row, lane));
+            in_child.set(row, lane, &nearer);
+        }
+        in_child
+    }
+}
+
 /// [`Frame::enter`] of a packet.
 pub(crate) struct Enter<'a> {
     pub frame: &'a Frame,
@@ -243,10 +276,10 @@ impl Enter<'_> {
             let (row, lane) = (number / LANES, number % LANES);
             let ray = self.rays.ray(row, lane);
             let passing = self.frame.passing(&ray);
-            if passing.is_far && self.frame.is_missed_from_afar(&passing) {
+            if self.frame.is_missed_from_afar(&passing) {
                 continue;
             }
-            let (ray, passing) = self.frame.moved_if_far(&ray, passing);
+            let (ray, passing) = self.frame.approach_from_afar(&ray, passing.nearest);
             let (t_min, t_max) = (self.t_min[row].0[lane], self.t_max[row].0[lane]);
             let one = self.frame.entry(&ray, &passing, t_min, t_max);
             entry.level.rays.set(row, lane, &ray);

@@ -169,6 +169,7 @@ impl<S: Filtered> UserGeometry for Blocked<S> {
         if near.lanes == 0 {
             return None;
         }
+        query.reach(at.instance, self.solids.described());
         let before = query.bound();
         for record in near {
             self.solids.visit(record, query);
@@ -180,7 +181,12 @@ impl<S: Filtered> UserGeometry for Blocked<S> {
     fn occluded(&self, at: Reached, ray: &Ray32, query: &mut Query) -> bool {
         counters::called_back();
         query.callbacks += 1;
-        for record in self.near(at.primitive, ray) {
+        let near = self.near(at.primitive, ray);
+        if near.lanes == 0 {
+            return false;
+        }
+        query.reach(at.instance, self.solids.described());
+        for record in near {
             if self.solids.meets(record, query) {
                 return true;
             }
@@ -200,6 +206,10 @@ impl<S: Filtered> UserGeometry for Blocked<S> {
         counters::called_back();
         packet.callbacks += 1;
         let near = self.near_packet(at.primitive, rays, rays32);
+        if near.iter().all(|rays| rays.is_empty()) {
+            return RaySet::EMPTY;
+        }
+        packet.reach(at.instance, self.solids.described());
         let mut shorter = RaySet::EMPTY;
         for (&record, near) in self.records(at.primitive).iter().zip(near) {
             if !near.is_empty() {
@@ -220,6 +230,10 @@ impl<S: Filtered> UserGeometry for Blocked<S> {
         counters::called_back();
         packet.callbacks += 1;
         let near = self.near_packet(at.primitive, rays, rays32);
+        if near.iter().all(|rays| rays.is_empty()) {
+            return RaySet::EMPTY;
+        }
+        packet.reach(at.instance, self.solids.described());
         let mut blocked = RaySet::EMPTY;
         for (&record, near) in self.records(at.primitive).iter().zip(near) {
             let near = near - blocked;

@@ -99,6 +99,11 @@ impl<E: Ends> KnownCylinders<E> {
 }
 
 impl<E: Ends> Solids for KnownCylinders<E> {
+    #[inline(always)]
+    fn described(&self) -> &Described {
+        self.cylinders.described()
+    }
+
     fn len(&self) -> u32 {
         self.cylinders.len()
     }

@@ -7,7 +7,7 @@ use super::members::Members;
 use super::numbers::Numbers;
 use super::solids::Solids;
 use crate::embree::{Box32, GREATEST_PACKET, RaySet, prefetch};
-use crate::math::Bounds;
+use crate::math::{Bounds, ChildFromParent};
 use crate::scene::{self, PrototypeIndex, Scene};
 use crate::tracer::frame::Frame;
 use crate::tracer::query::{Member, Packet, Query};
@@ -49,9 +49,16 @@ impl Described {
         self.prototype().primitive(kind, record as usize)
     }
 
-    /// The frame of the Embree scene.
+    /// Where the solids' Embree scene is.
+    #[inline(always)]
     pub fn frame(&self) -> &Frame {
         &self.frame
+    }
+
+    /// The way into the solids' prototype through a placement in another one.
+    pub fn way_from(&self, parent: PrototypeIndex, placement: u32) -> ChildFromParent {
+        let placements = &self.scene.prototypes[parent.0 as usize].placements;
+        ChildFromParent::new(&placements[placement as usize].parent_from_child)
     }
 
     /// A box in the frame of the Embree scene.
@@ -92,6 +99,11 @@ impl<S: TracedSolid> SolidList<S> {
 }
 
 impl<S: TracedSolid> Solids for SolidList<S> {
+    #[inline(always)]
+    fn described(&self) -> &Described {
+        &self.described
+    }
+
     fn len(&self) -> u32 {
         self.numbers.len()
     }

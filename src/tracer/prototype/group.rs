@@ -8,15 +8,13 @@
 
 use std::sync::{Arc, OnceLock};
 
-use rayon::prelude::*;
-
 use super::attach::{attach_cylinders, attach_solids};
 use super::blocks::block_bytes;
 use super::cylinders::Cylinders;
 use super::described::{Described, SolidList};
 use super::members::{List, Members};
+use super::outline::Outline;
 use super::placements::Placements;
-use super::sight::Sight;
 use super::{Children, Prototype, Workshop, stays_packet};
 use crate::embree::{self, Coherence, GREATEST_PACKET, JointCommit, RaySet, SceneBuilder};
 use crate::math::Bounds;
@@ -32,6 +30,7 @@ pub(crate) struct Group {
     /// and what roundings on the way through placements can add to it.
     pub reach: Bounds,
     pub frame: Frame,
+    prototype: PrototypeIndex,
     /// What it contains of the prototype.
     pub members: Members,
     cylinders: Cylinders,
@@ -42,34 +41,19 @@ pub(crate) struct Group {
 }
 
 impl Group {
-    /// Makes a group of a prototype from its members and their box, which is not empty.
+    /// Makes a group of a prototype.
     pub fn new(
         workshop: &Workshop,
         description: &Arc<Scene>,
         index: PrototypeIndex,
-        (members, bounds): (Members, Bounds),
+        outline: Outline,
         children: &Children<Prototype>,
     ) -> Self {
         let prototype = &description.prototypes[index.0 as usize];
-        let lists: Vec<_> = members.placements().collect();
-        let placed = || {
-            lists.par_iter().flat_map(|&(group, numbers)| {
-                numbers.par_iter().filter_map(move |number| {
-                    let placement = &prototype.placements[number as usize];
-                    let child = children.of(placement.of)?.groups.get(group)?;
-                    Some((placement, child))
-                })
-            })
-        };
-        let sight = Sight::new(&bounds, placed().map(|(placement, _)| placement));
-        let reach = placed()
-            .map(|(placement, child)| sight.placement_reach(placement, &child.reach))
-            .reduce(|| bounds, |one, other| one.union(&other));
-        let frame = Frame::new(&reach);
-
         // Only in the root the rays are those of the caller.
         let view = workshop.view.filter(|_| index == PrototypeIndex::ROOT);
-        let placements = lists.iter().filter_map(|&(group, all)| {
+        let sight = outline.sight;
+        let placements = outline.members.placements().filter_map(|(group, all)| {
             let children = children.groups(group);
             (!children.is_empty()).then(|| {
                 let in_view = view.map(|view| {
@@ -80,26 +64,28 @@ impl Group {
                         })
                     })
                 });
+                let (instances, called_back) = outline.divide(in_view.as_ref().unwrap_or(all));
                 Arc::new(Placements {
-                    in_view: in_view.unwrap_or_else(|| all.clone()),
                     all: all.clone(),
+                    instances,
+                    called_back,
                     description: Arc::clone(description),
                     prototype: index,
-                    frame: frame.clone(),
+                    frame: outline.frame.clone(),
                     sight,
                     children,
-                    instructions: workshop.instructions,
                 })
             })
         });
         let placements = placements.collect();
-        let described = Described::new(description, index, &frame);
+        let described = Described::new(description, index, &outline.frame);
         Self {
-            reach,
-            cylinders: Cylinders::new(&described, &members),
-            frame,
+            reach: outline.reach,
+            cylinders: Cylinders::new(&described, &outline.members),
+            frame: outline.frame,
+            prototype: index,
             placements,
-            members,
+            members: outline.members,
             workshop: workshop.clone(),
             scene: OnceLock::new(),
         }
@@ -107,7 +93,8 @@ impl Group {
 
     /// The placements that rays may reach.
     pub fn placements_in_view(&self) -> impl Iterator<Item = u32> {
-        self.placements.iter().flat_map(|one| one.in_view.iter())
+        let placements = self.placements.iter();
+        placements.flat_map(|one| one.instances.iter().chain(one.called_back.iter()))
     }
 
     /// Builds the Embree scene, unless it is built.
@@ -135,22 +122,58 @@ impl Group {
     }
 
     #[inline]
-    fn joined(&self) -> Result<&embree::Scene<Query>, embree::Error> {
-        let scene = self.scene.get_or_init(|| self.begin());
+    pub fn joined(&self) -> Result<&Arc<embree::Scene<Query>>, embree::Error> {
+        let scene = self.scene.get();
+        let scene = scene.unwrap_or_else(|| self.ready());
         scene.as_ref().map_err(Clone::clone)?.join()
+    }
+
+    /// Embree's scene, ready to be built. It has instances of other scenes, which are
+    /// built first, by all threads that come here.
+    #[cold]
+    fn ready(&self) -> &Result<JointCommit<Query>, embree::Error> {
+        for child in self.placements.iter().flat_map(|one| one.instanced()) {
+            // An error is found again when the instances are made.
+            let _ = child.build();
+        }
+        self.scene.get_or_init(|| self.begin())
     }
 
     /// Makes Embree's scene ready to be built.
     #[cold]
     fn begin(&self) -> Result<JointCommit<Query>, embree::Error> {
         let mut builder = SceneBuilder::new(&self.workshop.device)?;
+        for placements in &self.placements {
+            placements.attach_instances(&mut builder)?;
+        }
         let layout = self.workshop.layout;
         attach_cylinders(&self.cylinders, layout, self.workshop.threads, &mut builder)?;
         attach_solids(self.cylinders.described(), &self.members, &mut builder)?;
         for placements in &self.placements {
-            builder.attach_user(Arc::clone(placements))?;
+            if placements.called_back.len() > 0 {
+                builder.attach_user(Arc::clone(placements))?;
+            }
         }
         Ok(builder.into_joint())
+    }
+
+    /// What Embree is to take packets for. Its traversal of coherent packets goes on for ever
+    /// in some scenes with instances (Embree 3.13.5 of Debian 12, with AVX-512), and
+    /// relies on the signs of small components of directions, which the frame chooses but
+    /// an instance does not.
+    fn coherence(&self) -> Coherence {
+        let has_instances = self.placements.iter().any(|one| one.instances.len() > 0);
+        if has_instances {
+            Coherence::Incoherent
+        } else {
+            Coherence::Coherent
+        }
+    }
+
+    /// How many instances of other scenes the Embree scene has.
+    pub fn instances(&self) -> u64 {
+        let placements = self.placements.iter().filter(|_| self.is_touched());
+        placements.map(|one| u64::from(one.instances.len())).sum()
     }
 
     /// The bytes that are kept for the members beside the description and
@@ -169,9 +192,9 @@ impl Group {
     /// Traces for the hits that `query` keeps.
     pub fn search(&self, ray: &LocalRay, query: &mut Query) {
         if let Some((level, ray32)) = query.enter(&self.frame, ray) {
-            let outer = query.level.replace(level);
-            self.scene().closest(&ray32, query);
-            query.level = outer;
+            query.within(self.prototype, level, |query| {
+                self.scene().closest(&ray32, query);
+            });
         }
     }
 
@@ -180,10 +203,9 @@ impl Group {
         let Some((level, ray32)) = query.enter(&self.frame, ray) else {
             return false;
         };
-        let outer = query.level.replace(level);
-        let hit = self.scene().any(&ray32, query);
-        query.level = outer;
-        hit
+        query.within(self.prototype, level, |query| {
+            self.scene().any(&ray32, query)
+        })
     }
 
     /// Traces rays of a packet for their first hits. Returns those whose
@@ -193,12 +215,12 @@ impl Group {
             level,
             rays32,
             entered,
-        } = packet.enter(&self.frame, rays, local, self.workshop.instructions);
+        } = packet.enter(&self.frame, rays, local);
         let before: [f64; GREATEST_PACKET] = std::array::from_fn(|ray| packet.bound(ray));
         if stays_packet(entered, packet) {
-            packet.within(level, |packet| {
+            packet.within(self.prototype, level, |packet| {
                 let (scene, width) = (self.scene(), self.workshop.packet_width());
-                scene.closest_packet(&rays32, entered, width, Coherence::Coherent, packet);
+                scene.closest_packet(&rays32, entered, width, self.coherence(), packet);
             });
         } else {
             self.each_alone(entered, &level, packet, |scene, ray, query| {
@@ -220,11 +242,11 @@ impl Group {
             level,
             rays32,
             entered,
-        } = packet.enter(&self.frame, rays, local, self.workshop.instructions);
+        } = packet.enter(&self.frame, rays, local);
         if stays_packet(entered, packet) {
-            return packet.within(level, |packet| {
+            return packet.within(self.prototype, level, |packet| {
                 let (scene, width) = (self.scene(), self.workshop.packet_width());
-                scene.any_packet(&rays32, entered, width, Coherence::Coherent, packet)
+                scene.any_packet(&rays32, entered, width, self.coherence(), packet)
             });
         }
         let mut blocked = RaySet::EMPTY;
@@ -245,7 +267,7 @@ impl Group {
         mut trace: impl FnMut(&embree::Scene<Query>, usize, &mut Query),
     ) {
         for ray in rays {
-            packet.alone(ray, level.of_ray(ray), |query| {
+            packet.alone(self.prototype, (ray, level.of_ray(ray)), |query| {
                 trace(self.scene(), ray, query);
             });
         }
@@ -254,7 +276,12 @@ impl Group {
     /// As [`Group::search`], but visits every primitive, wherever the
     /// ray is: neither boxes nor spheres are tested.
     pub fn search_exhaustively(&self, ray: &LocalRay, query: &mut Query) {
-        let outer = query.level.replace(self.frame.enter_unseen(ray));
+        let level = self.frame.enter_unseen(ray);
+        query.within(self.prototype, level, |query| self.visit_all(query));
+    }
+
+    /// Visits every primitive.
+    fn visit_all(&self, query: &mut Query) {
         for record in self.members.of(List::Solids(SolidKind::Cylinder)).iter() {
             query.visit(&self.cylinders.cylinder(record), &self.cylinders, record);
         }
@@ -269,7 +296,6 @@ impl Group {
                 placements.visit(number, query, Self::search_exhaustively);
             }
         }
-        query.level = outer;
     }
 
     /// Visits every solid of one kind.

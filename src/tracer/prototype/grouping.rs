@@ -199,7 +199,7 @@ impl<'a, B: Boxed> Rest<'a, B> {
         let small: Vec<&Bounds> = sample.iter().filter(is_notable).collect();
         let least = match stride {
             1 => 2,
-            _ => (LEAST_SHARE * sample.len() as f64) as usize,
+            _ => ((LEAST_SHARE * sample.len() as f64) as usize).max(1),
         };
         if small.len() < least {
             return None;

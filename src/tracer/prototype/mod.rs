@@ -1,7 +1,8 @@
 //! A prototype that can be traced: what it contains, in groups.
 //!
 //! Nearly every prototype is one group: a frame, and an Embree scene with a callback for
-//! each primitive (`group`). Where one solid is so far away or so large that its
+//! each primitive (`group`). Innermost placements are instances of Embree's where that is
+//! proven to lose nothing (`instances`), others are primitives (`placements`). Where one solid is so far away or so large that its
 //! box alone would set the frame of all others, there are several (`grouping` has the rule,
 //! `members` what they contain). A ray enters them one after another,
 //! each with the range that the hits so far have left. Which groups there are is known
@@ -15,8 +16,10 @@ mod described;
 mod ends;
 mod group;
 mod grouping;
+mod instances;
 mod members;
 mod numbers;
+mod outline;
 mod placements;
 mod sight;
 mod solids;
@@ -30,12 +33,14 @@ pub(crate) use cylinders::Cylinders;
 pub(crate) use described::{Described, SolidList};
 pub(crate) use ends::Ends;
 pub(crate) use group::Group;
+pub(crate) use instances::MOST_INSTANCES;
 pub(crate) use members::{Boxes, List};
+pub(crate) use outline::{Outline, Outlines};
 
 use super::frame::{LocalRay, PacketRays};
 use super::options::Layout;
 use super::query::{Packet, Place, Query};
-use crate::embree::{self, Device, Instructions, PacketWidth, RaySet};
+use crate::embree::{self, Device, PacketWidth, RaySet};
 use crate::math::Bounds;
 use crate::scene::{Placement, PrototypeIndex, Scene, ViewVolume};
 
@@ -59,8 +64,6 @@ pub(super) struct Workshop {
     pub threads: usize,
     /// The part of space that all rays will be in, if it is known.
     pub view: Option<ViewVolume>,
-    /// What packets are computed with.
-    pub instructions: Instructions,
     /// How many rays Embree takes together; `None` if it takes no packets.
     pub packet_width: Option<PacketWidth>,
 }
@@ -86,8 +89,6 @@ pub(crate) struct Prototype {
     pub bounds: Bounds,
     /// At least one. The first has most of what rays are after, as a rule.
     pub groups: Vec<Arc<Group>>,
-    /// The boxes of the groups.
-    boxes: Vec<Bounds>,
     description: Arc<Scene>,
     index: PrototypeIndex,
     children: Children<Self>,
@@ -150,38 +151,30 @@ impl Children<Prototype> {
 }
 
 impl Prototype {
-    /// Makes a prototype whose children are made. `made` has the child
-    /// of each index; `None` for one that contains nothing.
+    /// Makes a prototype of the outlines of its groups, when its children are made. `made`
+    /// has the child of each index; `None` for one that contains nothing.
     ///
     /// Returns `None` if the prototype itself contains nothing.
     pub fn new(
         workshop: &Workshop,
         description: &Arc<Scene>,
-        index: PrototypeIndex,
+        (index, outlines): (PrototypeIndex, Vec<Outline>),
         made: &[Option<Arc<Self>>],
     ) -> Option<Arc<Self>> {
         let prototype = &description.prototypes[index.0 as usize];
-        let boxes_of = |of: PrototypeIndex| {
-            let child = made[of.0 as usize].as_ref();
-            child.map_or(&[][..], |child| &child.boxes)
-        };
-        let groups = Boxes::new(prototype, &boxes_of).groups();
         let children = Children::new(&prototype.placements, made);
-        let boxes: Vec<Bounds> = groups.iter().map(|(_, bounds)| *bounds).collect();
-        let bounds = boxes
-            .iter()
-            .copied()
-            .reduce(|one, other| one.union(&other))?;
-        let groups = groups.into_iter();
+        let boxes = outlines.iter().map(|outline| outline.bounds);
+        let bounds = boxes.reduce(|one, other| one.union(&other))?;
+        let has_several_groups = outlines.len() > 1;
+        let groups = outlines.into_iter();
         let groups = groups
             .map(|group| Arc::new(Group::new(workshop, description, index, group, &children)));
         let mut placed = children.0.iter();
         Some(Arc::new(Self {
-            has_several_groups: boxes.len() > 1
+            has_several_groups: has_several_groups
                 || placed.any(|(_, child)| child.has_several_groups),
             bounds,
             groups: groups.collect(),
-            boxes,
             description: Arc::clone(description),
             index,
             children,
@@ -211,6 +204,11 @@ impl Prototype {
         in_view.sort_unstable();
         in_view.dedup();
         self.placements().len() - in_view.len()
+    }
+
+    /// How many instances Embree has in it.
+    pub fn instances(&self) -> u64 {
+        self.groups.iter().map(|group| group.instances()).sum()
     }
 
     /// The bytes that are kept beside the description and Embree's trees.

@@ -1,22 +1,25 @@
-//! The placements of a group as Embree's primitives.
+//! The placements of a group: as Embree's instances, or as primitives whose callback
+//! traces what they place.
 
 use std::sync::Arc;
 
+use super::instances::instance_map;
 use super::numbers::Numbers;
 use super::sight::Sight;
 use super::{Children, Group};
 use crate::embree::{
-    Box32, GREATEST_PACKET, Instructions, Ray32, RaySet, Rays32, Reached, UserGeometry,
+    self, Box32, GREATEST_PACKET, GeometryId, Ray32, RaySet, Rays32, Reached, SceneBuilder,
+    UserGeometry,
 };
 use crate::math::{Bounds, ChildFromParent};
 use crate::scene::{Placement, PrototypeIndex, Scene};
 use crate::tracer::counters;
-use crate::tracer::frame::{Frame, IntoChild, LocalRay, PacketRays};
+use crate::tracer::frame::{Frame, LocalRay, PacketRays};
 use crate::tracer::query::{Packet, Query};
 
 /// Placements of a prototype, each of them for the group with the same number of what
 /// it places. The description keeps them: there is
-/// nothing else in memory of a placement but its leaf in Embree's tree.
+/// nothing else in memory of a primitive but its leaf in Embree's tree.
 ///
 /// The way back into the child's space is worked out on each visit. It is some
 /// forty operations without a branch, beside the hundreds of a nested
@@ -29,9 +32,10 @@ pub(super) struct Placements {
     pub children: Children<Group>,
     /// The numbers of the placements.
     pub all: Numbers,
-    /// The numbers of those that rays may reach.
-    pub in_view: Numbers,
-    pub instructions: Instructions,
+    /// The numbers of those that rays may reach: the ones that are Embree's instances,
+    /// and the ones that are primitives.
+    pub instances: Numbers,
+    pub called_back: Numbers,
 }
 
 impl Placements {
@@ -39,11 +43,42 @@ impl Placements {
         &self.description.prototypes[self.prototype.0 as usize].placements
     }
 
+    /// What a placement places.
+    fn of(&self, index: u32) -> PrototypeIndex {
+        self.placements()[index as usize].of
+    }
+
     /// A placement and the group it places, if there is anything.
     #[inline]
     fn get(&self, index: u32) -> Option<(&Placement, &Arc<Group>)> {
         let placement = &self.placements()[index as usize];
         Some((placement, self.children.of(placement.of)?))
+    }
+
+    /// The groups that there are instances of. They are built before the scene that the
+    /// instances are in.
+    pub fn instanced(&self) -> Vec<&Arc<Group>> {
+        let mut indices: Vec<_> = self
+            .instances
+            .iter()
+            .map(|number| self.of(number))
+            .collect();
+        indices.sort_unstable();
+        indices.dedup();
+        let groups = indices.into_iter();
+        groups.filter_map(|index| self.children.of(index)).collect()
+    }
+
+    /// Adds the instances, whose numbers are those of the placements.
+    pub fn attach_instances(&self, builder: &mut SceneBuilder<Query>) -> Result<(), embree::Error> {
+        for number in self.instances.iter() {
+            let Some((placement, child)) = self.get(number) else {
+                continue;
+            };
+            let map = instance_map(&self.frame, placement, &child.frame);
+            builder.attach_instance_as(GeometryId(number), child.joined()?, &map)?;
+        }
+        Ok(())
     }
 
     /// Hands the query's ray to `trace` in the space of the placed group.
@@ -58,8 +93,9 @@ impl Placements {
             return T::default();
         };
         counters::handed_on(1);
+        query.leave_instance();
         let way = ChildFromParent::new(&placement.parent_from_child);
-        let ray = query.level().ray.in_child(&way);
+        let ray = query.ray().in_child(&way);
         query.path.push(index);
         let answer = trace(child, &ray, query);
         query.path.pop();
@@ -79,11 +115,8 @@ impl Placements {
             return RaySet::EMPTY;
         };
         counters::handed_on(rays.len() as u32);
-        let way = ChildFromParent::new(&placement.parent_from_child);
-        let in_child = self.instructions.run(IntoChild {
-            rays: packet.rays(),
-            way: &way,
-        });
+        packet.leave_instance();
+        let in_child = packet.in_child(&ChildFromParent::new(&placement.parent_from_child));
         packet.path.push(index);
         let answer = trace(child, &in_child, packet);
         packet.path.pop();
@@ -95,13 +128,13 @@ impl UserGeometry for Arc<Placements> {
     type Query = Query;
 
     fn primitive_count(&self) -> u32 {
-        self.in_view.len()
+        self.called_back.len()
     }
 
     fn bounds(&self, primitive: u32) -> Box32 {
         // Where nothing is placed any box will do; the least is best.
         let reach = self
-            .get(self.in_view.number(primitive))
+            .get(self.called_back.number(primitive))
             .map_or(Bounds::at(self.frame.centre()), |(placement, child)| {
                 self.sight.placement_reach(placement, &child.reach)
             });
@@ -112,14 +145,18 @@ impl UserGeometry for Arc<Placements> {
         counters::called_back();
         query.callbacks += 1;
         let before = query.bound();
-        self.visit(self.in_view.number(at.primitive), query, Group::search);
+        self.visit(self.called_back.number(at.primitive), query, Group::search);
         (query.bound() < before).then(|| query.t_far())
     }
 
     fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
         counters::called_back();
         query.callbacks += 1;
-        self.visit(self.in_view.number(at.primitive), query, Group::occluded)
+        self.visit(
+            self.called_back.number(at.primitive),
+            query,
+            Group::occluded,
+        )
     }
 
     fn intersect_packet(
@@ -132,7 +169,7 @@ impl UserGeometry for Arc<Placements> {
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        let number = self.in_view.number(at.primitive);
+        let number = self.called_back.number(at.primitive);
         let shorter = self.visit_packet(number, rays, packet, |child, in_child, packet| {
             child.search_packet(rays, in_child, packet)
         });
@@ -151,7 +188,7 @@ impl UserGeometry for Arc<Placements> {
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        let number = self.in_view.number(at.primitive);
+        let number = self.called_back.number(at.primitive);
         self.visit_packet(number, rays, packet, |child, in_child, packet| {
             child.occluded_packet(rays, in_child, packet)
         })

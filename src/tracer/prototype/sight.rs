@@ -50,9 +50,14 @@ impl Sight {
     /// Where hits in a placed child may be: the image of the child's reach,
     /// grown by the displacement.
     pub fn placement_reach(&self, placement: &Placement, child_reach: &Bounds) -> Bounds {
-        let distance = 2.0 * FAR * self.reach + offset(self.centre, placement);
         let image = child_reach.transformed(&placement.parent_from_child);
-        image.grown(displacement(placement) * distance)
+        image.grown(self.slack(placement))
+    }
+
+    /// How far a placed child's hits are displaced in the parent.
+    pub fn slack(&self, placement: &Placement) -> f64 {
+        let distance = 2.0 * FAR * self.reach + offset(self.centre, placement);
+        displacement(placement) * distance
     }
 }
 

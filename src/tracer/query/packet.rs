@@ -8,12 +8,15 @@
 
 use super::found::{InstancePath, Keep, Member, Nearest, Place};
 use super::single::Query;
-use crate::embree::{GREATEST_PACKET, Instructions, RaySet};
-use crate::math::{LANES, LaneMask, LaneVectors, Lanes};
+use crate::embree::{GREATEST_PACKET, GeometryId, Instructions, RaySet};
+use crate::math::{ChildFromParent, LANES, LaneMask, LaneVectors, Lanes};
+use crate::scene::PrototypeIndex;
 use crate::solid::lanes::{self, CylinderLanes, RayLanes};
 use crate::solid::{Cylinder, SolidKind};
 use crate::tracer::counters;
-use crate::tracer::frame::{Enter, Frame, Level, PacketEntry, PacketLevel, PacketRays, ROWS, Rows};
+use crate::tracer::frame::{
+    Enter, Frame, IntoChild, IntoInstance, Level, PacketEntry, PacketLevel, PacketRays, ROWS, Rows,
+};
 use crate::tracer::prototype::{Cylinders, Described, Ends, SolidList};
 use crate::tracer::traced::{Met, TracedSolid};
 
@@ -24,16 +27,24 @@ pub(crate) struct Packet {
     /// The greatest `t` that can still be a first hit.
     bound: Rows<Lanes>,
     nearest: [Option<Nearest>; GREATEST_PACKET],
+    /// The placements on the way, with that of the instance.
     pub path: InstancePath,
     /// The rays in the prototypes on the way, the one being traced last.
     levels: Vec<PacketLevel>,
+    /// The prototype that is being traced.
+    prototype: PrototypeIndex,
+    /// The instance that the last callback was in, by the number of the placement, and
+    /// the rays there.
+    instance: Option<GeometryId>,
+    in_instance: PacketRays,
+    instructions: Instructions,
     /// How often Embree has called back for it, which is what it costs.
     pub callbacks: u32,
 }
 
 impl Packet {
-    /// A packet of no rays.
-    pub fn new() -> Self {
+    /// A packet of no rays, to be computed with these instructions.
+    pub fn new(instructions: Instructions) -> Self {
         let nowhere = [Lanes::splat(0.0); ROWS];
         Self {
             t_min: nowhere,
@@ -42,6 +53,10 @@ impl Packet {
             nearest: [const { None }; GREATEST_PACKET],
             path: InstancePath::new(),
             levels: Vec::new(),
+            prototype: PrototypeIndex::ROOT,
+            instance: None,
+            in_instance: PacketRays::NOWHERE,
+            instructions,
             callbacks: 0,
         }
     }
@@ -61,14 +76,8 @@ impl Packet {
 
     /// The rays in a prototype, of which those have entered that could find part
     /// of the answer there.
-    pub fn enter(
-        &self,
-        frame: &Frame,
-        wanted: RaySet,
-        rays: &PacketRays,
-        instructions: Instructions,
-    ) -> PacketEntry {
-        instructions.run(Enter {
+    pub fn enter(&self, frame: &Frame, wanted: RaySet, rays: &PacketRays) -> PacketEntry {
+        self.instructions.run(Enter {
             frame,
             rays,
             wanted,
@@ -77,21 +86,73 @@ impl Packet {
         })
     }
 
-    /// Runs `trace` with the rays of a further prototype.
-    pub fn within<T>(&mut self, level: PacketLevel, trace: impl FnOnce(&mut Self) -> T) -> T {
+    /// Runs `trace` with the rays in a further prototype.
+    pub fn within<T>(
+        &mut self,
+        prototype: PrototypeIndex,
+        level: PacketLevel,
+        trace: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        debug_assert_eq!(self.instance, None, "instances contain solids alone");
         self.levels.push(level);
+        let outer = std::mem::replace(&mut self.prototype, prototype);
         let answer = trace(self);
+        self.leave_instance();
         self.levels.pop();
+        self.prototype = outer;
         answer
     }
 
-    /// Runs `trace` with a query of one ray of the packet, and keeps its answer.
-    pub fn alone<T>(&mut self, ray: usize, level: Level, trace: impl FnOnce(&mut Query) -> T) -> T {
+    /// As [`Query::reach`].
+    #[inline(always)]
+    pub fn reach(&mut self, instance: Option<GeometryId>, described: &Described) {
+        if instance != self.instance {
+            self.change_instance(instance, described);
+        }
+    }
+
+    #[inline(never)]
+    fn change_instance(&mut self, instance: Option<GeometryId>, described: &Described) {
+        self.leave_instance();
+        let Some(GeometryId(placement)) = instance else {
+            return;
+        };
+        counters::handed_on(1);
+        self.in_instance = self.instructions.run(IntoInstance {
+            rays: &self.level().rays,
+            way: &described.way_from(self.prototype, placement),
+            frame: described.frame(),
+        });
+        self.path.push(placement);
+        self.instance = instance;
+    }
+
+    /// Goes back to the prototype that is being traced.
+    #[inline(always)]
+    pub fn leave_instance(&mut self) {
+        if self.instance.take().is_some() {
+            self.path.pop();
+        }
+    }
+
+    /// The rays in a child, through a placement in the prototype that is being traced.
+    pub fn in_child(&self, way: &ChildFromParent) -> PacketRays {
+        let rays = self.rays();
+        self.instructions.run(IntoChild { rays, way })
+    }
+
+    /// Runs `trace` with a query of one ray of the packet in a further prototype, and
+    /// keeps its answer.
+    pub fn alone<T>(
+        &mut self,
+        prototype: PrototypeIndex,
+        (ray, level): (usize, Level),
+        trace: impl FnOnce(&mut Query) -> T,
+    ) -> T {
         let (t_min, t_max) = (lane(&self.t_min, ray), lane(&self.t_max, ray));
         let path = std::mem::take(&mut self.path);
         let mut query = Query::new(t_min, t_max, path, self.nearest[ray].take());
-        query.level = Some(level);
-        let answer = trace(&mut query);
+        let answer = query.within(prototype, level, trace);
         self.callbacks += query.callbacks;
         if let Keep::First(nearest) = query.keep {
             if let Some(nearest) = &nearest {
@@ -111,10 +172,13 @@ impl Packet {
             .expect("callbacks run within a prototype")
     }
 
-    /// The rays in the prototype that is being traced.
+    /// The rays in the space of what a callback is for.
     #[inline(always)]
-    pub fn rays(&self) -> &PacketRays {
-        &self.level().rays
+    fn rays(&self) -> &PacketRays {
+        match self.instance {
+            None => &self.level().rays,
+            Some(_) => &self.in_instance,
+        }
     }
 
     /// The greatest `t` that can still be part of a ray's answer.

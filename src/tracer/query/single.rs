@@ -5,8 +5,9 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 
 use super::found::{Found, InstancePath, Keep, Member, Nearest, Next, Place};
-use crate::embree::{self, Ray32};
+use crate::embree::{self, GeometryId, Ray32};
 use crate::math::Ray;
+use crate::scene::PrototypeIndex;
 use crate::solid::{ConvexSolid, Cylinder, Meeting, SolidKind, triple_product};
 use crate::tracer::counters;
 use crate::tracer::frame::{Frame, Level, LocalRay};
@@ -19,7 +20,14 @@ pub(crate) struct Query {
     t_min: f64,
     t_max: f64,
     /// The ray in the prototype that is being traced.
-    pub level: Option<Level>,
+    level: Option<Level>,
+    /// That prototype.
+    prototype: PrototypeIndex,
+    /// The instance that the last callback was in, by the number of the placement, and
+    /// the ray there.
+    instance: Option<GeometryId>,
+    in_instance: LocalRay,
+    /// The placements on the way, with that of the instance.
     pub path: InstancePath,
     pub keep: Keep,
     /// How often Embree has called back for it, which is what it costs.
@@ -43,6 +51,9 @@ impl Query {
             t_min,
             t_max,
             level: None,
+            prototype: PrototypeIndex::ROOT,
+            instance: None,
+            in_instance: LocalRay::default(),
             path,
             keep: Keep::First(nearest),
             callbacks: 0,
@@ -92,12 +103,71 @@ impl Query {
         frame.enter(ray, self.start(), self.bound())
     }
 
+    /// Runs `trace` with the ray in a further prototype.
+    #[inline]
+    pub fn within<T>(
+        &mut self,
+        prototype: PrototypeIndex,
+        level: Level,
+        trace: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        debug_assert_eq!(self.instance, None, "instances contain solids alone");
+        let outer = (self.level.replace(level), self.prototype);
+        self.prototype = prototype;
+        let answer = trace(self);
+        self.leave_instance();
+        (self.level, self.prototype) = outer;
+        answer
+    }
+
+    /// Says which instance a callback is in, before it uses the ray or the path, and
+    /// whose solids it is for.
+    #[inline(always)]
+    pub fn reach(&mut self, instance: Option<GeometryId>, described: &Described) {
+        if instance != self.instance {
+            self.change_instance(instance, described);
+        }
+    }
+
+    /// The ray in the child is made when a callback needs it; a ray that meets nothing
+    /// but boxes of an instance does without.
+    #[inline(never)]
+    fn change_instance(&mut self, instance: Option<GeometryId>, described: &Described) {
+        self.leave_instance();
+        let Some(GeometryId(placement)) = instance else {
+            return;
+        };
+        counters::handed_on(1);
+        let way = described.way_from(self.prototype, placement);
+        let ray = self.level().ray.in_child(&way);
+        self.in_instance = described.frame().approach(&ray);
+        self.path.push(placement);
+        self.instance = instance;
+    }
+
+    /// Goes back to the prototype that is being traced.
+    #[inline(always)]
+    pub fn leave_instance(&mut self) {
+        if self.instance.take().is_some() {
+            self.path.pop();
+        }
+    }
+
     /// The level that callbacks run in.
     #[inline(always)]
-    pub fn level(&self) -> &Level {
+    fn level(&self) -> &Level {
         self.level
             .as_ref()
             .expect("callbacks run within a prototype")
+    }
+
+    /// The ray in the space of what a callback is for.
+    #[inline(always)]
+    pub fn ray(&self) -> &LocalRay {
+        match self.instance {
+            None => &self.level().ray,
+            Some(_) => &self.in_instance,
+        }
     }
 
     /// The first point, up to `t_max`, where the ray meets a cylinder of the
@@ -105,10 +175,9 @@ impl Query {
     #[inline(always)]
     fn first_meeting(&self, cylinder: &Cylinder, t_max: f64) -> Option<Meeting> {
         counters::solved(1);
-        let LocalRay {
-            direction, shift, ..
-        } = self.level().ray;
-        let from_p0 = self.level().ray.origin_from(cylinder.p0());
+        let ray = self.ray();
+        let (direction, shift) = (ray.direction, ray.shift);
+        let from_p0 = ray.origin_from(cylinder.p0());
         triple_product::first(cylinder, from_p0, direction, shift, self.t_min, t_max)
     }
 
@@ -141,7 +210,7 @@ impl Query {
                 cylinder.contains(point)
             });
         }
-        let ray = &self.level().ray;
+        let ray = self.ray();
         let (from_p0, shift) = (ray.origin_from(cylinder.p0()), ray.shift);
         let Some(chord) = triple_product::chord(cylinder, from_p0, ray.direction) else {
             return;
@@ -159,7 +228,7 @@ impl Query {
         counters::solved(1);
         let solid = list.solid(record);
         let member = Member::new(solid.kind(), record);
-        let (ray, bound, t_min) = (self.level().ray, self.bound(), self.t_min);
+        let (ray, bound, t_min) = (*self.ray(), self.bound(), self.t_min);
         match self.keep {
             Keep::First(_) => {
                 if let Some(met) = solid.first(&ray, t_min, bound) {
@@ -183,7 +252,7 @@ impl Query {
         member: Member,
         contains: impl FnOnce(DVec3) -> bool,
     ) {
-        let Level { ray, .. } = self.level();
+        let ray = self.ray();
         // A ray that was moved began far away from all that is here.
         let is_moved = ray.shift != 0.0 || ray.base != DVec3::ZERO;
         if is_moved || !contains(ray.origin) {
@@ -198,7 +267,7 @@ impl Query {
     #[inline]
     pub fn meets_solid(&self, solid: &impl TracedSolid) -> bool {
         counters::solved(1);
-        let met = solid.first(&self.level().ray, self.t_min, self.t_max);
+        let met = solid.first(self.ray(), self.t_min, self.t_max);
         met.is_some()
     }
 

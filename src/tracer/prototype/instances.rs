@@ -1,0 +1,269 @@
+//! Embree's own instances: which placements are some, and how far the f32 ray in the
+//! child is off.
+//!
+//! Embree maps its f32 ray into the child in f32, and the child's boxes grow by what that
+//! can displace the ray. With `L` the matrix from the child's frame to the parent's, G its
+//! inverse, P where L takes the child's centre, `g` and `l` the greatest rows of G and L, R
+//! the radius of the parent's frame, r that of the child's, v = 2^-24: a point c of the
+//! ray in the child's sphere is the image of q = L c + P, which is within R of the
+//! parent's centre and within `l r √3` of P. Displacements of c along an axis, of the first
+//! order:
+//!
+//! | source | in units of `v g R` |
+//! |---|---|
+//! | the parent's ray: origin and direction rounded to f32 | 1 + 2 |
+//! | P rounded | 1 |
+//! | `G P`: three products and sums | 3 |
+//! | the origin: products and sums, 4 for `G s` and 3 for `G P` | 7 |
+//! | the direction: 3, over a way of 2 R | 6 |
+//! | the slab test in the child, whose rays start up to 2 `g R` away | 14.5 |
+//! | packets as a whole: two products and a difference | 4, and r |
+//! | **sum** | **38.5** |
+//!
+//! The filter of a block needs more (`tracer::filter`): the distance between both rays, which is
+//! √3 times the first five rows, 35, and 14 v of the distance of the ray's origin, which is
+//! at most 2 √3 g R, 49. So boxes grow by 84 v g R.
+//!
+//! The computed inverse Ĝ maps origin, direction and P alike, so its error acts on q - P
+//! alone. `adj L / det L` is off by `2 v` of the products in each cofactor and `6 v` of
+//! those in the determinant, and rounding L to f32 by `v` of its condition:
+//!
+//! ```text
+//! |ΔG| <= v (2 |adj| / |det| + (6 perm / |det| + 2 + κ) g)
+//! ```
+//!
+//! where |adj| and perm are the cofactors and the determinant with all terms positive.
+//!
+//! Embree computes an instance's box in the parent from the eight corners of the child's
+//! scene, `5 v (l r √3 + R)` off along an axis, and tests it as any other box, for which the parent
+//! needs 22 v R (`docs/derivations.md`, section 4). The image of a child's box that is grown by γ is
+//! grown by the sum of a row of |L| times γ: so that divides both.
+//!
+//! What f64 rounds comes on top: the ray in the child is not quite the image of the
+//! parent's (`Sight`), and P is computed from numbers of the parent's size.
+//!
+//! The sum is of the first order, with second orders below 2^-6 of it as long as the
+//! share is below [`GREATEST_GROWTH`]; a factor of 1 + 2^-4 covers them.
+
+use glam::{DMat3, DVec3};
+
+use super::sight::Sight;
+use crate::math::UNIT_ROUNDOFF;
+use crate::scene::Placement;
+use crate::tracer::frame::Frame;
+
+/// Half an ulp of f32, relative to 1.
+const V: f64 = 1.0 / (1 << 24) as f64;
+
+/// The greatest share of a child's radius by which its boxes grow to have instances of
+/// it. At 2^-10 a ray through trees takes 4 % longer, which is what an instance saves
+/// at least; at 2^-13 nothing is measurable.
+const GREATEST_GROWTH: f64 = 1.0 / (1 << 10) as f64;
+
+/// A prototype with more placements has none as instances: Embree takes about 330 bytes for
+/// each, where a primitive takes 90.
+pub(crate) const MOST_INSTANCES: usize = 1 << 16;
+
+/// How a child's frame lies in its parent's.
+struct Relation {
+    /// L.
+    matrix: DMat3,
+    /// P.
+    centre: DVec3,
+    /// The error of P.
+    centre_error: f64,
+}
+
+impl Relation {
+    fn new(parent: &Frame, placement: &Placement, child: &Frame) -> Self {
+        let (matrix, translation) = {
+            let affine = &placement.parent_from_child;
+            (affine.matrix3, affine.translation)
+        };
+        let turned = matrix * child.centre();
+        let sizes = (matrix.abs() * child.centre().abs()).length()
+            + translation.length()
+            + parent.centre().length();
+        Self {
+            matrix: matrix * (parent.scale() / child.scale()),
+            centre: (turned + translation - parent.centre()) * parent.scale(),
+            centre_error: 6.0 * UNIT_ROUNDOFF * sizes * parent.scale(),
+        }
+    }
+}
+
+/// The map from the child's frame to its parent's, as Embree gets it.
+pub(super) fn instance_map(parent: &Frame, placement: &Placement, child: &Frame) -> [[f32; 4]; 3] {
+    let Relation { matrix, centre, .. } = Relation::new(parent, placement, child);
+    std::array::from_fn(|axis| {
+        let row = matrix.row(axis);
+        [row.x, row.y, row.z, centre[axis]].map(|x| x as f32)
+    })
+}
+
+/// By which share of the child's radius its boxes have to grow to have an instance of it
+/// here. `None` where that is too much.
+pub(super) fn needed_growth(
+    parent: &Frame,
+    sight: &Sight,
+    placement: &Placement,
+    child: &Frame,
+) -> Option<f64> {
+    let share = displacement(parent, sight, placement, child);
+    // Written so that NaN is too much.
+    (share <= GREATEST_GROWTH).then_some(share)
+}
+
+/// The bound of the head of this file, as a share of the child's radius.
+fn displacement(parent: &Frame, sight: &Sight, placement: &Placement, child: &Frame) -> f64 {
+    let relation = Relation::new(parent, placement, child);
+    let (matrix, inverse) = (relation.matrix, relation.matrix.inverse());
+    let (g, l) = (greatest_row(&inverse), greatest_row(&matrix));
+    let (radius, own) = (parent.radius(), child.radius());
+    // What f64 displaces, in the parent's frame.
+    let wide = sight.slack(placement) * parent.scale() + relation.centre_error;
+
+    let size = matrix.abs();
+    let (x, y, z) = (size.x_axis, size.y_axis, size.z_axis);
+    let cofactors = DMat3::from_cols(across(y, z), across(z, x), across(x, y));
+    let determinant = matrix.determinant().abs();
+    let permanent = x.dot(cofactors.x_axis);
+    // The cofactors of columns are the rows of the inverse.
+    let cofactors = (cofactors.x_axis.length())
+        .max(cofactors.y_axis.length())
+        .max(cofactors.z_axis.length());
+    let condition = 3.0 * l * g;
+    let inverse_error =
+        V * (2.0 * cofactors / determinant + (6.0 * permanent / determinant + 2.0 + condition) * g);
+
+    let image = 3_f64.sqrt() * l * own;
+    // Distances, √3 times what is along an axis.
+    let rest = 3_f64.sqrt() * inverse_error * image + 3.0 * g * wide;
+    let in_child = V * (84.0 * g * radius + own) + rest;
+    let thinnest = (size * DVec3::ONE).min_element();
+    let in_parent = (V * (27.0 * radius + 5.0 * image) + wide) / thinnest;
+
+    in_child.max(in_parent) * (1.0 + 1.0 / 16.0) / own
+}
+
+/// The length of the longest row.
+fn greatest_row(matrix: &DMat3) -> f64 {
+    (0..3).fold(0.0, |most, axis| matrix.row(axis).length().max(most))
+}
+
+/// A cross product with all terms positive.
+fn across(a: DVec3, b: DVec3) -> DVec3 {
+    DVec3::new(
+        a.y * b.z + a.z * b.y,
+        a.z * b.x + a.x * b.z,
+        a.x * b.y + a.y * b.x,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DAffine3;
+
+    use super::*;
+    use crate::math::{Bounds, Random, power_of_two_below};
+    use crate::scene::PrototypeIndex;
+
+    /// `a b + c` as Embree has it: with one rounding, or with two.
+    fn multiply_add(fused: bool, a: f32, b: f32, c: f32) -> f32 {
+        if fused { a.mul_add(b, c) } else { a * b + c }
+    }
+
+    /// Embree's inverse of a map: columns of the matrix, and the shift.
+    fn inverse_of(fused: bool, map: &[[f32; 4]; 3]) -> [[f32; 3]; 4] {
+        let column = |i: usize| [map[0][i], map[1][i], map[2][i]];
+        let [x, y, z, shift] = [0, 1, 2, 3].map(column);
+        let cross = |a: [f32; 3], b: [f32; 3]| {
+            [(1, 2), (2, 0), (0, 1)].map(|(i, j)| multiply_add(fused, a[i], b[j], -(a[j] * b[i])))
+        };
+        let rows = [cross(y, z), cross(z, x), cross(x, y)];
+        let determinant = x[0] * rows[0][0] + x[1] * rows[0][1] + x[2] * rows[0][2];
+        let columns = [0, 1, 2].map(|i| [0, 1, 2].map(|j: usize| rows[j][i] / determinant));
+        let [x, y, z] = columns;
+        let shifted = mapped(fused, &[x, y, z, [0.0; 3]], shift);
+        [x, y, z, shifted.map(|x| -x)]
+    }
+
+    fn mapped(fused: bool, [x, y, z, shift]: &[[f32; 3]; 4], p: [f32; 3]) -> [f32; 3] {
+        [0, 1, 2].map(|i| {
+            let last = multiply_add(fused, p[2], z[i], shift[i]);
+            multiply_add(fused, p[0], x[i], multiply_add(fused, p[1], y[i], last))
+        })
+    }
+
+    fn random_box(random: &mut Random, size: f64) -> Bounds {
+        let mut side = || random.log_uniform(0.01, 1.0) * size;
+        let half = DVec3::new(side(), side(), side());
+        let centre = random.direction() * random.uniform(0.0, 10.0) * size;
+        Bounds {
+            lower: centre - half,
+            upper: centre + half,
+        }
+    }
+
+    /// No ray is off by more than the bound, which is not ten times too great.
+    #[test]
+    fn rays_mapped_in_f32_are_off_by_less_than_the_bound() {
+        let mut random = Random::new(97, 0);
+        let (mut cases, mut most) = (0, 0.0_f64);
+        while cases < 20_000 {
+            let in_child = random_box(&mut random, 1.0);
+            let mut stretch = || random.log_uniform(0.03, 1.0);
+            let stretch = DVec3::new(stretch(), stretch(), stretch());
+            let (turn, back) = (turned(&mut random), turned(&mut random));
+            let placement = Placement {
+                of: PrototypeIndex(1),
+                parent_from_child: DAffine3::from_mat3_translation(
+                    turn * DMat3::from_diagonal(stretch) * back,
+                    random.direction() * 10.0,
+                ),
+            };
+            let image = in_child.transformed(&placement.parent_from_child);
+            let size = random.log_uniform(0.1, 1e3);
+            let bounds = image.union(&random_box(&mut random, size));
+            let sight = Sight::new(&bounds, rayon::iter::once(&placement));
+            let reach = bounds.union(&sight.placement_reach(&placement, &in_child));
+            let (parent, child) = (Frame::new(&reach), Frame::new(&in_child));
+            let share = displacement(&parent, &sight, &placement, &child);
+            if !(share <= GREATEST_GROWTH) {
+                continue;
+            }
+            cases += 1;
+            let relation = Relation::new(&parent, &placement, &child);
+            let map = instance_map(&parent, &placement, &child);
+            let c = random.direction() * (child.radius() * random.unit());
+            let q = relation.matrix * c + relation.centre;
+            let heading = random.direction();
+            let heading = heading / power_of_two_below(heading.abs().max_element());
+            // Back to the sphere.
+            let (along, square) = (q.dot(heading), heading.length_squared());
+            let inside = parent.radius() * parent.radius() - q.length_squared();
+            let way = (along + (along * along + square * inside.max(0.0)).sqrt()) / square;
+            let start = (q - heading * way).to_array().map(|x| x as f32);
+            let heading = heading.to_array().map(|x| x as f32);
+            for fused in [false, true] {
+                let inverse = inverse_of(fused, &map);
+                let [x, y, z, _] = inverse;
+                let from = mapped(fused, &inverse, start);
+                let along = mapped(fused, &[x, y, z, [0.0; 3]], heading);
+                let vector = |a: [f32; 3]| DVec3::from_array(a.map(f64::from));
+                let off = vector(from) + vector(along) * way - c;
+                let used = off.abs().max_element() / (share * child.radius());
+                assert!(used < 1.0, "case {cases}, fused {fused}: {used}");
+                most = most.max(used);
+            }
+        }
+        println!("{cases} cases use at most {most} of the bound");
+        assert!(most > 0.1, "{most}");
+    }
+
+    fn turned(random: &mut Random) -> DMat3 {
+        let x = random.direction();
+        let y = x.cross(random.direction()).normalize();
+        DMat3::from_cols(x, y, x.cross(y))
+    }
+}

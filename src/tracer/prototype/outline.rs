@@ -1,0 +1,209 @@
+//! What is known of groups before there are any: what they contain, how far they reach,
+//! and which of their placements are instances of Embree's.
+//!
+//! A group's frame needs the reach of all that it places, and its boxes grow by what its
+//! instances in other prototypes need. So outlines are made from children to parents, and grow
+//! from parents to children, before groups are made of them.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::instances::{MOST_INSTANCES, needed_growth};
+use super::members::{Boxes, Members};
+use super::numbers::Numbers;
+use super::sight::Sight;
+use crate::math::Bounds;
+use crate::scene::{Placement, PrototypeIndex, Scene};
+use crate::tracer::frame::Frame;
+
+/// With fewer placements the root is not divided for instances.
+const LEAST_DIVIDED: usize = 16;
+
+/// A group that is to be made.
+pub(crate) struct Outline {
+    pub members: Members,
+    /// The box of the members.
+    pub bounds: Bounds,
+    pub(super) sight: Sight,
+    /// Contains every point at which a query may place a hit.
+    pub reach: Bounds,
+    pub frame: Frame,
+    /// The placements that are instances of Embree's, in ascending order.
+    pub instances: Vec<u32>,
+}
+
+/// The outlines of the groups of each prototype; none of one that contains nothing.
+pub(crate) struct Outlines {
+    of: Vec<Vec<Outline>>,
+    /// The boxes of the groups.
+    boxes: Vec<Vec<Bounds>>,
+}
+
+impl Outlines {
+    /// Those of prototypes in an order with children before parents.
+    pub fn new(scene: &Arc<Scene>, order: &[PrototypeIndex]) -> Self {
+        let mut outlines = Self {
+            of: Vec::new(),
+            boxes: vec![Vec::new(); scene.prototypes.len()],
+        };
+        outlines.of.resize_with(scene.prototypes.len(), Vec::new);
+        for &index in order {
+            let of_one = outlines.of_prototype(scene, index);
+            let boxes = of_one.iter().map(|outline| outline.bounds);
+            outlines.boxes[index.0 as usize] = boxes.collect();
+            outlines.of[index.0 as usize] = of_one;
+        }
+        for &index in order {
+            outlines.choose_instances(scene, index);
+        }
+        outlines
+    }
+
+    /// Those of a prototype, which are given away.
+    pub fn take(&mut self, index: PrototypeIndex) -> Vec<Outline> {
+        std::mem::take(&mut self.of[index.0 as usize])
+    }
+
+    fn of_prototype(&self, scene: &Scene, index: PrototypeIndex) -> Vec<Outline> {
+        let prototype = &scene.prototypes[index.0 as usize];
+        let boxes_of = |of: PrototypeIndex| &self.boxes[of.0 as usize][..];
+        let boxes = Boxes::new(prototype, &boxes_of);
+        let groups = boxes.groups();
+        let may_divide = index == PrototypeIndex::ROOT && groups.len() == 1;
+        let outlines = groups.into_iter().flat_map(|(members, bounds)| {
+            let outline = self.of_group(&prototype.placements, members, bounds);
+            if may_divide {
+                self.divided(scene, &boxes, outline)
+            } else {
+                vec![outline]
+            }
+        });
+        outlines.collect()
+    }
+
+    /// The group of the root, in two where the solids are so much farther or larger than what is
+    /// placed that the frame of all is too large for instances, and that of the placements
+    /// is not. A ray that enters two groups costs less than a callback for each placement.
+    fn divided(&self, scene: &Scene, boxes: &Boxes, outline: Outline) -> Vec<Outline> {
+        let placements = &scene.prototypes[PrototypeIndex::ROOT.0 as usize].placements;
+        let innermost = self.innermost(scene, placements, &outline);
+        if innermost.len() < LEAST_DIVIDED || innermost.len() as u64 == outline.members.len() {
+            return vec![outline];
+        }
+        let instances = |outline: &Outline| {
+            let numbers = innermost.par_iter().with_min_len(1 << 8);
+            numbers
+                .filter(|&&number| {
+                    self.needed_growth(&placements[number as usize], outline)
+                        .is_some()
+                })
+                .count()
+        };
+        if instances(&outline) * 2 > innermost.len() {
+            return vec![outline];
+        }
+        let (theirs, others) = outline.members.divided(&innermost);
+        let [theirs, others] = [theirs, others].map(|members| {
+            let bounds = boxes.around(&members);
+            (members, bounds)
+        });
+        // What set operations leave nothing of has an empty box.
+        if others.1.is_empty() {
+            return vec![outline];
+        }
+        let [theirs, others] =
+            [theirs, others].map(|(members, bounds)| self.of_group(placements, members, bounds));
+        if instances(&theirs) * 2 > innermost.len() {
+            vec![theirs, others]
+        } else {
+            vec![outline]
+        }
+    }
+
+    /// The placements of a group that may be instances of Embree's, which has one level of
+    /// them: of prototypes without placements. They have one group, so that a placement is
+    /// one instance and has its number.
+    fn innermost(&self, scene: &Scene, placements: &[Placement], outline: &Outline) -> Vec<u32> {
+        if placements.len() > MOST_INSTANCES {
+            return Vec::new();
+        }
+        let lists = outline.members.placements();
+        let first = lists.filter(|&(group, _)| group == 0);
+        let numbers = first.flat_map(|(_, numbers)| numbers.iter());
+        numbers
+            .filter(|&number| {
+                let of = placements[number as usize].of.0 as usize;
+                self.of[of].len() == 1 && scene.prototypes[of].placements.is_empty()
+            })
+            .collect()
+    }
+
+    /// By how much the boxes of what is placed grow if it is an instance.
+    fn needed_growth(&self, placement: &Placement, parent: &Outline) -> Option<f64> {
+        let child = self.of[placement.of.0 as usize].first()?;
+        needed_growth(&parent.frame, &parent.sight, placement, &child.frame)
+    }
+
+    fn of_group(&self, placements: &[Placement], members: Members, bounds: Bounds) -> Outline {
+        let lists: Vec<_> = members.placements().collect();
+        let placed = || {
+            lists.par_iter().flat_map(|&(group, numbers)| {
+                numbers.par_iter().filter_map(move |number| {
+                    let placement = &placements[number as usize];
+                    let child = self.of[placement.of.0 as usize].get(group)?;
+                    Some((placement, child))
+                })
+            })
+        };
+        let sight = Sight::new(&bounds, placed().map(|(placement, _)| placement));
+        let reach = placed()
+            .map(|(placement, child)| sight.placement_reach(placement, &child.reach))
+            .reduce(|| bounds, |one, other| one.union(&other));
+        Outline {
+            frame: Frame::new(&reach),
+            members,
+            bounds,
+            sight,
+            reach,
+            instances: Vec::new(),
+        }
+    }
+
+    /// Chooses the placements of a prototype that are instances of Embree's, and grows the
+    /// boxes of what they place.
+    fn choose_instances(&mut self, scene: &Scene, index: PrototypeIndex) {
+        let placements = &scene.prototypes[index.0 as usize].placements;
+        let mut outlines = self.take(index);
+        for outline in &mut outlines {
+            let innermost = self.innermost(scene, placements, outline);
+            let numbers = innermost.par_iter().with_min_len(1 << 8);
+            let chosen: Vec<(u32, f64)> = numbers
+                .filter_map(|&number| {
+                    let growth = self.needed_growth(&placements[number as usize], outline);
+                    growth.map(|share| (number, share))
+                })
+                .collect();
+            for (number, share) in chosen {
+                outline.instances.push(number);
+                let child = placements[number as usize].of;
+                self.of[child.0 as usize][0].frame.grow_to(share);
+            }
+        }
+        self.of[index.0 as usize] = outlines;
+    }
+}
+
+impl Outline {
+    /// Of some of the placements, those that are instances and the others.
+    pub fn divide(&self, numbers: &Numbers) -> (Numbers, Numbers) {
+        if self.instances.is_empty() {
+            return (Numbers::These(Arc::new([])), numbers.clone());
+        }
+        let is_instance = |number: u32| self.instances.binary_search(&number).is_ok();
+        (
+            numbers.filtered(is_instance),
+            numbers.filtered(|number| !is_instance(number)),
+        )
+    }
+}
