@@ -4,10 +4,10 @@ use std::array::from_fn;
 
 use glam::DVec3;
 
-use super::{CylinderFilter, Filter, FilterLosses, NearPacket, survivors};
+use super::{Filter, FilterLosses, HasFilter, NearPacket, survivors};
 use crate::embree::{GREATEST_PACKET, RaySet, Rays32};
-use crate::math::{Bounds, LANES, Random, Ray};
-use crate::solid::{Caps, Cylinder};
+use crate::math::{Bounds, LANES, Orientation, Random, Ray};
+use crate::solid::{AnySolid, Caps, Cuboid, Cylinder, Disk, Sphere};
 use crate::tracer::frame::{Frame, LocalRay};
 
 const SEED: u64 = 20_261_129;
@@ -50,7 +50,8 @@ fn most_near_cylinders_that_are_missed_do_not_survive() {
                 ray_near(&mut random, way, 0.0)
             })
             .collect();
-        let losses = FilterLosses::of_cylinders(&sticks, &whole(), &rays, 1.0);
+        let solids: Vec<AnySolid> = sticks.iter().map(|&stick| stick.into()).collect();
+        let losses = FilterLosses::of(&solids, &whole(), &rays, 1.0);
         assert_eq!(losses.lost, 0);
         spare += losses.spare;
         pairs += (rays.len() * sticks.len()) as u64 - losses.hits;
@@ -60,13 +61,72 @@ fn most_near_cylinders_that_are_missed_do_not_survive() {
     assert!(spare * 50 < pairs, "{spare} of {pairs} misses survive");
 }
 
+/// Balls as thick as a quarter of a stick is long, within the same cube.
+fn balls(random: &mut Random) -> Vec<Sphere> {
+    let ball = |_| Sphere::new(within(random, 1.0), 0.25).expect("a ball");
+    (0..LANES).map(ball).collect()
+}
+
+/// How many pairs of a line through the cube and a solid in it survive in vain, to one that hits.
+fn in_vain(solid: impl Fn(&mut Random) -> AnySolid) -> f64 {
+    let mut sum = FilterLosses::default();
+    for index in 0..500 {
+        let mut random = Random::new(SEED, index);
+        let solids: Vec<AnySolid> = (0..LANES).map(|_| solid(&mut random)).collect();
+        let rays: Vec<Ray> = (0..40)
+            .map(|_| {
+                let way = (within(&mut random, 1.5), random.direction());
+                ray_near(&mut random, way, 0.0)
+            })
+            .collect();
+        let losses = FilterLosses::of(&solids, &whole(), &rays, 1.0);
+        assert_eq!(losses.lost, 0);
+        sum.hits += losses.hits;
+        sum.spare += losses.spare;
+    }
+    sum.spare as f64 / sum.hits as f64
+}
+
 #[test]
-fn packets_keep_what_single_rays_keep() {
+fn what_survives_in_vain_goes_with_shadows() {
+    const SIZE: f64 = 0.25;
+    let sphere = in_vain(|random| {
+        let sphere = Sphere::new(within(random, 1.0), SIZE);
+        sphere.expect("a sphere").into()
+    });
+    // A radius of 25 units is rounded up by an eighth of one at most: 1 % of the shadow.
+    assert!(sphere < 0.02, "{sphere}");
+    let cube = in_vain(|random| {
+        let turned = Orientation::IDENTITY.rotated(random.direction(), 50.0);
+        let cube = Cuboid::new(within(random, 1.0), DVec3::splat(SIZE), turned);
+        cube.expect("a cube").into()
+    });
+    // 26 %, and about a unit more at each side of 25 or 35.
+    assert!(cube < 1.26 * 1.08 - 1.0, "{cube}");
+    let disk = in_vain(|random| {
+        let disk = Disk::new(within(random, 1.0), random.direction(), SIZE);
+        disk.expect("a disk").into()
+    });
+    // A half axis of 4 or 5 units beside 25 of the radius, and 1 % and a unit around that.
+    assert!(disk < (1.0 + 2.0 * 5.0 / 25.0) * 1.09 - 1.0, "{disk}");
+}
+
+#[test]
+fn packets_keep_of_cylinders_what_single_rays_keep() {
+    assert_packets_keep(sticks);
+}
+
+#[test]
+fn packets_keep_of_spheres_what_single_rays_keep() {
+    assert_packets_keep(balls);
+}
+
+fn assert_packets_keep<S: HasFilter>(solids: impl Fn(&mut Random) -> Vec<S>) {
     let frame = Frame::new(&whole());
     let mut kept = 0;
     for index in 0..300 {
         let mut random = Random::new(SEED, index);
-        let filter = CylinderFilter::new(&sticks(&mut random), &frame);
+        let filter = S::filter(&solids(&mut random), &frame);
         let mut rays = Rays32 {
             origin: [[0.0; GREATEST_PACKET]; 3],
             direction: [[1.0; GREATEST_PACKET]; 3],

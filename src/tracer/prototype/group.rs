@@ -10,8 +10,7 @@ use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
 
-use super::attach::{attach_cylinders, attach_solids};
-use super::blocks::block_bytes;
+use super::attach::{attach_cylinders, attach_solids, kept_blocks_bytes};
 use super::cylinders::Cylinders;
 use super::described::{Described, SolidList};
 use super::members::{List, Members};
@@ -144,9 +143,15 @@ impl Group {
     #[cold]
     fn begin(&self) -> Result<JointCommit<Query>, embree::Error> {
         let mut builder = SceneBuilder::new(&self.workshop.device)?;
-        let layout = self.workshop.layout;
-        attach_cylinders(&self.cylinders, layout, self.workshop.threads, &mut builder)?;
-        attach_solids(self.cylinders.described(), &self.members, &mut builder)?;
+        let (layout, threads) = (self.workshop.layout, self.workshop.threads);
+        attach_cylinders(&self.cylinders, layout, threads, &mut builder)?;
+        attach_solids(
+            self.cylinders.described(),
+            &self.members,
+            layout,
+            threads,
+            &mut builder,
+        )?;
         for placements in &self.placements {
             builder.attach_user(Arc::clone(placements))?;
         }
@@ -156,10 +161,8 @@ impl Group {
     /// The bytes that are kept for the members beside the description and
     /// Embree's tree.
     pub fn kept_bytes(&self) -> usize {
-        let cylinders = u64::from(self.cylinders.len());
-        let has_blocks = self.is_touched() && self.workshop.layout.has_blocks(cylinders);
-        let blocks = if has_blocks {
-            block_bytes(cylinders) as usize
+        let blocks = if self.is_touched() {
+            kept_blocks_bytes(&self.members, self.workshop.layout)
         } else {
             0
         };
