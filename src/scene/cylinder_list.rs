@@ -113,15 +113,32 @@ pub struct CylinderList {
 
 #[derive(Clone, Debug)]
 enum Kept {
-    /// Shared with those who trace them, who need not come through the list.
     F64(Arc<Vec<CylinderRecord>>),
     F32(Rounded),
+}
+
+/// The records of a list, for those who trace them: they need not come through the list.
+#[derive(Clone, Debug)]
+pub(crate) enum SharedRecords {
+    F64(Arc<Vec<CylinderRecord>>),
+    F32(Arc<Vec<CylinderRecord32>>),
+}
+
+impl SharedRecords {
+    /// The cylinder at a position.
+    #[inline(always)]
+    pub fn cylinder(&self, position: usize) -> Cylinder {
+        match self {
+            Self::F64(records) => records[position].cylinder(),
+            Self::F32(records) => records[position].cylinder(),
+        }
+    }
 }
 
 /// Cylinders in f32.
 #[derive(Clone, Debug, Default)]
 struct Rounded {
-    records: Vec<CylinderRecord32>,
+    records: Arc<Vec<CylinderRecord32>>,
     /// Where consecutive primitive numbers begin: a position and its number.
     runs: Vec<(u32, u32)>,
     /// The greatest difference of a number from what was stated.
@@ -146,7 +163,7 @@ impl Rounded {
         if !follows {
             self.runs.push((position, record.primitive()));
         }
-        self.records.push(rounded);
+        Arc::make_mut(&mut self.records).push(rounded);
         Ok(())
     }
 
@@ -195,7 +212,7 @@ impl CylinderList {
         // What cannot be had now is asked for again by `push`.
         let _ = match &mut self.kept {
             Kept::F64(records) => Arc::make_mut(records).try_reserve_exact(more),
-            Kept::F32(rounded) => rounded.records.try_reserve_exact(more),
+            Kept::F32(rounded) => Arc::make_mut(&mut rounded.records).try_reserve_exact(more),
         };
     }
 
@@ -209,7 +226,7 @@ impl CylinderList {
                 Arc::make_mut(records).shrink_to_fit();
             }
             Kept::F32(rounded) if is_loose(rounded.records.capacity(), rounded.records.len()) => {
-                rounded.records.shrink_to_fit();
+                Arc::make_mut(&mut rounded.records).shrink_to_fit();
             }
             _ => {}
         }
@@ -299,11 +316,11 @@ impl CylinderList {
         }
     }
 
-    /// The same, to be kept.
-    pub(crate) fn shared_f64(&self) -> Option<Arc<Vec<CylinderRecord>>> {
+    /// The records, to be kept.
+    pub(crate) fn shared(&self) -> SharedRecords {
         match &self.kept {
-            Kept::F64(records) => Some(Arc::clone(records)),
-            Kept::F32(_) => None,
+            Kept::F64(records) => SharedRecords::F64(Arc::clone(records)),
+            Kept::F32(rounded) => SharedRecords::F32(Arc::clone(&rounded.records)),
         }
     }
 

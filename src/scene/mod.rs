@@ -59,6 +59,7 @@ pub use aimed_camera::AimedCamera;
 pub use beam_lattice::beams_of_model;
 pub use census::Census;
 pub use contents::{Contents, OtherSolids, PlacedCount};
+pub(crate) use cylinder_list::SharedRecords;
 pub use cylinder_list::{CylinderList, CylinderRecord32, Iter as CylinderIter, Records};
 pub use description::{
     Camera, CylinderRecord, Film, Frame, Integrator, Material, MaterialIndex, Placement,

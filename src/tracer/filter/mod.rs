@@ -18,25 +18,25 @@
 //!
 //! [`Cell::near`] moves the ray to its point that is nearest to the middle of the cell, with
 //! a direction of length 1, in units of the cell; numbers are then of the cell's size, as are
-//! their roundings, wherever the ray comes from. A cell is inside a cube about the frame's
-//! centre of half side 1.07 R, so that its points are within 1.9 R of the centre, and within
-//! 3 O of `o`. Displacements, in the frame:
+//! their roundings, wherever the ray comes from. The corner and the middle of a cell have
+//! coordinates of at most 1.01 R from the centre, so they are within 3 O of `o`; and a hit is within
+//! 2 O of it. Displacements, in the frame:
 //!
 //! | source | across the ray | along it |
 //! |---|---|---|
 //! | components of the direction times one over its length, each rounded: v, on a way of 2 O | 2 v O | |
 //! | `o - corner`, times the unit, a rounding each, of 3 O | 6 v O | |
-//! | the move: a product, v on a way of 3 O; the sum is rounded by v of a number of the cell | 3 v O | |
+//! | the move: a product and a sum, on a way of 3 O; the sum is of the size of the cell, 2 O | 5 v O | |
 //! | the end of the ray: its length rounded twice and a product, of 2 O | | 6 v O |
 //!
-//! The length that divides need not be exact: the same number multiplies the end. Together
-//! they are below 13 v O, and with the ray's own 3.1 v R below 17 v O. So
+//! The length that divides need not be exact: the same number multiplies the end. In sum they
+//! are below 20 v O:
 //!
 //! ```text
-//! S >= (how far Embree's ray is from the solver's) + 14 v O                        (1)
+//! S >= (how far Embree's ray is from the solver's) + 20 v O                        (1)
 //! ```
 //!
-//! which the growth of boxes, 32 v R, gives where rays enter a frame at its sphere.
+//! The growth of boxes, 32 v R, is more than the 23.2 v R that rays need which enter a frame at its sphere.
 //! A cell is the union of its solids' boxes, each grown by S or more. So, if there is a hit:
 //! there is a `T` in the range of the near ray such that its point is within S of the
 //! solid, and in the cell.

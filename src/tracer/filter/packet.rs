@@ -83,15 +83,13 @@ impl NearPacket {
     #[inline(always)]
     pub fn new(cell: &Cell, rays: &Rays32, wanted: RaySet) -> Self {
         let mut rows = [NearRow::NOWHERE; ROWS];
-        for row in 0..ROWS {
+        for (row, near) in rows.iter_mut().enumerate() {
             if in_row(wanted, row) == 0 {
                 continue;
             }
-            let mut near = NearRow::NOWHERE;
             for lane in 0..LANES {
                 near.set(lane, &cell.near(&rays.ray(row * LANES + lane)));
             }
-            rows[row] = near;
         }
         Self {
             bundle: bundle(&rows, wanted),
@@ -138,17 +136,17 @@ fn bundle(rows: &[NearRow; ROWS], wanted: RaySet) -> Option<(NearRay, f32)> {
     let number = wanted.into_iter().next()?;
     let first = rows[number / LANES].ray(number % LANES);
     let mut square = 0.0_f32;
-    for row in 0..ROWS {
+    for (row, rays) in rows.iter().enumerate() {
         let in_row = LaneMask::from_bits(in_row(wanted, row));
         let mut squares = [0.0; LANES];
-        for lane in 0..LANES {
-            let ray = rows[row].ray(lane);
+        for (lane, square) in squares.iter_mut().enumerate() {
+            let ray = rays.ray(lane);
             let [x, y, z] = [0, 1, 2].map(|axis| {
                 let moved = (ray.origin[axis] - first.origin[axis]).abs();
                 moved + LONGEST * (ray.direction[axis] - first.direction[axis]).abs()
             });
             let apart = x * x + (y * y + z * z);
-            squares[lane] = if in_row.0[lane] { apart } else { 0.0 };
+            *square = if in_row.0[lane] { apart } else { 0.0 };
         }
         // In halves, for a row has no sum of its own in the processor.
         for half in [4, 2, 1] {
@@ -158,7 +156,6 @@ fn bundle(rows: &[NearRow; ROWS], wanted: RaySet) -> Option<(NearRay, f32)> {
         }
         square = greater(square, squares[0]);
     }
-    // Written so that NaN is too far.
     (square <= MOST_APART * MOST_APART).then(|| (first, square.sqrt() * APART))
 }
 

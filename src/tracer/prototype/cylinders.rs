@@ -1,7 +1,6 @@
 //! The cylinders of a group.
 
 use std::marker::PhantomData;
-use std::sync::Arc;
 
 use smallvec::SmallVec;
 
@@ -12,7 +11,7 @@ use super::numbers::Numbers;
 use super::solids::{Filtered, Solids};
 use crate::embree::{Box32, GREATEST_PACKET, RaySet, prefetch};
 use crate::math::LANES;
-use crate::scene::{CylinderList, CylinderRecord};
+use crate::scene::{CylinderList, SharedRecords};
 use crate::solid::{Cylinder, SolidKind};
 use crate::tracer::filter::{CylinderFilter, HasFilter};
 use crate::tracer::query::{Packet, Query};
@@ -77,16 +76,16 @@ impl Cylinders {
 /// The cylinders of a group whose ends are known to be `E`.
 pub(super) struct KnownCylinders<E> {
     cylinders: Cylinders,
-    /// The records, if they are of f64. A callback gets to one from here, not
-    /// through scene, prototype and list, each of which it would wait for.
-    records: Option<Arc<Vec<CylinderRecord>>>,
+    /// A callback gets to a record from here, not through scene, prototype and list, each of
+    /// which it would wait for.
+    records: SharedRecords,
     ends: PhantomData<E>,
 }
 
 impl<E: Ends> KnownCylinders<E> {
     pub fn new(cylinders: Cylinders) -> Self {
         Self {
-            records: cylinders.records().shared_f64(),
+            records: cylinders.records().shared(),
             cylinders,
             ends: PhantomData,
         }
@@ -95,10 +94,7 @@ impl<E: Ends> KnownCylinders<E> {
     /// The cylinder of a record.
     #[inline(always)]
     fn cylinder(&self, record: u32) -> Cylinder {
-        E::known(match &self.records {
-            Some(records) => records[record as usize].cylinder(),
-            None => self.cylinders.cylinder(record),
-        })
+        E::known(self.records.cylinder(record as usize))
     }
 }
 
@@ -118,8 +114,9 @@ impl<E: Ends> Solids for KnownCylinders<E> {
 
     #[inline(always)]
     fn prefetch(&self, record: u32) {
-        if let Some(records) = &self.records {
-            prefetch(&records[record as usize]);
+        match &self.records {
+            SharedRecords::F64(records) => prefetch(&records[record as usize]),
+            SharedRecords::F32(records) => prefetch(&records[record as usize]),
         }
     }
 
