@@ -6,8 +6,8 @@ use glam::DVec3;
 
 use super::{Filter, FilterLosses, HasFilter, NearPacket, survivors};
 use crate::embree::{GREATEST_PACKET, RaySet, Rays32};
-use crate::math::{Bounds, LANES, Orientation, Random, Ray};
-use crate::solid::{AnySolid, Caps, Cuboid, Cylinder, Disk, Sphere};
+use crate::math::{Bounds, LANES, Random, Ray};
+use crate::solid::{AnySolid, Caps, Cylinder, Sphere};
 use crate::tracer::frame::{Frame, LocalRay};
 
 const SEED: u64 = 20_261_129;
@@ -65,50 +65,6 @@ fn most_near_cylinders_that_are_missed_do_not_survive() {
 fn balls(random: &mut Random) -> Vec<Sphere> {
     let ball = |_| Sphere::new(within(random, 1.0), 0.25).expect("a ball");
     (0..LANES).map(ball).collect()
-}
-
-/// How many pairs of a line through the cube and a solid in it survive in vain, to one that hits.
-fn in_vain(solid: impl Fn(&mut Random) -> AnySolid) -> f64 {
-    let mut sum = FilterLosses::default();
-    for index in 0..500 {
-        let mut random = Random::new(SEED, index);
-        let solids: Vec<AnySolid> = (0..LANES).map(|_| solid(&mut random)).collect();
-        let rays: Vec<Ray> = (0..40)
-            .map(|_| {
-                let way = (within(&mut random, 1.5), random.direction());
-                ray_near(&mut random, way, 0.0)
-            })
-            .collect();
-        let losses = FilterLosses::of(&solids, &whole(), &rays, 1.0);
-        assert_eq!(losses.lost, 0);
-        sum.hits += losses.hits;
-        sum.spare += losses.spare;
-    }
-    sum.spare as f64 / sum.hits as f64
-}
-
-#[test]
-fn what_survives_in_vain_goes_with_shadows() {
-    const SIZE: f64 = 0.25;
-    let sphere = in_vain(|random| {
-        let sphere = Sphere::new(within(random, 1.0), SIZE);
-        sphere.expect("a sphere").into()
-    });
-    // A radius of 25 units is rounded up by an eighth of one at most: 1 % of the shadow.
-    assert!(sphere < 0.02, "{sphere}");
-    let cube = in_vain(|random| {
-        let turned = Orientation::IDENTITY.rotated(random.direction(), 50.0);
-        let cube = Cuboid::new(within(random, 1.0), DVec3::splat(SIZE), turned);
-        cube.expect("a cube").into()
-    });
-    // 26 %, and about a unit more at each side of 25 or 35.
-    assert!(cube < 1.26 * 1.08 - 1.0, "{cube}");
-    let disk = in_vain(|random| {
-        let disk = Disk::new(within(random, 1.0), random.direction(), SIZE);
-        disk.expect("a disk").into()
-    });
-    // A half axis of 4 or 5 units beside 25 of the radius, and 1 % and a unit around that.
-    assert!(disk < (1.0 + 2.0 * 5.0 / 25.0) * 1.09 - 1.0, "{disk}");
 }
 
 #[test]
