@@ -170,7 +170,7 @@ fn takers(contents: &[Contents], estimate: &MemoryEstimate, need: Need, needed: 
         let (cylinders, name) = (prototype.cylinders, quoted(&prototype.name));
         let bytes = MemoryEstimate::of_records(cylinders, prototype.records, 0);
         lines.push((bytes, format!("{cylinders} cylinders in {name}")));
-        let OtherSolids { count, bytes } = prototype.others;
+        let OtherSolids { count, bytes, .. } = prototype.others;
         lines.push((bytes, format!("{count} solids of other kinds in {name}")));
         for &PlacedCount { of, count } in &prototype.placed {
             let bytes = MemoryEstimate::of_records(0, prototype.records, count);
@@ -179,7 +179,7 @@ fn takers(contents: &[Contents], estimate: &MemoryEstimate, need: Need, needed: 
         }
     }
     if need == Need::Build {
-        lines.push((estimate.copies_bytes, "cylinders in blocks".to_owned()));
+        lines.push((estimate.copies_bytes, "blocks of solids".to_owned()));
         lines.push((estimate.embree_bytes, "Embree's trees of them".to_owned()));
         let building = "Embree, while it builds".to_owned();
         lines.push((estimate.building_bytes, building));

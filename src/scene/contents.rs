@@ -1,6 +1,7 @@
 //! What prototypes hold, counted: before the files that a scene names are
 //! read, or after.
 
+use std::array::from_fn;
 use std::collections::HashMap;
 
 use rayon::prelude::*;
@@ -8,7 +9,7 @@ use rayon::prelude::*;
 use super::cylinder_list::Records;
 use super::description::{Placement, PrototypeIndex, Scene};
 use super::solid_lists::{Listed, SolidRecord};
-use crate::solid::Composition;
+use crate::solid::{Composition, ConvexSolid, SolidKind};
 
 /// What a prototype holds, counted.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,24 +33,53 @@ pub struct Contents {
 pub struct OtherSolids {
     /// How many.
     pub count: u64,
+    /// How many of each kind: spheres, cuboids, cones, rounded cones and disks, which
+    /// leaves the set operations.
+    pub singles: [u64; 5],
     /// The bytes of their records, with what compositions are made of.
     pub bytes: u64,
 }
 
 impl OtherSolids {
+    /// How many are set operations.
+    #[must_use]
+    pub fn composed(&self) -> u64 {
+        let singles = self.singles.iter().copied().fold(0, u64::saturating_add);
+        self.count.saturating_sub(singles)
+    }
+
     /// These and `count` of one kind more.
-    pub(super) fn and<S: Listed>(self, count: u64) -> Self {
-        let bytes = count.saturating_mul(size_of::<SolidRecord<S>>() as u64);
+    pub(super) fn and<S: Listed + ConvexSolid>(self, count: u64) -> Self {
+        let mut these = self.and_records::<S>(count);
+        let position = match S::KIND {
+            SolidKind::Sphere => 0,
+            SolidKind::Cuboid => 1,
+            SolidKind::Cone => 2,
+            SolidKind::RoundedCone => 3,
+            SolidKind::Disk => 4,
+            SolidKind::Cylinder
+            | SolidKind::Union
+            | SolidKind::Intersection
+            | SolidKind::Difference => return these,
+        };
+        these.singles[position] = these.singles[position].saturating_add(count);
+        these
+    }
+
+    /// These and so many set operations with so many operands in all.
+    pub(super) fn and_composed(self, count: u64, operands: u64) -> Self {
+        let operands = operands.saturating_mul(size_of::<Composition>() as u64);
+        let these = self.and_records::<Composition>(count);
         Self {
-            count: self.count.saturating_add(count),
-            bytes: self.bytes.saturating_add(bytes),
+            bytes: these.bytes.saturating_add(operands),
+            ..these
         }
     }
 
-    /// These, with so many operands that compositions among them are made of.
-    pub(super) fn with_operands(self, operands: u64) -> Self {
-        let bytes = operands.saturating_mul(size_of::<Composition>() as u64);
+    fn and_records<S>(self, count: u64) -> Self {
+        let bytes = count.saturating_mul(size_of::<SolidRecord<S>>() as u64);
         Self {
+            count: self.count.saturating_add(count),
             bytes: self.bytes.saturating_add(bytes),
             ..self
         }
@@ -59,6 +89,7 @@ impl OtherSolids {
     pub(super) fn plus(self, other: Self) -> Self {
         Self {
             count: self.count.saturating_add(other.count),
+            singles: from_fn(|kind| self.singles[kind].saturating_add(other.singles[kind])),
             bytes: self.bytes.saturating_add(other.bytes),
         }
     }
@@ -138,6 +169,7 @@ impl Scene {
                     prototype.cylinders.records(),
                     OtherSolids {
                         count: prototype.solids.len() as u64,
+                        singles: prototype.solids.single_counts(),
                         bytes: prototype.solids.records_bytes() as u64,
                     },
                     counted(&prototype.placements),

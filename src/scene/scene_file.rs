@@ -17,7 +17,7 @@ use super::source::Source;
 use super::swc::{Joints, SAMPLE_BYTES, Shape};
 use super::table::ColumnKey;
 use super::values::Keys;
-use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
+use crate::solid::{Cone, Cuboid, Disk, RoundedCone, Sphere};
 
 /// A scene file that has been read; the files that it names have not.
 pub struct SceneFile {
@@ -169,7 +169,7 @@ impl SceneFile {
             .flatten()
         {
             let operands = operand_count(keys);
-            others = others.and::<Composition>(1).with_operands(operands);
+            others = others.and_composed(1, operands);
         }
         (cylinders, others)
     }

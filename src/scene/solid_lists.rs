@@ -72,6 +72,11 @@ macro_rules! listed {
                 [$(self.$list.len()),*].iter().sum()
             }
 
+            /// How many of each kind are not composed of others.
+            pub(super) fn single_counts(&self) -> [u64; 5] {
+                [$(self.$single.len() as u64),*]
+            }
+
             /// The bytes of the records, with what the compositions are made of.
             #[must_use]
             pub fn records_bytes(&self) -> usize {

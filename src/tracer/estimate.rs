@@ -67,19 +67,19 @@ const BLOCK: u64 = 1152;
 const REFERENCE: u64 = 32;
 
 impl Layout {
-    /// Primitives for so many cylinders.
-    fn primitives(self, cylinders: u64) -> u64 {
-        if self.has_blocks(cylinders) {
-            cylinders.div_ceil(LANES as u64)
+    /// Primitives for so many solids of a kind that has a filter.
+    fn primitives(self, solids: u64) -> u64 {
+        if self.has_blocks(solids) {
+            solids.div_ceil(LANES as u64)
         } else {
-            cylinders
+            solids
         }
     }
 
-    /// Bytes that the tracer keeps of so many cylinders beside their records.
-    fn copies_bytes(self, cylinders: u64) -> u64 {
-        if self.has_blocks(cylinders) {
-            block_bytes(cylinders)
+    /// Bytes that the tracer keeps of so many solids beside their records.
+    fn copies_bytes(self, solids: u64) -> u64 {
+        if self.has_blocks(solids) {
+            block_bytes(solids)
         } else {
             0
         }
@@ -115,12 +115,12 @@ impl MemoryEstimate {
             if !prototype.is_used {
                 continue;
             }
-            let copies = layout.copies_bytes(cylinders);
-            sum.copies_bytes = sum.copies_bytes.saturating_add(copies);
-            let cylinders = layout.primitives(cylinders);
-            let primitives = cylinders
-                .saturating_add(others.count)
-                .saturating_add(placements);
+            let mut primitives = others.composed().saturating_add(placements);
+            for solids in others.singles.into_iter().chain([cylinders]) {
+                let copies = layout.copies_bytes(solids);
+                sum.copies_bytes = sum.copies_bytes.saturating_add(copies);
+                primitives = primitives.saturating_add(layout.primitives(solids));
+            }
             let tree = tree_bytes(primitives, is_wide)
                 .saturating_add(INSTANCE_BYTES.saturating_mul(instances(prototype, contents)));
             sum.embree_bytes = sum.embree_bytes.saturating_add(tree);

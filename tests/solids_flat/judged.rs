@@ -11,6 +11,8 @@ pub trait Judged: ConvexSolid {
     fn around_zero(&self) -> Self;
     fn true_chord(&self, ray: &Ray) -> Option<TrueChord>;
     fn truly_holds(&self, point: DVec3) -> bool;
+    /// The least relative change after which the answer may be another.
+    fn gap(&self, ray: &Ray) -> f64;
     /// How far a point, told to be of `part`, is at least from it.
     fn distance(&self, part: Part, point: DVec3) -> f64;
 }
@@ -26,6 +28,10 @@ impl Judged for Sphere {
 
     fn truly_holds(&self, point: DVec3) -> bool {
         oracle::sphere_holds(self, point)
+    }
+
+    fn gap(&self, ray: &Ray) -> f64 {
+        oracle::sphere_gap(self, ray)
     }
 
     fn distance(&self, part: Part, point: DVec3) -> f64 {
@@ -48,6 +54,10 @@ impl Judged for Cuboid {
 
     fn truly_holds(&self, point: DVec3) -> bool {
         oracle::cuboid_holds(self, point)
+    }
+
+    fn gap(&self, ray: &Ray) -> f64 {
+        oracle::cuboid_gap(self, ray)
     }
 
     fn distance(&self, part: Part, point: DVec3) -> f64 {
@@ -87,6 +97,10 @@ impl Judged for Disk {
 
     fn truly_holds(&self, point: DVec3) -> bool {
         oracle::disk_holds(self, point)
+    }
+
+    fn gap(&self, ray: &Ray) -> f64 {
+        oracle::disk_gap(self, ray)
     }
 
     fn distance(&self, part: Part, point: DVec3) -> f64 {

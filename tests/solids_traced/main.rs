@@ -13,7 +13,7 @@ use cyltrace::math::{Random, Ray};
 use cyltrace::oracle::hits_of_any;
 use cyltrace::scene::Prototype;
 use cyltrace::solid::{AnySolid, Caps, Cone, Crossing, Cylinder, SolidKind};
-use cyltrace::tracer::{Hit, Layout, MemoryEstimate, Options, Tracer};
+use cyltrace::tracer::{BuildTime, Hit, Layout, MemoryEstimate, Options, Tracer};
 use glam::DVec3;
 use rayon::prelude::*;
 use support::solids::{KIND_NAMES, crowd, prototype_of, ray_through};
@@ -257,6 +257,16 @@ fn statistics_count_the_other_kinds() {
     );
     let contents = tracer.scene().contents();
     assert_eq!(contents[1].others.count, 50);
-    let estimate = MemoryEstimate::of(&contents, Layout::Single, None);
-    assert_eq!(estimate.records_bytes, statistics.records_bytes as u64);
+    assert_eq!(contents[1].others.singles, [10; 5]);
+    for layout in [Layout::Single, Layout::Block] {
+        let options = Options {
+            layout,
+            build: BuildTime::AtOnce,
+            ..Options::default()
+        };
+        let statistics = traced(tracer.scene().prototypes.clone(), &options).statistics();
+        let estimate = MemoryEstimate::of(&contents, layout, None);
+        let kept = estimate.records_bytes + estimate.copies_bytes;
+        assert_eq!(kept, statistics.records_bytes as u64, "{layout:?}");
+    }
 }

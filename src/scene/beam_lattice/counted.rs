@@ -14,7 +14,7 @@ use super::package;
 use crate::scene::contents::OtherSolids;
 use crate::scene::error::SceneError;
 use crate::scene::source::Source;
-use crate::solid::{Composition, Cone, Sphere};
+use crate::solid::{Cone, Sphere};
 
 /// The cylinders and the other solids of a `[[beam_lattice]]`. Half a ball counts also
 /// where a greater ball at its vertex will hold it.
@@ -34,8 +34,7 @@ pub(in crate::scene) fn counted(
         others = others
             .and::<Cone>(times(kinds.cones))
             .and::<Sphere>(times(kinds.balls))
-            .and::<Composition>(times(kinds.halves))
-            .with_operands(times(2 * kinds.halves));
+            .and_composed(times(kinds.halves), times(2 * kinds.halves));
     }
     Ok((cylinders, others))
 }

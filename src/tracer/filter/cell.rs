@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::embree::{Box32, Ray32};
-use crate::math::Bounds;
+use crate::math::{Bounds, LANES};
 use crate::tracer::frame::Frame;
 
 /// Corners are multiples of this many to a unit of the frame, which is finer than the least
@@ -34,8 +34,8 @@ pub(crate) struct Cell {
     corner: [i16; 3],
     /// How many units are one of the frame; see [`Cell::units`].
     scale: u8,
-    /// Free for the filter whose cell it is.
-    pub exponent: u8,
+    /// Radii are multiples of one over two to this, in units.
+    exponent: u8,
 }
 
 /// A ray in the units of a cell: its points are `origin + T direction`, for T from `start` to
@@ -81,6 +81,22 @@ impl Cell {
     pub fn place(&self, point: DVec3, frame: &Frame) -> DVec3 {
         let corner = DVec3::from_array(self.corner().map(f64::from));
         (frame.place(point) - corner) * f64::from(self.units())
+    }
+
+    /// Radii in units of the cell, rounded up to eight bits each: as fine as the greatest
+    /// allows. In tests only with a share of the step that they are rounded up by.
+    pub fn keep_radii(&mut self, radii: [f64; LANES], share: f64) -> [u8; LANES] {
+        let greatest = radii.iter().copied().fold(0.0, f64::max);
+        let fits = |exponent: &u8| greatest * f64::from(1_u32 << exponent) <= 255.0;
+        self.exponent = (0..16).rev().find(fits).unwrap_or(0);
+        let steps = f64::from(1_u32 << self.exponent);
+        radii.map(|radius| (radius * steps - (1.0 - share)).ceil() as u8)
+    }
+
+    /// A radius that is kept.
+    #[inline(always)]
+    pub fn radius(&self, kept: u8) -> f32 {
+        f32::from(kept) * f32::from_bits((127 - u32::from(self.exponent)) << 23)
     }
 
     /// The corner, in the frame.

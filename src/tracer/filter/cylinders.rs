@@ -1,4 +1,5 @@
-//! The filter of cylinders.
+//! The filter of cylinders, and of solids that a cylinder contains well: the [`Sheath`] of
+//! each.
 //!
 //! The copy of a cylinder is one about the points `c ± b` with a radius `r`, in units of the
 //! cell. `c` and `b` have components of eight bits, and `r` is a multiple of a power of two.
@@ -15,7 +16,8 @@
 //! ```
 //!
 //! of the line `c + y b`, and of the plane through `c` across it: both are greatest at an end.
-//! `b` is made long enough that `|b| >= h0`. It may be longer than the cylinder: a short
+//! What a cylinder contains is within the same bounds. `b` is made long enough that
+//! `|b| >= h0`. It may be longer than the cylinder: a short
 //! thick one gets a longer `b`, whose direction is more exact, so that ρ σ is less.
 //!
 //! # The test
@@ -71,9 +73,8 @@
 use glam::DVec3;
 
 use super::cell::{dot, greater, less};
-use super::{Cell, Filter, NearRay};
+use super::{Cell, Filter, NearRay, Sheath, Sheathed};
 use crate::math::LANES;
-use crate::solid::Cylinder;
 use crate::tracer::frame::Frame;
 
 /// What the tests have to spare for their roundings, as the head of this file derives: it
@@ -89,7 +90,7 @@ const THICKER: f64 = 1.0 + 1.0 / (1 << 7) as f64;
 /// The roundings of f64 in what is kept are far below this share of it.
 const OUTWARD: f64 = 1.0 + 1.0 / (1_u64 << 40) as f64;
 
-/// A block's cylinders.
+/// A block's cylinders, or the sheaths of its solids.
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CylinderFilter {
@@ -105,29 +106,19 @@ pub(crate) struct CylinderFilter {
 const _: () = assert!(size_of::<CylinderFilter>() == 64);
 
 impl CylinderFilter {
-    /// That of up to eight cylinders of a group with this frame.
-    pub fn new(cylinders: &[Cylinder], frame: &Frame) -> Self {
-        Self::with_margins(cylinders, frame, 1.0)
-    }
-
-    /// The same with a share of what has to be added: less than all of it loses hits.
-    pub(super) fn with_margins(cylinders: &[Cylinder], frame: &Frame, share: f64) -> Self {
-        let cell = Cell::around(cylinders.iter().map(Cylinder::bounds), frame);
+    /// That of up to eight solids of a group with this frame, with a share of what has to
+    /// be added: less than all of it loses hits.
+    pub fn new<S: Sheathed>(solids: &[S], frame: &Frame, share: f64) -> Self {
+        let cell = Cell::around(solids.iter().map(S::bounds), frame);
         let mut filter = Self {
             cell,
             c: [[0; LANES]; 3],
             b: [[0; LANES]; 3],
             r: [0; LANES],
         };
-        let units = f64::from(cell.units());
         let mut radii = [0.0; LANES];
-        for (lane, cylinder) in cylinders.iter().enumerate() {
-            let one = InCell {
-                ends: [cylinder.p0(), cylinder.p1()].map(|p| cell.place(p, frame)),
-                radius: cylinder.radius() * frame.scale() * units,
-                slack: frame.slack() * units,
-                share,
-            };
+        for (lane, solid) in solids.iter().enumerate() {
+            let one = InCell::new(&solid.sheath(), &cell, frame, share);
             let (c, b, radius) = one.copy();
             for axis in 0..3 {
                 filter.c[axis][lane] = c[axis] as u8;
@@ -135,17 +126,12 @@ impl CylinderFilter {
             }
             radii[lane] = radius;
         }
-        let greatest = radii.iter().copied().fold(0.0, f64::max);
-        let fits = |exponent: &u8| greatest * f64::from(1_u32 << exponent) <= 255.0;
-        filter.cell.exponent = (0..16).rev().find(fits).unwrap_or(0);
-        let steps = f64::from(1_u32 << filter.cell.exponent);
-        filter.r = radii.map(|radius| (radius * steps).ceil() as u8);
+        filter.r = filter.cell.keep_radii(radii, share);
         filter
     }
 
     #[inline(always)]
     fn lane(&self, lane: usize, ray: &NearRay, apart: f32) -> Lane {
-        let steps = f32::from_bits((127 - u32::from(self.cell.exponent)) << 23);
         let b = [
             f32::from(self.b[0][lane]),
             f32::from(self.b[1][lane]),
@@ -163,7 +149,7 @@ impl CylinderFilter {
             b[0] * d[1] - b[1] * d[0],
         ];
         let (nn, w, bb) = (dot(n, n), dot(x, n), dot(b, b));
-        let r = f32::from(self.r[lane]) * steps + apart;
+        let r = self.cell.radius(self.r[lane]) + apart;
         Lane {
             x,
             b,
@@ -233,6 +219,8 @@ impl Filter for CylinderFilter {
 /// A cylinder in units of its cell.
 struct InCell {
     ends: [DVec3; 2],
+    /// The direction of its axis, of length 1.
+    axis: DVec3,
     radius: f64,
     slack: f64,
     /// How much of (1) and (2) is added: all but in a test.
@@ -240,15 +228,27 @@ struct InCell {
 }
 
 impl InCell {
+    fn new(sheath: &Sheath, cell: &Cell, frame: &Frame, share: f64) -> Self {
+        let units = f64::from(cell.units());
+        let scale = frame.scale() * units;
+        let anchor = cell.place(sheath.anchor, frame);
+        Self {
+            ends: sheath.heights.map(|h| anchor + sheath.axis * (h * scale)),
+            axis: sheath.axis,
+            radius: sheath.radius * scale,
+            slack: frame.slack() * units,
+            share,
+        }
+    }
+
     /// Its `c`, `b` and least `r`.
     fn copy(&self) -> (DVec3, DVec3, f64) {
         let [p0, p1] = self.ends;
         let c = (0.5 * (p0 + p1)).round();
-        let half = 0.5 * (p1 - p0);
         // Rounding turns `b` by about 0.6 / |b|: the least sum of |b| and ρ times that.
-        let mut length = half.length().max((0.6 * self.radius).sqrt()).max(1.0);
+        let mut length = self.half().max((0.6 * self.radius).sqrt()).max(1.0);
         loop {
-            let b = (half.normalize() * length).round();
+            let b = (self.axis * length).round();
             if b.abs().max_element() > f64::from(i8::MAX) || !b.is_finite() {
                 return (c, DVec3::ZERO, self.thick(0.0));
             }
@@ -260,15 +260,19 @@ impl InCell {
         }
     }
 
+    /// Half of its length.
+    fn half(&self) -> f64 {
+        let [p0, p1] = self.ends;
+        0.5 * (p1 - p0).length()
+    }
+
     /// h0 of (2).
     fn reach(&self, c: DVec3, b: DVec3) -> f64 {
         let [p0, p1] = self.ends;
         let along = |p: DVec3| (p - c).dot(b).abs() / b.length();
-        let axis = p1 - p0;
-        let sine = axis.cross(b).length() / (axis.length() * b.length());
-        let own = 0.5 * axis.length();
-        let added = along(p0).max(along(p1)) - own + self.radius * sine + self.slack;
-        (own + self.share * added) * OUTWARD
+        let sine = self.axis.cross(b).length() / b.length();
+        let added = along(p0).max(along(p1)) - self.half() + self.radius * sine + self.slack;
+        (self.half() + self.share * added) * OUTWARD
     }
 
     /// `off` of (1).

@@ -1,8 +1,8 @@
 //! What filters lose, for tests that draw solids and rays.
 
-use super::{CylinderFilter, survivors};
+use super::{HasFilter, survivors};
 use crate::math::{Bounds, LANES, Ray};
-use crate::solid::{Cylinder, triple_product};
+use crate::solid::AnySolid;
 use crate::tracer::frame::{Frame, LocalRay};
 
 /// What rays find of a block, solved in f64, and what its filter leaves of that.
@@ -17,16 +17,34 @@ pub struct FilterLosses {
 }
 
 impl FilterLosses {
-    /// Puts rays to the filter of up to eight cylinders of a prototype that fills the box
-    /// `whole`. The filter is made with a share of the margins that it needs.
+    /// Puts rays to the filter of up to eight solids of one kind, of a prototype that fills
+    /// the box `whole`. The filter is made with a share of the margins that it needs.
     ///
     /// # Panics
-    /// If there are more cylinders.
+    /// If there are more solids, or of several kinds.
     #[must_use]
-    pub fn of_cylinders(cylinders: &[Cylinder], whole: &Bounds, rays: &[Ray], share: f64) -> Self {
-        assert!(cylinders.len() <= LANES, "a block has no more");
+    pub fn of(solids: &[AnySolid], whole: &Bounds, rays: &[Ray], share: f64) -> Self {
+        assert!(solids.len() <= LANES, "a block has no more");
+        macro_rules! of_kinds {
+            ($($kind:ident)*) => {
+                match solids {
+                    [] => Self::default(),
+                    $([AnySolid::$kind(_), ..] => {
+                        let alike = solids.iter().map(|one| match one {
+                            AnySolid::$kind(one) => *one,
+                            other => panic!("{other:?} beside {:?}", solids[0]),
+                        });
+                        Self::of_kind(&alike.collect::<Vec<_>>(), whole, rays, share)
+                    })*
+                }
+            };
+        }
+        of_kinds!(Cylinder Cone RoundedCone Sphere Cuboid Disk)
+    }
+
+    fn of_kind<S: HasFilter>(solids: &[S], whole: &Bounds, rays: &[Ray], share: f64) -> Self {
         let frame = Frame::new(whole);
-        let filter = CylinderFilter::with_margins(cylinders, &frame, share);
+        let filter = S::filter_with(solids, &frame, share);
         let mut losses = Self::default();
         for ray in rays {
             let (t_min, t_max) = (ray.t_min, ray.t_max);
@@ -35,10 +53,10 @@ impl FilterLosses {
             };
             let local = level.ray;
             let survivors = survivors(&filter, &ray32);
-            for (lane, one) in cylinders.iter().enumerate() {
-                let from_p0 = local.origin_from(one.p0());
+            for (lane, one) in solids.iter().enumerate() {
+                let from_anchor = local.origin_from(one.anchor());
                 let (direction, shift) = (local.direction, local.shift);
-                let met = triple_product::first(one, from_p0, direction, shift, t_min, t_max);
+                let met = one.first(from_anchor, direction, shift, t_min, t_max);
                 let survives = survivors >> lane & 1 == 1;
                 losses.hits += u64::from(met.is_some());
                 losses.lost += u64::from(met.is_some() && !survives);

@@ -57,6 +57,8 @@ mod cell;
 mod cylinders;
 mod losses;
 mod packet;
+mod sheath;
+mod spheres;
 #[cfg(test)]
 mod tests;
 
@@ -64,9 +66,13 @@ pub(crate) use cell::{Cell, NearRay};
 pub(crate) use cylinders::CylinderFilter;
 pub use losses::FilterLosses;
 pub(crate) use packet::NearPacket;
+pub(crate) use sheath::{Sheath, Sheathed};
+pub(crate) use spheres::SphereFilter;
 
 use crate::embree::Ray32;
 use crate::math::{LANES, LaneMask};
+use crate::solid::{ConvexSolid, Sphere};
+use crate::tracer::frame::Frame;
 
 /// The size of every filter: a cache line.
 pub(crate) const FILTER_BYTES: usize = 64;
@@ -89,6 +95,36 @@ pub(crate) trait Filter: Send + Sync + 'static {
     #[inline(always)]
     fn may_pass(&self, _lane: usize, _ray: &NearRay, _apart: f32) -> bool {
         true
+    }
+}
+
+/// A kind of solid that has a filter.
+pub(crate) trait HasFilter: ConvexSolid {
+    /// The copies of up to eight.
+    type Filter: Filter;
+
+    /// The filter of up to eight solids of a group with this frame.
+    fn filter(solids: &[Self], frame: &Frame) -> Self::Filter {
+        Self::filter_with(solids, frame, 1.0)
+    }
+
+    /// The same with a share of the margins that it needs: less than all of them lose hits.
+    fn filter_with(solids: &[Self], frame: &Frame, share: f64) -> Self::Filter;
+}
+
+impl<S: Sheathed> HasFilter for S {
+    type Filter = CylinderFilter;
+
+    fn filter_with(solids: &[Self], frame: &Frame, share: f64) -> CylinderFilter {
+        CylinderFilter::new(solids, frame, share)
+    }
+}
+
+impl HasFilter for Sphere {
+    type Filter = SphereFilter;
+
+    fn filter_with(solids: &[Self], frame: &Frame, share: f64) -> SphereFilter {
+        SphereFilter::new(solids, frame, share)
     }
 }
 

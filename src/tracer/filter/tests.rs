@@ -4,10 +4,10 @@ use std::array::from_fn;
 
 use glam::DVec3;
 
-use super::{CylinderFilter, Filter, FilterLosses, NearPacket, survivors};
+use super::{Filter, FilterLosses, HasFilter, NearPacket, survivors};
 use crate::embree::{GREATEST_PACKET, RaySet, Rays32};
 use crate::math::{Bounds, LANES, Random, Ray};
-use crate::solid::{Caps, Cylinder};
+use crate::solid::{AnySolid, Caps, Cylinder, Sphere};
 use crate::tracer::frame::{Frame, LocalRay};
 
 const SEED: u64 = 20_261_129;
@@ -50,7 +50,8 @@ fn most_near_cylinders_that_are_missed_do_not_survive() {
                 ray_near(&mut random, way, 0.0)
             })
             .collect();
-        let losses = FilterLosses::of_cylinders(&sticks, &whole(), &rays, 1.0);
+        let solids: Vec<AnySolid> = sticks.iter().map(|&stick| stick.into()).collect();
+        let losses = FilterLosses::of(&solids, &whole(), &rays, 1.0);
         assert_eq!(losses.lost, 0);
         spare += losses.spare;
         pairs += (rays.len() * sticks.len()) as u64 - losses.hits;
@@ -60,13 +61,28 @@ fn most_near_cylinders_that_are_missed_do_not_survive() {
     assert!(spare * 50 < pairs, "{spare} of {pairs} misses survive");
 }
 
+/// Balls as thick as a quarter of a stick is long, within the same cube.
+fn balls(random: &mut Random) -> Vec<Sphere> {
+    let ball = |_| Sphere::new(within(random, 1.0), 0.25).expect("a ball");
+    (0..LANES).map(ball).collect()
+}
+
 #[test]
-fn packets_keep_what_single_rays_keep() {
+fn packets_keep_of_cylinders_what_single_rays_keep() {
+    assert_packets_keep(sticks);
+}
+
+#[test]
+fn packets_keep_of_spheres_what_single_rays_keep() {
+    assert_packets_keep(balls);
+}
+
+fn assert_packets_keep<S: HasFilter>(solids: impl Fn(&mut Random) -> Vec<S>) {
     let frame = Frame::new(&whole());
     let mut kept = 0;
     for index in 0..300 {
         let mut random = Random::new(SEED, index);
-        let filter = CylinderFilter::new(&sticks(&mut random), &frame);
+        let filter = S::filter(&solids(&mut random), &frame);
         let mut rays = Rays32 {
             origin: [[0.0; GREATEST_PACKET]; 3],
             direction: [[1.0; GREATEST_PACKET]; 3],

@@ -1,14 +1,15 @@
 //! Attaches the solids of a group to its Embree scene: a user geometry for
 //! each kind that it contains.
 
-use super::blocks::Blocked;
+use super::blocks::{Blocked, block_bytes};
 use super::cylinders::{Cylinders, KnownCylinders};
 use super::described::{Described, SolidList};
 use super::ends::{Capped, Ends, EndsKind, Mixed, Open};
 use super::members::Members;
-use super::solids::Single;
+use super::solids::{Filtered, Single, Solids};
 use crate::embree::{self, SceneBuilder};
 use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
+use crate::tracer::filter::HasFilter;
 use crate::tracer::options::Layout;
 use crate::tracer::query::Query;
 use crate::tracer::traced::TracedSolid;
@@ -38,35 +39,63 @@ fn attach<E: Ends>(
     builder: &mut SceneBuilder<Query>,
 ) -> Result<(), embree::Error> {
     let known = KnownCylinders::<E>::new(cylinders.clone());
-    let attached = if layout.has_blocks(u64::from(cylinders.len())) {
-        builder.attach_user(Blocked::new(known, threads))
+    attach_filtered(known, layout, threads, builder)
+}
+
+/// Attaches the solids of other kinds, likewise.
+///
+/// Set operations are a primitive each: what a few bytes can say of one is its box, which
+/// Embree tests as well.
+pub(super) fn attach_solids(
+    described: &Described,
+    members: &Members,
+    layout: Layout,
+    threads: usize,
+    builder: &mut SceneBuilder<Query>,
+) -> Result<(), embree::Error> {
+    attach_list::<Sphere>(described, members, layout, threads, builder)?;
+    attach_list::<Cuboid>(described, members, layout, threads, builder)?;
+    attach_list::<Cone>(described, members, layout, threads, builder)?;
+    attach_list::<RoundedCone>(described, members, layout, threads, builder)?;
+    attach_list::<Disk>(described, members, layout, threads, builder)?;
+    let composed = SolidList::<Composition>::new(described, members);
+    if composed.len() > 0 {
+        builder.attach_user(Single(composed))?;
+    }
+    Ok(())
+}
+
+fn attach_list<S: TracedSolid + HasFilter>(
+    described: &Described,
+    members: &Members,
+    layout: Layout,
+    threads: usize,
+    builder: &mut SceneBuilder<Query>,
+) -> Result<(), embree::Error> {
+    let solids = SolidList::<S>::new(described, members);
+    if solids.len() == 0 {
+        return Ok(());
+    }
+    attach_filtered(solids, layout, threads, builder)
+}
+
+fn attach_filtered<S: Filtered>(
+    solids: S,
+    layout: Layout,
+    threads: usize,
+    builder: &mut SceneBuilder<Query>,
+) -> Result<(), embree::Error> {
+    let attached = if layout.has_blocks(u64::from(solids.len())) {
+        builder.attach_user(Blocked::new(solids, threads))
     } else {
-        builder.attach_user(Single(known))
+        builder.attach_user(Single(solids))
     };
     attached.map(|_| ())
 }
 
-/// Attaches the solids of other kinds.
-pub(super) fn attach_solids(
-    described: &Described,
-    members: &Members,
-    builder: &mut SceneBuilder<Query>,
-) -> Result<(), embree::Error> {
-    attach_list::<Sphere>(described, members, builder)?;
-    attach_list::<Cuboid>(described, members, builder)?;
-    attach_list::<Cone>(described, members, builder)?;
-    attach_list::<RoundedCone>(described, members, builder)?;
-    attach_list::<Disk>(described, members, builder)?;
-    attach_list::<Composition>(described, members, builder)
-}
-
-fn attach_list<S: TracedSolid>(
-    described: &Described,
-    members: &Members,
-    builder: &mut SceneBuilder<Query>,
-) -> Result<(), embree::Error> {
-    if members.of(S::LIST).len() > 0 {
-        builder.attach_user(Single(SolidList::<S>::new(described, members)))?;
-    }
-    Ok(())
+/// The bytes of all blocks of a group.
+pub(super) fn kept_blocks_bytes(members: &Members, layout: Layout) -> usize {
+    let counts = members.single_counts().map(u64::from);
+    let blocks = counts.filter(|&count| layout.has_blocks(count));
+    blocks.map(block_bytes).sum::<u64>() as usize
 }

@@ -13,7 +13,7 @@ use crate::embree::{Box32, GREATEST_PACKET, RaySet, prefetch};
 use crate::math::LANES;
 use crate::scene::{CylinderList, SharedRecords};
 use crate::solid::{Cylinder, SolidKind};
-use crate::tracer::filter::CylinderFilter;
+use crate::tracer::filter::{CylinderFilter, HasFilter};
 use crate::tracer::query::{Packet, Query};
 
 /// The cylinders of a group, where the description keeps them.
@@ -161,6 +161,6 @@ impl<E: Ends> Filtered for KnownCylinders<E> {
             .iter()
             .map(|&record| self.cylinder(record))
             .collect();
-        CylinderFilter::new(&cylinders, self.cylinders.described().frame())
+        Cylinder::filter(&cylinders, self.cylinders.described().frame())
     }
 }

@@ -3,12 +3,15 @@
 use std::marker::PhantomData;
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use super::members::Members;
 use super::numbers::Numbers;
-use super::solids::Solids;
+use super::solids::{Filtered, Solids};
 use crate::embree::{Box32, GREATEST_PACKET, RaySet, prefetch};
-use crate::math::{Bounds, ChildFromParent};
+use crate::math::{Bounds, ChildFromParent, LANES};
 use crate::scene::{self, PrototypeIndex, Scene};
+use crate::tracer::filter::HasFilter;
 use crate::tracer::frame::Frame;
 use crate::tracer::query::{Member, Packet, Query};
 use crate::tracer::traced::TracedSolid;
@@ -155,5 +158,14 @@ impl<S: TracedSolid> Solids for SolidList<S> {
     #[inline(always)]
     fn meets_packet(&self, record: u32, rays: RaySet, packet: &Packet) -> RaySet {
         packet.meets_solid(self.solid(record), rays)
+    }
+}
+
+impl<S: TracedSolid + HasFilter> Filtered for SolidList<S> {
+    type Filter = S::Filter;
+
+    fn filter(&self, records: &[u32]) -> S::Filter {
+        let solids: SmallVec<[S; LANES]> = records.iter().map(|&one| *self.solid(one)).collect();
+        S::filter(&solids, self.described.frame())
     }
 }

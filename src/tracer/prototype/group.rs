@@ -8,8 +8,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::attach::{attach_cylinders, attach_solids};
-use super::blocks::block_bytes;
+use super::attach::{attach_cylinders, attach_solids, kept_blocks_bytes};
 use super::cylinders::Cylinders;
 use super::described::{Described, SolidList};
 use super::members::{List, Members};
@@ -146,9 +145,15 @@ impl Group {
         for placements in &self.placements {
             placements.attach_instances(&mut builder)?;
         }
-        let layout = self.workshop.layout;
-        attach_cylinders(&self.cylinders, layout, self.workshop.threads, &mut builder)?;
-        attach_solids(self.cylinders.described(), &self.members, &mut builder)?;
+        let (layout, threads) = (self.workshop.layout, self.workshop.threads);
+        attach_cylinders(&self.cylinders, layout, threads, &mut builder)?;
+        attach_solids(
+            self.cylinders.described(),
+            &self.members,
+            layout,
+            threads,
+            &mut builder,
+        )?;
         for placements in &self.placements {
             if placements.called_back.len() > 0 {
                 builder.attach_user(Arc::clone(placements))?;
@@ -179,10 +184,8 @@ impl Group {
     /// The bytes that are kept for the members beside the description and
     /// Embree's tree.
     pub fn kept_bytes(&self) -> usize {
-        let cylinders = u64::from(self.cylinders.len());
-        let has_blocks = self.is_touched() && self.workshop.layout.has_blocks(cylinders);
-        let blocks = if has_blocks {
-            block_bytes(cylinders) as usize
+        let blocks = if self.is_touched() {
+            kept_blocks_bytes(&self.members, self.workshop.layout)
         } else {
             0
         };

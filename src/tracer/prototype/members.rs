@@ -80,6 +80,12 @@ impl Members {
         lists.filter(|(_, numbers)| numbers.len() > 0)
     }
 
+    /// How many it contains of each kind of solid, without set operations.
+    pub fn single_counts(&self) -> impl Iterator<Item = u32> {
+        let kinds = KINDS.iter().filter(|&&kind| kind != SolidKind::Union);
+        kinds.map(|&kind| self.of(List::Solids(kind)).len())
+    }
+
     /// All that it contains.
     pub fn iter(&self) -> impl Iterator<Item = (List, u32)> {
         let lists = self.lists.iter().enumerate();

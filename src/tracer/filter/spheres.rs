@@ -1,0 +1,122 @@
+//! The filter of spheres.
+//!
+//! The copy of a sphere is one about `c` with a radius `r`, in units of the cell. `c` is a
+//! multiple of 1/256 in each component, for a cache line has room for that; `r` is a
+//! multiple of a power of two.
+//!
+//! A point within the slack `s` of a sphere with the radius ρ is within
+//!
+//! ```text
+//! r0 = off + ρ + s,        off = |centre - c|                                        (1)
+//! ```
+//!
+//! of `c`. For the ray `x + T d` from `c`, with |d| = 1, the distance is least at
+//! `T = -x·d`, moved into the range: the test is
+//!
+//! ```text
+//! |x + T d|² <= r²,        T = min(max(-x·d, start), end)                            (2)
+//! ```
+//!
+//! A ray that stands for others passes `c` within `r` and their distance.
+//!
+//! # Roundings
+//!
+//! Products and sums of f32 have a relative error of v = 2^-24; every length is below
+//! `Y` = 768, that to a ray which stands for others 256 away, and those of `d` are 1 to within 4 v. `x` is rounded by v Y, √3 times in
+//! all. The computed `T` is off by up to 10 v Y from where the distance is least: 2 for `x` and
+//! `d`, 4 for the product, 4 for the length of `d`. The point `x + T d` is then rounded twice a
+//! component, 4 v Y. The least distance is that of a point that is moved by no more than
+//! 2 v Y + 10 v Y + 4 v Y, below [`ROUNDED`], a 1024th of a unit. The squares and their sums have
+//! three roundings, and the radius's one: 2 v of the lengths, of which `r` gets 2^-20.
+//! Where the range is empty either answer is right.
+
+use super::cell::{LONGEST, dot, greater, less};
+use super::{Cell, Filter, NearRay};
+use crate::math::LANES;
+use crate::solid::{ConvexSolid, Sphere};
+use crate::tracer::frame::Frame;
+
+/// Steps of centres in a unit: 255 units then fill 16 bits.
+const STEPS: f64 = 256.0;
+
+/// What (2) may be off by, in units.
+const ROUNDED: f64 = 1.0 / 1024.0;
+
+/// The kept radius over what has to be in it.
+const OUTWARD: f64 = 1.0 + 1.0 / (1 << 20) as f64;
+
+/// A block's spheres.
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SphereFilter {
+    cell: Cell,
+    /// Centres, 256 to a unit.
+    c: [[u16; LANES]; 3],
+    /// Radii; 0 where there is no sphere.
+    r: [u8; LANES],
+}
+
+const _: () = assert!(size_of::<SphereFilter>() == 64);
+
+impl SphereFilter {
+    /// That of up to eight spheres of a group with this frame, with a share of what has to
+    /// be added: less than all of it loses hits.
+    pub fn new(spheres: &[Sphere], frame: &Frame, share: f64) -> Self {
+        let bounds = spheres.iter().map(Sphere::bounds);
+        let mut cell = Cell::around(bounds, frame);
+        let units = f64::from(cell.units());
+        let mut c = [[0; LANES]; 3];
+        let mut radii = [0.0; LANES];
+        for (lane, sphere) in spheres.iter().enumerate() {
+            let centre = cell.place(sphere.centre(), frame);
+            let kept = (centre * STEPS).round();
+            for axis in 0..3 {
+                c[axis][lane] = kept[axis] as u16;
+            }
+            let off = (centre - kept / STEPS).length();
+            let radius = sphere.radius() * frame.scale() * units;
+            let least = (radius + off + frame.slack() * units + ROUNDED) * OUTWARD;
+            radii[lane] = radius + share * (least - radius);
+        }
+        Self {
+            r: cell.keep_radii(radii, share),
+            cell,
+            c,
+        }
+    }
+}
+
+impl SphereFilter {
+    /// (2), with a range of its own and a radius greater by `apart`.
+    #[inline(always)]
+    fn is_near(&self, lane: usize, ray: &NearRay, [start, end]: [f32; 2], apart: f32) -> bool {
+        const STEP: f32 = (1.0 / STEPS) as f32;
+        let (o, d) = (ray.origin, ray.direction);
+        let x = [
+            o[0] - f32::from(self.c[0][lane]) * STEP,
+            o[1] - f32::from(self.c[1][lane]) * STEP,
+            o[2] - f32::from(self.c[2][lane]) * STEP,
+        ];
+        let t = less(greater(-dot(x, d), start), end);
+        let p = [x[0] + t * d[0], x[1] + t * d[1], x[2] + t * d[2]];
+        let r = self.cell.radius(self.r[lane]) + apart;
+        (dot(p, p) <= r * r) & (self.r[lane] > 0)
+    }
+}
+
+impl Filter for SphereFilter {
+    #[inline(always)]
+    fn cell(&self) -> &Cell {
+        &self.cell
+    }
+
+    #[inline(always)]
+    fn may_pass(&self, lane: usize, ray: &NearRay, apart: f32) -> bool {
+        self.is_near(lane, ray, [-LONGEST, LONGEST], apart)
+    }
+
+    #[inline(always)]
+    fn may_meet(&self, lane: usize, ray: &NearRay) -> bool {
+        self.is_near(lane, ray, [ray.start, ray.end], 0.0)
+    }
+}
