@@ -138,10 +138,10 @@ fn bundle(rows: &[NearRow; ROWS], wanted: RaySet) -> Option<(NearRay, f32)> {
     let mut greatest = [0.0; LANES];
     for (row, rays) in rows.iter().enumerate() {
         let in_row = LaneMask::from_bits(in_row(wanted, row));
-        for lane in 0..LANES {
+        for (lane, greatest) in greatest.iter_mut().enumerate() {
             let apart = square_apart(&rays.ray(lane), &first);
             let apart = if in_row.0[lane] { apart } else { 0.0 };
-            greatest[lane] = greater(greatest[lane], apart);
+            *greatest = greater(*greatest, apart);
         }
     }
     // In halves, for a row has no greatest of its own in the processor.
