@@ -20,7 +20,7 @@ use support::{cylinders_in_a_box, instruction_sets, placed, placing, random_rota
 const SEED: u64 = 20_261_129;
 
 /// With more placements than this a prototype has no instances of Embree's.
-const MOST_INSTANCES: usize = 1 << 16;
+const MOST_INSTANCES: usize = 1 << 12;
 
 /// The least stretch against the greatest of a placement that is nearly singular.
 const FLAT: f64 = 1e-5;
@@ -261,6 +261,6 @@ fn instances_answer_as_everything_tried_does() {
     }
     println!("{asked} rays, {hits} hits, {instances} instances in all scenes");
     assert!(hits * 3 > asked, "only {hits} hits: the test sees nothing");
-    // Of 5 scenes of 8 kinds most have two at least.
-    assert!(instances > 60, "{instances}");
+    // Of 5 scenes of 8 kinds most have one at least.
+    assert!(instances > 40, "{instances}");
 }

@@ -33,7 +33,7 @@
 //! **Instances.** Embree takes [`INSTANCE_BYTES`] for each placement that is an instance
 //! of its own (`prototype::instances`), beside the leaf. Which are is not known from counts alone:
 //! those that are far smaller than what they are placed in are not. So the estimate has all
-//! that could be, at most 20 MB a prototype.
+//! that could be, at most 1.2 MB a prototype.
 //!
 //! **While building**, Embree has one reference of 32 bytes to each primitive of
 //! the scene it builds, in an array whose size is the next power of two. That

@@ -5,8 +5,6 @@
 //! each of them, and these may be in different groups of the parent. So a far solid
 //! in a placed prototype does not enlarge the boxes of the others there, at any depth.
 
-use std::sync::Arc;
-
 use rayon::prelude::*;
 
 use super::grouping::{Boxed, Cube, cubes};
@@ -93,16 +91,6 @@ impl Members {
             let list = List::at(position);
             numbers.iter().map(move |number| (list, number))
         })
-    }
-
-    /// Some placements for the first groups of children, and what remains without them.
-    pub fn divided(&self, apart: &[u32]) -> (Self, Self) {
-        let position = List::Placements { group: 0 }.position();
-        let mut theirs = vec![Numbers::These(Arc::new([])); self.lists.len()];
-        theirs[position] = Numbers::These(apart.into());
-        let mut others = self.lists.clone();
-        others[position] = others[position].filtered(|number| !theirs[position].contains(number));
-        (Self { lists: theirs }, Self { lists: others })
     }
 
     /// How much it contains.

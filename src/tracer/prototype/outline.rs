@@ -17,9 +17,6 @@ use crate::math::Bounds;
 use crate::scene::{Placement, PrototypeIndex, Scene};
 use crate::tracer::frame::Frame;
 
-/// With fewer placements the root is not divided for instances.
-const LEAST_DIVIDED: usize = 16;
-
 /// A group that is to be made.
 pub(crate) struct Outline {
     pub members: Members,
@@ -69,56 +66,10 @@ impl Outlines {
         let prototype = &scene.prototypes[index.0 as usize];
         let boxes_of = |of: PrototypeIndex| &self.boxes[of.0 as usize][..];
         let boxes = Boxes::new(prototype, &boxes_of);
-        let groups = boxes.groups();
-        let may_divide = index == PrototypeIndex::ROOT && groups.len() == 1;
-        let outlines = groups.into_iter().flat_map(|(members, bounds)| {
-            let outline = self.of_group(&prototype.placements, members, bounds);
-            if may_divide {
-                self.divided(scene, &boxes, outline)
-            } else {
-                vec![outline]
-            }
-        });
-        outlines.collect()
-    }
-
-    /// The group of the root, in two where the solids are so much farther or larger than what is
-    /// placed that the frame of all is too large for instances, and that of the placements
-    /// is not. A ray that enters two groups costs less than a callback for each placement.
-    fn divided(&self, scene: &Scene, boxes: &Boxes, outline: Outline) -> Vec<Outline> {
-        let placements = &scene.prototypes[PrototypeIndex::ROOT.0 as usize].placements;
-        let innermost = self.innermost(scene, placements, &outline);
-        if innermost.len() < LEAST_DIVIDED || innermost.len() as u64 == outline.members.len() {
-            return vec![outline];
-        }
-        let instances = |outline: &Outline| {
-            let numbers = innermost.par_iter().with_min_len(1 << 8);
-            numbers
-                .filter(|&&number| {
-                    self.needed_growth(&placements[number as usize], outline)
-                        .is_some()
-                })
-                .count()
-        };
-        if instances(&outline) * 2 > innermost.len() {
-            return vec![outline];
-        }
-        let (theirs, others) = outline.members.divided(&innermost);
-        let [theirs, others] = [theirs, others].map(|members| {
-            let bounds = boxes.around(&members);
-            (members, bounds)
-        });
-        // What set operations leave nothing of has an empty box.
-        if others.1.is_empty() {
-            return vec![outline];
-        }
-        let [theirs, others] =
-            [theirs, others].map(|(members, bounds)| self.of_group(placements, members, bounds));
-        if instances(&theirs) * 2 > innermost.len() {
-            vec![theirs, others]
-        } else {
-            vec![outline]
-        }
+        let groups = boxes.groups().into_iter();
+        groups
+            .map(|(members, bounds)| self.of_group(&prototype.placements, members, bounds))
+            .collect()
     }
 
     /// The placements of a group that may be instances of Embree's, which has one level of
