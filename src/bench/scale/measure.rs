@@ -294,8 +294,7 @@ mod tests {
         assert_eq!((steps, Scale::steps(&plan)), (5, 5));
         let [cylinders, placements] = &found.rows;
         let small = cylinders[0].found.as_ref().unwrap();
-        // Records of 64 bytes, 12 for blocks and some 10 of Embree's.
-        assert!((76_000..150_000).contains(&small.bytes), "{}", small.bytes);
+        assert!((100_000..300_000).contains(&small.bytes), "{}", small.bytes);
         assert_eq!(small.resident_bytes, Some(7));
         assert!(cylinders[1].found.is_err(), "10^4 cylinders do not fit");
         let bytes = |row: &Row| row.found.as_ref().unwrap().bytes;

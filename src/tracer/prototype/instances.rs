@@ -211,7 +211,8 @@ mod tests {
         }
     }
 
-    /// No ray is off by more than the bound, which is not ten times too great.
+    /// No ray is off by more than the bound, which is not twenty times too great; two thirds
+    /// of it are for the roundings of filters, which are not made here.
     #[test]
     fn rays_mapped_in_f32_are_off_by_less_than_the_bound() {
         let mut random = Random::new(97, 0);
@@ -263,7 +264,7 @@ mod tests {
                 most = most.max(used);
             }
         }
-        assert!(most > 0.1, "{most}");
+        assert!(most > 0.05, "{most}");
     }
 
     fn turned(random: &mut Random) -> DMat3 {
