@@ -178,9 +178,7 @@ mod tests {
     fn callbacks_in_c_answer_as_those_in_rust() {
         const SEED: u64 = 17;
         let flat = Arc::new(Flat::new(Arc::new(sticks(2000, SEED))));
-        let [(_, ours, _), ..] = &ours::modes(&flat, &Options::default()).unwrap()[..] else {
-            panic!("three modes")
-        };
+        let [(_, ours, _), ..] = ours::modes(&flat, &Options::default()).unwrap();
         let in_c = CCallback::new(&flat, &DeviceOptions::default()).unwrap();
         for rays in Rays::of_scene(&flat, ours.tracer(), 4096, SEED) {
             let all = 0..rays.wide.len();

@@ -7,7 +7,6 @@ use std::time::Instant;
 use super::flat::Flat;
 use super::rays::{Kind, Rays};
 use super::representation::{Met, Representation, Representative, SolidId};
-use crate::solid::SolidKind;
 use crate::tracer::counters::{self, Counts};
 use crate::tracer::{BuildTime, FirstHit, Layout, Options, Tracer, TracerError};
 
@@ -19,15 +18,14 @@ pub struct Ours {
     in_batches: bool,
 }
 
-/// The modes, with the seconds that each took to build. Blocks are of cylinders: a
-/// scene without has one mode less.
+/// The modes, with the seconds that each took to build.
 ///
 /// # Errors
 /// When Embree refuses the scene.
 pub fn modes(
     flat: &Arc<Flat>,
     options: &Options,
-) -> Result<Vec<(Representation, Ours, f64)>, TracerError> {
+) -> Result<[(Representation, Ours, f64); 3], TracerError> {
     let built = |layout| -> Result<_, TracerError> {
         let start = Instant::now();
         let options = Options {
@@ -47,15 +45,12 @@ pub fn modes(
         (mode, ours, *build_s)
     };
     let single = built(Layout::Single)?;
-    let mut modes = vec![
+    let block = built(Layout::Block)?;
+    Ok([
         ours(Representation::AnalyticSingle, &single),
         ours(Representation::AnalyticPacket, &single),
-    ];
-    if flat.kinds().contains(&SolidKind::Cylinder) {
-        let block = built(Layout::Block)?;
-        modes.push(ours(Representation::AnalyticBlock, &block));
-    }
-    Ok(modes)
+        ours(Representation::AnalyticBlock, &block),
+    ])
 }
 
 impl Ours {

@@ -265,8 +265,7 @@ mod tests {
 
     fn ours_of(scene: Scene) -> (Arc<Flat>, Arc<Tracer>, ours::Ours) {
         let flat = Arc::new(Flat::new(Arc::new(scene)));
-        let mut modes = ours::modes(&flat, &Options::default()).unwrap();
-        let (_, ours, _) = modes.remove(0);
+        let [(_, ours, _), ..] = ours::modes(&flat, &Options::default()).unwrap();
         (flat, Arc::clone(ours.tracer()), ours)
     }
 
