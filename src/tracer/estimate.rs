@@ -67,7 +67,7 @@ const BLOCK: u64 = 1152;
 const REFERENCE: u64 = 32;
 
 impl Layout {
-    /// Primitives for so many solids of a kind that has a filter.
+    /// The number of primitives for `solids` of a kind that has a filter.
     fn primitives(self, solids: u64) -> u64 {
         if self.has_blocks(solids) {
             solids.div_ceil(LANES as u64)
@@ -76,7 +76,7 @@ impl Layout {
         }
     }
 
-    /// Bytes that the tracer keeps of so many solids beside their records.
+    /// Bytes that the tracer keeps of `solids` of a kind beside their records.
     fn copies_bytes(self, solids: u64) -> u64 {
         if self.has_blocks(solids) {
             block_bytes(solids)
