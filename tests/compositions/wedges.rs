@@ -175,8 +175,8 @@ fn draw_through_origin(random: &mut Random, e: f64) -> AnySolid {
     drawn.solids()[0]
 }
 
-/// Every cell that the oracle reports exists; it misses some of those that are thinner than f64
-/// resolves. So where it found both sides, the answer is known.
+/// Every cell that the oracle reports exists; it misses some cusps along common tangents that
+/// are thinner than f64 resolves. So where it found both sides, the answer is known.
 #[test]
 fn what_the_oracle_finds_in_random_wedges_is_found() {
     let mut judged = 0;

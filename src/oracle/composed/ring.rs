@@ -43,6 +43,11 @@ impl Number {
         Self { p, root }
     }
 
+    /// The number if it has no root.
+    pub fn as_rational(&self) -> Option<&Exact> {
+        self.root.is_none().then_some(&self.p)
+    }
+
     pub fn sign(&self) -> Ordering {
         match &self.root {
             None => sign(&self.p),

@@ -15,6 +15,10 @@
 //! between heights. The vectors `v` are in T exactly; where in its sector and between
 //! heights a witness is does not matter, so angles and middles are rounded.
 //!
+//! Sectors between tangent planes can be narrower than f64 can say. The sum of the
+//! directions of two planes is between them, so at stated points the sums of all pairs that are nearly
+//! parallel are witnesses too, in exact numbers.
+//!
 //! Cells and faces with a cusp, along a line that several planes have in common, are in
 //! `edge.rs`.
 
@@ -22,7 +26,7 @@ use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
 use crate::math::power_of_two;
-use crate::oracle::number::{Exact, exact};
+use crate::oracle::number::{Exact, exact, to_f64};
 
 use super::around::{Curve, Survey};
 use super::edge;
@@ -31,6 +35,10 @@ use super::ring::{Number, Vector};
 /// Sectors of less are taken for none. Where numbers are whole and below 2^10, lines
 /// in a plane that differ do so by more than 2^-30.
 const LEAST_ANGLE: f64 = 1e-10;
+
+/// The sectors between tangent planes that have a witness in exact numbers: all up to
+/// this width, which is above [`LEAST_ANGLE`] by far more than angles are rounded.
+const THIN: f64 = 2.0 * LEAST_ANGLE;
 
 /// A tangent plane and the sheets that have it.
 struct Group {
@@ -60,7 +68,10 @@ pub(super) fn survey(survey: &mut Survey) {
             .collect();
         let lines = group.lines(survey, &members);
         for (angle, width) in sectors(lines) {
-            group.climb(survey, &members, angle, width);
+            group.climb(survey, &members, &within(angle, width));
+        }
+        for direction in group.thin_sectors(survey) {
+            group.climb(survey, &members, &direction);
         }
     }
     for (position, one) in groups.iter().enumerate() {
@@ -140,13 +151,41 @@ impl Group {
         lines
     }
 
-    /// Notes all neighbours above and below each other in a sector.
-    fn climb(&self, survey: &mut Survey, members: &[Member], angle: f64, width: f64) {
-        let bits = if width > 1e-3 { 20 } else { 52 };
-        let rounded = |x: f64| exact((x * power_of_two(bits)).round() * power_of_two(-bits));
-        let (x, y) = (rounded(libm::cos(angle)), rounded(libm::sin(angle)));
-        let v = self.axes[0].times(&x).plus(&self.axes[1].times(&y));
-        let squares = [&x * &x, exact(2.0) * &x * &y, &y * &y];
+    /// A direction in each sector between tangent planes that is thin, in the axes of the
+    /// plane. None at points that are not rational: those of lines.
+    fn thin_sectors(&self, survey: &Survey) -> Vec<[Exact; 2]> {
+        let mut directions: Vec<([Exact; 2], f64)> = Vec::new();
+        for (number, active) in survey.active.iter().enumerate() {
+            if active.gradient.is_zero() || self.members.contains(&number) {
+                continue;
+            }
+            let [x, y] = [0, 1].map(|i| active.gradient.dot(&self.axes[i]));
+            let (Some(x), Some(y)) = (x.as_rational(), y.as_rational()) else {
+                return Vec::new();
+            };
+            for [x, y] in [[y.clone(), -x], [-y, x.clone()]] {
+                let angle = libm::atan2(to_f64(&y), to_f64(&x));
+                directions.push(([x, y], angle));
+            }
+        }
+        let mut sums = Vec::new();
+        for (position, (one, angle)) in directions.iter().enumerate() {
+            for (other, other_angle) in &directions[..position] {
+                let apart = (angle - other_angle).abs();
+                let is_parallel = &one[0] * &other[1] == &one[1] * &other[0];
+                if apart.min(TAU - apart) < THIN && !is_parallel {
+                    sums.push([0, 1].map(|i| &one[i] + &other[i]));
+                }
+            }
+        }
+        sums
+    }
+
+    /// Notes all neighbours above and below each other in a direction, in the axes of the
+    /// plane.
+    fn climb(&self, survey: &mut Survey, members: &[Member], [x, y]: &[Exact; 2]) {
+        let v = self.axes[0].times(x).plus(&self.axes[1].times(y));
+        let squares = [x * x, exact(2.0) * x * y, y * y];
         let mut heights: Vec<Height> = members
             .iter()
             .map(|member| Height::new(member, &squares))
@@ -231,6 +270,13 @@ fn zeros(form: &[Number; 3]) -> Vec<f64> {
         .filter(|&(x, y)| x != 0.0 || y != 0.0)
         .map(|(x, y)| libm::atan2(y, x))
         .collect()
+}
+
+/// The direction of an angle, rounded by less than the width of its sector.
+fn within(angle: f64, width: f64) -> [Exact; 2] {
+    let bits = if width > 1e-3 { 20 } else { 52 };
+    [libm::cos(angle), libm::sin(angle)]
+        .map(|x| exact((x * power_of_two(bits)).round() * power_of_two(-bits)))
 }
 
 /// The middles and widths of the sectors between lines.
