@@ -84,7 +84,7 @@ pub unsafe extern "C" fn cyltrace_closest(
     hits: *mut CyltraceHit,
 ) -> c_int {
     let answer = |tracer: &Tracer, ray: &Ray| first_hit(tracer, ray, ALL_FIELDS);
-    // SAFETY: the caller's promise is the one that is asked for.
+    // SAFETY: the caller makes the promise of the function called here.
     unsafe { for_each_ray("cyltrace_closest", scene, rays, count, hits, answer) }
 }
 
@@ -108,7 +108,7 @@ pub unsafe extern "C" fn cyltrace_closest_with(
         return CYLTRACE_ERROR;
     };
     let answer = |tracer: &Tracer, ray: &Ray| first_hit(tracer, ray, fields);
-    // SAFETY: the caller's promise is the one that is asked for.
+    // SAFETY: the caller makes the promise of the function called here.
     unsafe { for_each_ray(function, scene, rays, count, hits, answer) }
 }
 
@@ -128,7 +128,7 @@ pub unsafe extern "C" fn cyltrace_occluded(
     count: usize,
     occluded: *mut u8,
 ) -> c_int {
-    // SAFETY: the caller's promise is the one that is asked for.
+    // SAFETY: the caller makes the promise of the function called here.
     unsafe {
         for_each_ray(
             "cyltrace_occluded",

@@ -44,7 +44,7 @@ pub enum Layout {
 const LEAST_FOR_BLOCKS: u64 = 1 << 20;
 
 impl Layout {
-    /// Whether so many solids of a kind that has a filter are put into blocks.
+    /// Whether `solids` of a kind that has a filter are put into blocks.
     pub(super) fn has_blocks(self, solids: u64) -> bool {
         match self {
             Self::Auto => solids >= LEAST_FOR_BLOCKS,

@@ -13,11 +13,11 @@ use crate::tracer::counters;
 use crate::tracer::filter::{FILTER_BYTES, Filter, NearPacket, survivors};
 use crate::tracer::query::{Packet, Query};
 
-/// Up to so many rays of a packet are put to all solids of a block one by one; more are put
+/// The most rays of a packet that are put to all solids of a block one by one; more are put
 /// together to one solid after another.
 const FEW_RAYS: usize = 2;
 
-/// The memory that the blocks of so many solids take.
+/// The memory that the blocks of `solids` take.
 pub(crate) fn block_bytes(solids: u64) -> u64 {
     let records = solids.saturating_mul(size_of::<u32>() as u64);
     let blocks = solids.div_ceil(LANES as u64);
