@@ -70,17 +70,23 @@ impl PairKey {
 /// The second coordinate of the Sobol' sequence (the first is the reversal of
 /// the index's bits). The direction numbers follow from the polynomial
 /// `x + 1`: each is the one before, added to its half modulo 2.
-fn second_sobol_coordinate(mut index: u32) -> u32 {
-    let mut direction = 1_u32 << 31;
-    let mut coordinate = 0;
-    while index != 0 {
-        if index & 1 == 1 {
-            coordinate ^= direction;
-        }
-        direction ^= direction >> 1;
-        index >>= 1;
+///
+/// So bit `j` of direction number `i`, from the top, is the binomial coefficient `i` over `j`
+/// modulo 2, which by Lucas's theorem is 1 where the binary digits of `j` are among those of
+/// `i`. The coordinate's bit `j` is the sum of the index's bits at all such `i`, and a
+/// sum over supersets is computed one binary digit of the position at a time.
+fn second_sobol_coordinate(index: u32) -> u32 {
+    let mut sums = index;
+    for (shift, lower) in [
+        (1, 0x5555_5555),
+        (2, 0x3333_3333),
+        (4, 0x0f0f_0f0f),
+        (8, 0x00ff_00ff),
+        (16, 0x0000_ffff),
+    ] {
+        sums ^= (sums >> shift) & lower;
     }
-    coordinate
+    sums.reverse_bits()
 }
 
 /// An Owen scrambling: every bit is flipped or not, as a hash of `key` and of
@@ -106,6 +112,27 @@ fn unit(bits: u32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The direction numbers by their recurrence.
+    #[test]
+    fn second_sobol_coordinate_adds_the_direction_numbers_of_its_bits() {
+        let mut random = Random::new(7, 0);
+        let indices = (0..1024).chain((0..10_000).map(|_| (random.bits() >> 32) as u32));
+        for index in indices {
+            let (mut direction, mut expected) = (1_u32 << 31, 0);
+            for bit in 0..32 {
+                if index >> bit & 1 == 1 {
+                    expected ^= direction;
+                }
+                direction ^= direction >> 1;
+            }
+            assert_eq!(
+                second_sobol_coordinate(index),
+                expected,
+                "seed 7, {index:#x}"
+            );
+        }
+    }
 
     #[test]
     fn sampler_any_order_same_numbers() {

@@ -16,9 +16,10 @@ use super::{Film, PixelSampler, RayCounts, RenderError, Settings};
 const TILE: u32 = 16;
 const _: () = assert!(TILE <= 16, "`every_second_bit` has four bits");
 
-/// Samples that are traced together: enough to fill packets, also of the rays
-/// that only some of them send out, and few enough to stay in the cache.
-const SAMPLES_AT_ONCE: usize = 256;
+/// Samples that are traced together: many, so that those whose rays are near each other share
+/// packets and caches, and few enough that rays and hits, about 0.6 MB, stay in a core's
+/// cache. A forest renders in 0.97 of the time that 256 take, a lattice in the same.
+const SAMPLES_AT_ONCE: usize = 2048;
 
 struct Tile {
     x: u32,
