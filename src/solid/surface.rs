@@ -77,6 +77,7 @@ pub(super) enum FirstParameter {
 /// grows right-handed about the direction from `p0` to `p1`. On the axis
 /// itself, at the middle of a disc, it is 0.
 #[must_use]
+#[inline]
 pub fn surface_point(cylinder: &Cylinder, part: Part, from_p0: DVec3) -> SurfacePoint {
     let (p0, p1, radius) = (cylinder.p0(), cylinder.p1(), cylinder.radius());
     let a = p1 - p0;
@@ -127,6 +128,7 @@ pub(super) struct Around {
 
 impl Around {
     /// Of the point `from_p0` and the axis `a`, which starts at `p0`.
+    #[inline(always)]
     pub fn new(a: DVec3, from_p0: DVec3) -> Self {
         let axis = a.normalize();
         let from_axis = from_p0 - a * (from_p0.dot(a) / a.length_squared());
