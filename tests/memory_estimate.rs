@@ -173,6 +173,26 @@ fn lattice() -> Vec<u8> {
     three_mf::three_mf(&model)
 }
 
+/// Three trees, two of which have a soma that joins a segment of another type: each of
+/// the two is a ball at the end of a segment.
+#[test]
+fn neurons_of_several_somata_are_counted_before_loading_as_they_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| {
+        fs::write(folder.path().join(name), text).expect("a file is written");
+    };
+    write(
+        "neurons.swc",
+        "1 3 0 0 0 1 -1\n2 1.0 0 0 5 2 1\n3 1 0 5 5 2 1\n4 3 9 9 9 1 3",
+    );
+    write("scene.toml", "[[swc]]\nfile = \"neurons.swc\"\n");
+    let file = SceneFile::read(&folder.path().join("scene.toml")).expect("a scene file");
+    let before = file.contents();
+    let scene = file.load().expect("a scene");
+    assert_eq!(scene.prototypes[0].solids.spheres.len(), 2);
+    assert_eq!(before, scene.contents());
+}
+
 #[test]
 fn neurons_lattices_and_compositions_are_counted_before_loading_as_they_are() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -14,7 +14,7 @@ use super::lines::lines;
 use super::load::{lower, records};
 use super::set_operations::operand_count;
 use super::source::Source;
-use super::swc::{Joints, SAMPLE_BYTES, Shape};
+use super::swc::{Joints, SAMPLE_BYTES, Shape, most_balls};
 use super::table::ColumnKey;
 use super::values::Keys;
 use crate::solid::{Cone, Cuboid, Disk, RoundedCone, Sphere};
@@ -155,7 +155,8 @@ impl SceneFile {
                 Joints::Round => others = others.and::<RoundedCone>(rows),
             }
             if shape.has_soma {
-                others = others.and::<Sphere>(1);
+                let path = self.source.resolve(keys.file.get_ref());
+                others = others.and::<Sphere>(most_balls(&path));
             }
         }
         for Keys(keys) in body.beam_lattice {

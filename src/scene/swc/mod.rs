@@ -182,6 +182,15 @@ pub fn check_swc(input: impl Read, path: &Path) -> Result<(), SceneError> {
         .map(|parents| drop(Somata::of(&samples, &parents)))
 }
 
+/// The most balls that the somata of a file are: one for each sample of a soma. 0 of what
+/// cannot be read, or only once, such as a pipe.
+pub(super) fn most_balls(path: &Path) -> u64 {
+    if !path.is_file() {
+        return 0;
+    }
+    input::open(path).map_or(0, |input| SwcFile { path }.soma_samples(input))
+}
+
 /// A file that has been read.
 struct Neuron {
     samples: Vec<Sample>,

@@ -11,9 +11,14 @@ use glam::DVec3;
 use crate::scene::error::SceneError;
 use crate::scene::limits::MOST_COLUMNS;
 use crate::scene::names::quoted;
-use crate::scene::table::{Block, Decimal, Delimiter, Records, Splitter, delimiter_of, number_of};
+use crate::scene::table::{
+    Block, Cells, Decimal, Delimiter, Records, Splitter, delimiter_of, number_of,
+};
 
 const COLUMNS: [&str; 7] = ["id", "type", "x", "y", "z", "radius", "parent"];
+
+/// The column of the type.
+const TYPE: usize = 1;
 
 /// The greatest whole number that f64 has without its neighbours rounding to it.
 const GREATEST_WHOLE: f64 = 9_007_199_254_740_991.0;
@@ -61,13 +66,54 @@ impl SwcFile<'_> {
         input: impl Read,
         mut admit: impl FnMut(u64) -> Result<(), SceneError>,
     ) -> Result<(Vec<Sample>, bool), SceneError> {
+        let (mut samples, mut has_more_cells, mut is_first) = (Vec::new(), false, true);
+        let last_line = self.each_row(input, |line, cells| {
+            let all: [&str; 7] = std::array::from_fn(|index| cells.get(index));
+            if cells.len() < COLUMNS.len() {
+                let count = cells.len();
+                let message =
+                    format!("the row has {count} cells, SWC has 7: id type x y z radius parent");
+                return Err(self.error(line, None, message, None));
+            }
+            if std::mem::take(&mut is_first) && self.is_header(line, &all)? {
+                return Ok(());
+            }
+            let mut rest = (COLUMNS.len()..cells.len()).map(|index| cells.get(index));
+            has_more_cells |= rest.any(|cell| !cell.is_empty());
+            admit(line)?;
+            samples.push(self.sample(line, all)?);
+            Ok(())
+        })?;
+        if samples.is_empty() {
+            let line = last_line.max(1);
+            return Err(self.error(line, None, "the file contains no samples", None));
+        }
+        Ok((samples, has_more_cells))
+    }
+
+    /// How many samples are of a soma, up to the first row that cannot be read.
+    pub fn soma_samples(&self, input: impl Read) -> u64 {
+        let mut count = 0;
+        // Loading reports the row.
+        let _ = self.each_row(input, |_, cells| {
+            count += u64::from(whole(cells.get(TYPE)) == Some(SOMA));
+            Ok(())
+        });
+        count
+    }
+
+    /// Calls `visit` with the line and the cells of every row, and returns the last line.
+    fn each_row(
+        &self,
+        input: impl Read,
+        mut visit: impl FnMut(u64, Cells) -> Result<(), SceneError>,
+    ) -> Result<u64, SceneError> {
         let mut records = Records::new(input, self.path);
         let mut splitter = Splitter::default();
-        let (mut samples, mut has_more_cells, mut is_first) = (Vec::new(), false, true);
         loop {
             let block: Block = records.next_block(Delimiter::Blanks)?;
             if block.is_empty() {
-                break;
+                return Ok(records.line());
             }
             for index in 0..block.len() {
                 let (text, line) = block.text(self.path, index)?;
@@ -80,28 +126,9 @@ impl SwcFile<'_> {
                     let message = format!("the row has more than {MOST_COLUMNS} cells, SWC has 7");
                     self.error(line, None, message, None)
                 })?;
-                let all: [&str; 7] = std::array::from_fn(|index| cells.get(index));
-                if cells.len() < COLUMNS.len() {
-                    let count = cells.len();
-                    let message = format!(
-                        "the row has {count} cells, SWC has 7: id type x y z radius parent"
-                    );
-                    return Err(self.error(line, None, message, None));
-                }
-                if std::mem::take(&mut is_first) && self.is_header(line, &all)? {
-                    continue;
-                }
-                let mut rest = (COLUMNS.len()..cells.len()).map(|index| cells.get(index));
-                has_more_cells |= rest.any(|cell| !cell.is_empty());
-                admit(line)?;
-                samples.push(self.sample(line, all)?);
+                visit(line, cells)?;
             }
         }
-        if samples.is_empty() {
-            let line = records.line().max(1);
-            return Err(self.error(line, None, "the file contains no samples", None));
-        }
-        Ok((samples, has_more_cells))
     }
 
     /// Whether the first row names the columns. Names of samples' own columns must be
@@ -143,7 +170,7 @@ impl SwcFile<'_> {
         Ok(Sample {
             line,
             id: whole(0)?,
-            is_soma: whole(1)? == SOMA,
+            is_soma: whole(TYPE)? == SOMA,
             point: DVec3::new(number(2)?, number(3)?, number(4)?),
             radius: number(5)?,
             parent: whole(6)?,

@@ -24,7 +24,11 @@ pub use header::{Column, ColumnKey, Layout};
 pub use records::Block;
 pub(super) use records::Records;
 pub use row::{Fault, Row};
-pub(super) use {cells::Splitter, format::of_names as delimiter_of, row::number_of};
+pub(super) use {
+    cells::{Cells, Splitter},
+    format::of_names as delimiter_of,
+    row::number_of,
+};
 
 use self::header::Beginning;
 use super::error::SceneError;
