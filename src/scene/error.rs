@@ -119,7 +119,9 @@ impl fmt::Display for Statement {
         if let Some(help) = &self.help {
             group = group.element(Level::HELP.message(help.as_str()));
         }
-        formatter.write_str(&Renderer::plain().render(&[group]))
+        // The renderer replaces the controls of ASCII; a terminal obeys those from U+0080 on too.
+        let text = Renderer::plain().render(&[group]);
+        formatter.write_str(&super::names::printable_lines(&text))
     }
 }
 

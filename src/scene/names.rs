@@ -30,6 +30,16 @@ pub(super) fn printable(message: &str) -> String {
     text
 }
 
+/// Lines with every other control character replaced by U+FFFD, which is as wide as one
+/// character.
+pub(super) fn printable_lines(text: &str) -> String {
+    let shown = |c: char| match c.is_control() && c != '\n' {
+        true => char::REPLACEMENT_CHARACTER,
+        false => c,
+    };
+    text.chars().map(shown).collect()
+}
+
 /// What to say after "there is no such name": the nearest of the names, and
 /// all of them. `what` is their plural.
 pub(super) fn suggestion<'n>(
