@@ -10,12 +10,14 @@ mod habit;
 mod order;
 mod usual;
 
+use arrayvec::ArrayVec;
+
 use super::prototype::Prototype;
 use super::{FirstHit, Hit, HitFields, PartialHit, Tracer};
 use crate::embree::GREATEST_PACKET;
 use crate::math::Ray;
 use habit::Habit;
-use order::{order, split};
+use order::{Group, order, split};
 use usual::Usual;
 
 /// Rays are alike if the cosine between each direction and the first one is at
@@ -100,8 +102,8 @@ impl Tracer {
         together: impl Fn(&Prototype, &mut Usual, &mut Vec<T>),
     ) {
         let (mut habit, mut usual) = (Habit::default(), Usual::new(self.device.instructions()));
-        let mut answer = |rays: &[Ray], answers: &mut Vec<T>| match &self.root {
-            Some(root) if self.are_packet(rays, &mut habit) && usual.fill(self, rays) => {
+        let mut answer = |rays: &[Ray], is_alike, answers: &mut Vec<T>| match &self.root {
+            Some(root) if self.are_packet(rays, is_alike, &mut habit) && usual.fill(self, rays) => {
                 together(root, &mut usual, answers);
                 habit.traced_packet(&usual);
             }
@@ -114,22 +116,23 @@ impl Tracer {
         let mut few = Vec::with_capacity(GREATEST_PACKET);
         let mut rest = rays;
         while !rest.is_empty() {
-            let rays;
-            (rays, rest) = split(rest);
-            let Some(order) = order(rays, self.fits_caches()) else {
+            let group;
+            (group, rest) = split(rest);
+            let Group { rays, is_alike } = group;
+            let Some(order) = order(group, self.fits_caches()) else {
                 for rays in rays.chunks(GREATEST_PACKET) {
-                    answer(rays, answers);
+                    answer(rays, is_alike, answers);
                 }
                 continue;
             };
             let first = answers.len();
             answers.resize_with(first + rays.len(), T::default);
             for numbers in order.chunks(GREATEST_PACKET) {
-                let mut in_order = [rays[0]; GREATEST_PACKET];
-                for (ray, &number) in in_order.iter_mut().zip(numbers) {
-                    *ray = rays[number as usize];
-                }
-                answer(&in_order[..numbers.len()], &mut few);
+                let in_order: ArrayVec<Ray, GREATEST_PACKET> = numbers
+                    .iter()
+                    .map(|&number| rays[number as usize])
+                    .collect();
+                answer(&in_order, is_alike, &mut few);
                 for (&number, answer) in numbers.iter().zip(few.drain(..)) {
                     answers[first + number as usize] = answer;
                 }
@@ -142,11 +145,12 @@ impl Tracer {
         let mut positions = Vec::with_capacity(rays.len());
         let mut rest = rays;
         while !rest.is_empty() {
-            let (first, group) = (positions.len() as u32, split(rest).0);
-            rest = &rest[group.len()..];
+            let first = positions.len() as u32;
+            let group;
+            (group, rest) = split(rest);
             match order(group, self.fits_caches()) {
                 Some(order) => positions.extend(order.into_iter().map(|position| first + position)),
-                None => positions.extend(first..first + group.len() as u32),
+                None => positions.extend(first..first + group.rays.len() as u32),
             }
         }
         positions
@@ -157,9 +161,13 @@ impl Tracer {
         self.counted.described_bytes <= GREATEST_CACHED
     }
 
-    /// Whether the rays should be a packet.
-    fn are_packet(&self, rays: &[Ray], habit: &mut Habit) -> bool {
-        rays.len() >= LEAST_RAYS && self.traces_packets && are_alike(rays) && habit.wants_packet()
+    /// Whether the rays should be a packet. Those of a group that is alike are within twice
+    /// the angle of each other.
+    fn are_packet(&self, rays: &[Ray], is_alike: bool, habit: &mut Habit) -> bool {
+        rays.len() >= LEAST_RAYS
+            && self.traces_packets
+            && (is_alike || are_alike(rays))
+            && habit.wants_packet()
     }
 }
 

@@ -30,21 +30,37 @@ const GREATEST_ALIKE: usize = 1 << 10;
 /// cells that tell apart the rays of neighbouring pixels in a whole picture.
 const BITS_ACROSS: u32 = 12;
 
+/// Rays that are ordered together.
+#[derive(Clone, Copy)]
+pub(super) struct Group<'a> {
+    pub rays: &'a [Ray],
+    /// Whether all go about the same way as the first.
+    pub is_alike: bool,
+}
+
 /// The first rays and the rest: those that are best ordered together.
-pub(super) fn split(rays: &[Ray]) -> (&[Ray], &[Ray]) {
-    let alike = rays.len().min(GREATEST_ALIKE);
-    let most = if are_alike(&rays[..alike]) {
-        alike
-    } else {
-        rays.len().min(GREATEST_GROUP)
+pub(super) fn split(rays: &[Ray]) -> (Group<'_>, &[Ray]) {
+    let (alike, after) = rays.split_at(rays.len().min(GREATEST_ALIKE));
+    if are_alike(alike) {
+        let group = Group {
+            rays: alike,
+            is_alike: true,
+        };
+        return (group, after);
+    }
+    let (rays, after) = rays.split_at(rays.len().min(GREATEST_GROUP));
+    let group = Group {
+        rays,
+        is_alike: false,
     };
-    rays.split_at(most)
+    (group, after)
 }
 
 /// The numbers of the rays in the order in which they are traced; `None` if they
 /// are best as they are. Where the scene fits the caches, only those that go the
 /// same way are ordered, of which packets are made.
-pub(super) fn order(rays: &[Ray], fits_caches: bool) -> Option<Vec<u32>> {
+pub(super) fn order(group: Group, fits_caches: bool) -> Option<Vec<u32>> {
+    let rays = group.rays;
     if rays.len() < LEAST_RAYS {
         return None;
     }
@@ -58,7 +74,7 @@ pub(super) fn order(rays: &[Ray], fits_caches: bool) -> Option<Vec<u32>> {
     if !(extent > 0.0 && extent.is_finite()) {
         return None;
     }
-    let (keys, key_bits): (Vec<u32>, u32) = if are_alike(rays) {
+    let (keys, key_bits): (Vec<u32>, u32) = if group.is_alike {
         let plane = Plane::new(rays[0].direction, lower, extent);
         let key = |ray: &Ray| plane.key(ray.origin);
         (rays.iter().map(key).collect(), 2 * BITS_ACROSS)
@@ -151,6 +167,12 @@ mod tests {
         (0..count).map(ray).collect()
     }
 
+    /// The order of the rays, if they are one group.
+    fn order_of(rays: &[Ray], fits_caches: bool) -> Option<Vec<u32>> {
+        let is_alike = are_alike(rays);
+        order(Group { rays, is_alike }, fits_caches)
+    }
+
     /// The mean distance of neighbours, seen along `direction`.
     fn mean_distance(rays: impl Iterator<Item = Ray> + Clone, direction: DVec3) -> f64 {
         let pairs = rays.clone().zip(rays.skip(1));
@@ -168,7 +190,7 @@ mod tests {
         let down = DVec3::NEG_Z;
         for (count, along, gain) in [(64, down, 2.0), (1000, down, 8.0), (32768, down, 40.0)] {
             let rays = rays(count, |_| along);
-            let order = order(&rays, false).unwrap();
+            let order = order_of(&rays, false).unwrap();
             let mut sorted = order.clone();
             sorted.sort_unstable();
             assert!(sorted.into_iter().eq(0..count as u32));
@@ -177,21 +199,21 @@ mod tests {
             assert!(after * gain < before, "{count}: {before} to {after}");
         }
         let rays = rays(32768, |random| random.direction());
-        let order = order(&rays, false).unwrap();
+        let order = order_of(&rays, false).unwrap();
         let before = mean_distance(rays.iter().copied(), DVec3::ZERO);
         let after = mean_distance(order.iter().map(|&ray| rays[ray as usize]), DVec3::ZERO);
         assert!(after * 8.0 < before, "{before} to {after}");
-        assert_eq!(super::order(&rays, true), None);
+        assert_eq!(order_of(&rays, true), None);
     }
 
     #[test]
     fn rays_of_one_point_and_of_nowhere_stay_as_they_are() {
         let mut all = rays(100, |_| DVec3::X);
         all[7].origin.x = f64::INFINITY;
-        assert_eq!(order(&all, false), None);
+        assert_eq!(order_of(&all, false), None);
         all.iter_mut().for_each(|ray| ray.origin = DVec3::ONE);
-        assert_eq!(order(&all, false), None);
+        assert_eq!(order_of(&all, false), None);
         all[7].origin.x = f64::NAN;
-        assert_eq!(order(&all, false), None);
+        assert_eq!(order_of(&all, false), None);
     }
 }
