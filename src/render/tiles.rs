@@ -78,7 +78,12 @@ fn render_tile(
     tile: &Tile,
     cancelled: &AtomicBool,
 ) -> Result<(Vec<[f32; 3]>, RayCounts), RenderError> {
-    let pixels: Vec<_> = tile.pixels_along_curve().collect();
+    let pixel = |(column, row)| {
+        let pixel = (tile.x + column, tile.y + row);
+        let index = u64::from(pixel.1) * u64::from(settings.film.width) + u64::from(pixel.0);
+        (pixel, PixelSampler::new(settings.seed, index))
+    };
+    let pixels: Vec<_> = tile.pixels_along_curve().map(pixel).collect();
     let mut sums = vec![DVec3::ZERO; pixels.len()];
     let mut rays = RayCounts::default();
     let (mut batch, mut samples) = (Batch::default(), Vec::new());
@@ -93,12 +98,10 @@ fn render_tile(
         let place = |number: u64| (number / u64::from(settings.spp)) as usize;
         samples.clear();
         samples.extend(numbers.clone().map(|number| {
-            let (column, row) = pixels[place(number)];
-            let pixel = (tile.x + column, tile.y + row);
-            let index = u64::from(pixel.1) * u64::from(settings.film.width) + u64::from(pixel.0);
+            let (pixel, sampler) = pixels[place(number)];
             Sample {
                 pixel,
-                sampler: PixelSampler::new(settings.seed, index),
+                sampler,
                 number: (number % u64::from(settings.spp)) as u32,
             }
         }));
@@ -108,9 +111,10 @@ fn render_tile(
         }
     }
     let mut colors = vec![[0.0; 3]; pixels.len()];
-    for (&(column, row), sum) in pixels.iter().zip(sums) {
+    for (((x, y), _), sum) in pixels.into_iter().zip(sums) {
         let mean = sum / f64::from(settings.spp);
-        colors[(row * tile.width + column) as usize] = mean.as_vec3().to_array();
+        let position = (y - tile.y) * tile.width + (x - tile.x);
+        colors[position as usize] = mean.as_vec3().to_array();
     }
     Ok((colors, rays))
 }
