@@ -80,7 +80,7 @@ impl Workshop {
 /// Whether rays that got into a prototype go on as a packet.
 #[inline]
 fn stays_packet(entered: RaySet, packet: &Packet) -> bool {
-    entered.len() >= LEAST_PACKET && packet.path.len() < GREATEST_PACKET_DEPTH
+    packet.is_together && entered.len() >= LEAST_PACKET && packet.path.len() < GREATEST_PACKET_DEPTH
 }
 
 /// A prototype that can be traced.

@@ -28,6 +28,8 @@ pub(crate) struct Packet {
     /// The greatest `t` that can still be a first hit.
     bound: Rows<Lanes>,
     nearest: [Option<Nearest>; GREATEST_PACKET],
+    /// Whether Embree gets the rays together, or one by one.
+    pub is_together: bool,
     /// The placements on the way, with that of the instance.
     pub path: InstancePath,
     levels: Levels,
@@ -51,6 +53,7 @@ impl Packet {
             t_max: nowhere,
             bound: nowhere,
             nearest: [const { None }; GREATEST_PACKET],
+            is_together: true,
             path: InstancePath::new(),
             levels: Levels::new(),
             prototype: PrototypeIndex::ROOT,
@@ -62,9 +65,10 @@ impl Packet {
     }
 
     /// Begins anew with rays in these ranges, for their first hits or whether
-    /// there are any.
-    pub fn begin(&mut self, t_min: Rows<Lanes>, t_max: Rows<Lanes>) {
+    /// there are any. Embree gets the rays together, or one by one.
+    pub fn begin(&mut self, t_min: Rows<Lanes>, t_max: Rows<Lanes>, is_together: bool) {
         (self.t_min, self.t_max, self.bound) = (t_min, t_max, t_max);
+        self.is_together = is_together;
         self.nearest.fill(None);
         self.callbacks = 0;
     }
