@@ -226,6 +226,33 @@ fn bundles_at_nested_placements() {
     }
 }
 
+/// Rays that have nothing in common enter together, and are then traced one by one: here
+/// each is of a bundle of its own, from near or far.
+#[test]
+fn scattered_rays() {
+    let cylinders = cylinders_in_a_box(SEED, 500);
+    let scattered = |random: &mut Random, cylinders: &[CylinderRecord]| -> Vec<Ray> {
+        (0..GREATEST_BUNDLE)
+            .map(|_| {
+                let reach = [1e2, 1e8][random.below(2) as usize];
+                bundle(random, cylinders, reach)[0]
+            })
+            .collect()
+    };
+    let scene = scene_of_cylinders(cylinders.clone());
+    assert_same_answers("scattered", &scene, |random| scattered(random, &cylinders));
+    for nested in support::nested_placements(SEED) {
+        let name = format!("scattered, nested, translated by {:e}", nested.translation);
+        let cylinders = nested.cylinders();
+        assert_same_answers(&name, &nested.scene, |random| {
+            let rays = scattered(random, &cylinders);
+            let rays = rays.iter();
+            rays.map(|ray| carried(&nested.any_image(random), ray))
+                .collect()
+        });
+    }
+}
+
 /// Copies of each cylinder, whose numbers do not go with their places.
 const COPIES: u32 = 3;
 

@@ -29,16 +29,25 @@ impl Habit {
         self.pause == 0
     }
 
-    pub fn traced_one(&mut self, callbacks: u32) {
+    /// After so many rays that were traced one by one.
+    pub fn traced_alone(&mut self, rays: usize, callbacks: u32) {
         // The newest count for more: what was long ago was elsewhere.
-        if self.rays == 256 {
-            (self.callbacks, self.rays) = (self.callbacks / 2, 128);
+        if self.rays >= 256 {
+            (self.callbacks, self.rays) = (self.callbacks / 2, self.rays / 2);
         }
         self.callbacks += callbacks;
-        self.rays += 1;
+        self.rays += rays as u32;
     }
 
-    pub fn traced_packet(&mut self, usual: &Usual) {
+    pub fn traced(&mut self, usual: &Usual) {
+        if usual.packet.is_together {
+            self.traced_packet(usual);
+        } else {
+            self.traced_alone(usual.all.len(), usual.packet.callbacks);
+        }
+    }
+
+    fn traced_packet(&mut self, usual: &Usual) {
         let rays = usual.all.len() as u64;
         let cost = u64::from(PACKET_CALLBACK) * u64::from(usual.packet.callbacks);
         // Until single rays were traced, four callbacks each are supposed.

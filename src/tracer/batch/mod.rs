@@ -2,8 +2,8 @@
 //!
 //! Rays that go the same way are traced sixteen together, as a packet: Embree
 //! walks its tree once for all of them, and the solver takes eight to a row.
-//! Others are traced one by one, for a packet visits whatever any of its rays
-//! has to. Rays that start at many places are first put in an order in which
+//! Others enter the root together, in the same rows, but are then traced one by one, for
+//! a packet visits whatever any of its rays has to. Rays that start at many places are first put in an order in which
 //! neighbours have most in common. Answers do not depend on any of it.
 
 mod habit;
@@ -25,7 +25,7 @@ use usual::Usual;
 /// pictures, or all rays to a sun.
 const LEAST_COSINE: f64 = 0.99;
 
-/// Fewer rays than this are traced one by one.
+/// Fewer rays than this are traced one by one, and enter one by one.
 const LEAST_RAYS: usize = 4;
 
 /// A description of so many bytes, which has about as many in Embree's tree, is
@@ -91,9 +91,8 @@ impl Tracer {
         });
     }
 
-    /// Adds the answer of each ray to `answers`: of rays that should be a packet
-    /// by `together`, of others by `alone`, which also says how often Embree
-    /// called back.
+    /// Adds the answer of each ray to `answers`: of usual rays by `together`, of few or
+    /// others by `alone`, which also says how often Embree called back.
     fn answer_all<T: Default>(
         &self,
         rays: &[Ray],
@@ -103,13 +102,16 @@ impl Tracer {
     ) {
         let (mut habit, mut usual) = (Habit::default(), Usual::new(self.device.instructions()));
         let mut answer = |rays: &[Ray], is_alike, answers: &mut Vec<T>| match &self.root {
-            Some(root) if self.are_packet(rays, is_alike, &mut habit) && usual.fill(self, rays) => {
+            Some(root)
+                if rays.len() >= LEAST_RAYS
+                    && usual.fill(self, rays, self.are_packet(rays, is_alike, &mut habit)) =>
+            {
                 together(root, &mut usual, answers);
-                habit.traced_packet(&usual);
+                habit.traced(&usual);
             }
             _ => answers.extend(rays.iter().map(|ray| {
                 let (answer, callbacks) = alone(ray);
-                habit.traced_one(callbacks);
+                habit.traced_alone(1, callbacks);
                 answer
             })),
         };
@@ -164,10 +166,7 @@ impl Tracer {
     /// Whether the rays should be a packet. Those of a group that is alike are within twice
     /// the angle of each other.
     fn are_packet(&self, rays: &[Ray], is_alike: bool, habit: &mut Habit) -> bool {
-        rays.len() >= LEAST_RAYS
-            && self.traces_packets
-            && (is_alike || are_alike(rays))
-            && habit.wants_packet()
+        self.traces_packets && (is_alike || are_alike(rays)) && habit.wants_packet()
     }
 }
 

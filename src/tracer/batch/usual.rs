@@ -26,8 +26,9 @@ impl Usual {
         }
     }
 
-    /// Replaces the rays; false if one is a miss wherever the solids are.
-    pub fn fill(&mut self, tracer: &Tracer, rays: &[Ray]) -> bool {
+    /// Replaces the rays, which Embree gets together or one by one; false if one is a miss
+    /// wherever the solids are.
+    pub fn fill(&mut self, tracer: &Tracer, rays: &[Ray], is_together: bool) -> bool {
         let (mut t_min, mut t_max) = ([Lanes::splat(0.0); ROWS], [Lanes::splat(0.0); ROWS]);
         for (number, ray) in rays.iter().enumerate() {
             let (row, lane) = (number / LANES, number % LANES);
@@ -40,7 +41,7 @@ impl Usual {
             self.factors[number] = factor;
         }
         self.all = RaySet::first(rays.len());
-        self.packet.begin(t_min, t_max);
+        self.packet.begin(t_min, t_max, is_together);
         true
     }
 }

@@ -6,7 +6,7 @@
 //! they are [run](crate::embree::Instructions::run).
 
 use super::{Entry, Frame, Level, LocalRay, Window};
-use crate::embree::{GREATEST_PACKET, Kernel, RaySet, Rays32};
+use crate::embree::{GREATEST_PACKET, Kernel, Ray32, RaySet, Rays32};
 use crate::math::{ChildFromParent, LANES, LaneVectors, Lanes};
 
 /// Rows of lanes that hold a packet.
@@ -25,7 +25,6 @@ pub(crate) struct PacketRays {
 }
 
 /// The windows of the rays of a packet; see [`Window`].
-#[derive(Clone)]
 struct Windows {
     shift: Rows<Lanes>,
     nearest: Rows<Lanes>,
@@ -34,16 +33,14 @@ struct Windows {
 }
 
 /// A packet on its way through one prototype.
-#[derive(Clone)]
 pub(crate) struct PacketLevel {
     /// The rays as the prototype's solvers get them.
     pub rays: PacketRays,
     windows: Windows,
 }
 
-/// A packet that has come to a prototype.
+/// A packet that has entered a prototype.
 pub(crate) struct PacketEntry {
-    pub level: PacketLevel,
     /// The rays for its Embree scene.
     pub rays32: Rays32,
     /// Those that are inside.
@@ -90,21 +87,21 @@ impl PacketRays {
 pub(crate) struct IntoChild<'a> {
     pub rays: &'a PacketRays,
     pub way: &'a ChildFromParent,
+    /// The rays in the child.
+    pub in_child: &'a mut PacketRays,
 }
 
 impl Kernel for IntoChild<'_> {
-    type Answer = PacketRays;
+    type Answer = ();
 
     #[inline(always)]
-    fn run(self) -> PacketRays {
-        let mut in_child = PacketRays::NOWHERE;
+    fn run(self) {
         for row in 0..ROWS {
             for lane in 0..LANES {
                 let ray = self.rays.ray(row, lane).in_child(self.way);
-                in_child.set(row, lane, &ray);
+                self.in_child.set(row, lane, &ray);
             }
         }
-        in_child
     }
 }
 
@@ -114,16 +111,21 @@ pub(crate) struct IntoInstance<'a> {
     pub rays: &'a PacketRays,
     pub way: &'a ChildFromParent,
     pub frame: &'a Frame,
+    /// The rays in the child.
+    pub in_child: &'a mut PacketRays,
 }
 
 impl Kernel for IntoInstance<'_> {
-    type Answer = PacketRays;
+    type Answer = ();
 
     #[inline(always)]
-    fn run(self) -> PacketRays {
-        let mut in_child = IntoChild {
-            rays: self.rays,
-            way: self.way,
+    fn run(self) {
+        let Self { rays, way, .. } = self;
+        let in_child = self.in_child;
+        IntoChild {
+            rays,
+            way,
+            in_child,
         }
         .run();
         let mut far = [false; GREATEST_PACKET];
@@ -137,14 +139,14 @@ impl Kernel for IntoInstance<'_> {
             let nearer = self.frame.approach(&in_child.ray(row, lane));
             in_child.set(row, lane, &nearer);
         }
-        in_child
     }
 }
 
 /// [`Frame::enter`] of a packet.
 pub(crate) struct Enter<'a> {
     pub frame: &'a Frame,
-    pub rays: &'a PacketRays,
+    /// The rays in the prototype's own space. Those that are far away are moved nearer.
+    pub level: &'a mut PacketLevel,
     /// Those that are to enter.
     pub wanted: RaySet,
     pub t_min: &'a Rows<Lanes>,
@@ -155,17 +157,8 @@ impl Kernel for Enter<'_> {
     type Answer = PacketEntry;
 
     #[inline(always)]
-    fn run(self) -> PacketEntry {
+    fn run(mut self) -> PacketEntry {
         let mut entry = PacketEntry {
-            level: PacketLevel {
-                rays: self.rays.clone(),
-                windows: Windows {
-                    shift: ZEROS,
-                    nearest: ZEROS,
-                    start: ZEROS,
-                    rate: ZEROS,
-                },
-            },
             rays32: Rays32 {
                 origin: [[0.0; GREATEST_PACKET]; 3],
                 direction: [[0.0; GREATEST_PACKET]; 3],
@@ -176,11 +169,12 @@ impl Kernel for Enter<'_> {
         let (mut inside, mut far) = ([false; GREATEST_PACKET], [false; GREATEST_PACKET]);
         for row in 0..ROWS {
             // Numbers of a row's own: what the loop reads it does not write.
+            let rays = &self.level.rays;
             let rays = RowOfRays {
-                origin: self.rays.origin[row],
-                direction: self.rays.direction[row],
-                base: self.rays.base[row],
-                shift: self.rays.shift[row],
+                origin: rays.origin[row],
+                direction: rays.direction[row],
+                base: rays.base[row],
+                shift: rays.shift[row],
                 t_min: self.t_min[row],
                 t_max: self.t_max[row],
             };
@@ -193,6 +187,7 @@ impl Kernel for Enter<'_> {
                     .entry(&ray, &passing, rays.t_min.0[lane], rays.t_max.0[lane]);
                 entries.set(lane, &one, passing.is_far);
             }
+            self.level.windows.set_row(row, rays.shift, &entries);
             entry.set_row(row, &entries);
             inside[row * LANES..][..LANES].copy_from_slice(&entries.is_inside);
             far[row * LANES..][..LANES].copy_from_slice(&entries.is_far);
@@ -271,10 +266,10 @@ impl Enter<'_> {
     /// Enters with rays that have to be moved nearer before.
     #[cold]
     #[inline(never)]
-    fn enter_from_afar(&self, far: RaySet, entry: &mut PacketEntry) {
+    fn enter_from_afar(&mut self, far: RaySet, entry: &mut PacketEntry) {
         for number in far {
             let (row, lane) = (number / LANES, number % LANES);
-            let ray = self.rays.ray(row, lane);
+            let ray = self.level.rays.ray(row, lane);
             let passing = self.frame.passing(&ray);
             if self.frame.is_missed_from_afar(&passing) {
                 continue;
@@ -282,8 +277,9 @@ impl Enter<'_> {
             let (ray, passing) = self.frame.approach_from_afar(&ray, passing.nearest);
             let (t_min, t_max) = (self.t_min[row].0[lane], self.t_max[row].0[lane]);
             let one = self.frame.entry(&ray, &passing, t_min, t_max);
-            entry.level.rays.set(row, lane, &ray);
-            entry.set(row, lane, &one);
+            self.level.rays.set(row, lane, &ray);
+            self.level.windows.set(row, lane, &one.window);
+            entry.set(number, &one.ray32);
             if one.is_inside {
                 entry.entered.insert(number);
             }
@@ -294,11 +290,6 @@ impl Enter<'_> {
 impl PacketEntry {
     #[inline(always)]
     fn set_row(&mut self, row: usize, entries: &RowOfEntries) {
-        let windows = &mut self.level.windows;
-        windows.shift[row] = self.level.rays.shift[row];
-        windows.nearest[row] = entries.nearest;
-        windows.start[row] = entries.start;
-        windows.rate[row] = entries.rate;
         let lanes = row * LANES..(row + 1) * LANES;
         for axis in 0..3 {
             self.rays32.origin[axis][lanes.clone()].copy_from_slice(&entries.origin[axis]);
@@ -308,22 +299,45 @@ impl PacketEntry {
     }
 
     #[inline(always)]
-    fn set(&mut self, row: usize, lane: usize, entry: &Entry) {
-        let windows = &mut self.level.windows;
-        windows.shift[row].0[lane] = entry.window.shift;
-        windows.nearest[row].0[lane] = entry.window.nearest;
-        windows.start[row].0[lane] = entry.window.start;
-        windows.rate[row].0[lane] = entry.window.rate;
-        let number = row * LANES + lane;
+    fn set(&mut self, number: usize, ray: &Ray32) {
         for axis in 0..3 {
-            self.rays32.origin[axis][number] = entry.ray32.origin[axis];
-            self.rays32.direction[axis][number] = entry.ray32.direction[axis];
+            self.rays32.origin[axis][number] = ray.origin[axis];
+            self.rays32.direction[axis][number] = ray.direction[axis];
         }
-        self.rays32.t_far[number] = entry.ray32.t_far;
+        self.rays32.t_far[number] = ray.t_far;
+    }
+}
+
+impl Windows {
+    #[inline(always)]
+    fn set_row(&mut self, row: usize, shift: Lanes, entries: &RowOfEntries) {
+        self.shift[row] = shift;
+        self.nearest[row] = entries.nearest;
+        self.start[row] = entries.start;
+        self.rate[row] = entries.rate;
+    }
+
+    #[inline(always)]
+    fn set(&mut self, row: usize, lane: usize, window: &Window) {
+        self.shift[row].0[lane] = window.shift;
+        self.nearest[row].0[lane] = window.nearest;
+        self.start[row].0[lane] = window.start;
+        self.rate[row].0[lane] = window.rate;
     }
 }
 
 impl PacketLevel {
+    /// Sixteen times no ray.
+    pub const NOWHERE: Self = Self {
+        rays: PacketRays::NOWHERE,
+        windows: Windows {
+            shift: ZEROS,
+            nearest: ZEROS,
+            start: ZEROS,
+            rate: ZEROS,
+        },
+    };
+
     /// The window of a ray.
     #[inline(always)]
     pub fn window(&self, ray: usize) -> Window {

@@ -19,7 +19,7 @@ use crate::embree::{self, Coherence, GREATEST_PACKET, JointCommit, RaySet, Scene
 use crate::math::Bounds;
 use crate::scene::{PrototypeIndex, Scene};
 use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, SolidKind, Sphere};
-use crate::tracer::frame::{Frame, LocalRay, PacketEntry, PacketLevel, PacketRays};
+use crate::tracer::frame::{Frame, LocalRay, PacketEntry};
 use crate::tracer::query::{Packet, Query};
 use crate::tracer::traced::TracedSolid;
 
@@ -211,22 +211,18 @@ impl Group {
         })
     }
 
-    /// Traces rays of a packet for their first hits. Returns those whose
-    /// first hit is nearer now.
-    pub fn search_packet(&self, rays: RaySet, local: &PacketRays, packet: &mut Packet) -> RaySet {
-        let PacketEntry {
-            level,
-            rays32,
-            entered,
-        } = packet.enter(&self.frame, rays, local);
+    /// Traces rays of a packet that was brought here for their first hits. Returns those
+    /// whose first hit is nearer now.
+    pub fn search_packet(&self, rays: RaySet, packet: &mut Packet) -> RaySet {
+        let PacketEntry { rays32, entered } = packet.enter(&self.frame, rays);
         let before: [f64; GREATEST_PACKET] = std::array::from_fn(|ray| packet.bound(ray));
         if stays_packet(entered, packet) {
-            packet.within(self.prototype, level, |packet| {
+            packet.within(self.prototype, |packet| {
                 let (scene, width) = (self.scene(), self.workshop.packet_width());
                 scene.closest_packet(&rays32, entered, width, self.coherence(), packet);
             });
         } else {
-            self.each_alone(entered, &level, packet, |scene, ray, query| {
+            self.each_alone(entered, packet, |scene, ray, query| {
                 scene.closest(&rays32.ray(ray), query);
             });
         }
@@ -240,20 +236,16 @@ impl Group {
     }
 
     /// Those rays of a packet for which anything is hit.
-    pub fn occluded_packet(&self, rays: RaySet, local: &PacketRays, packet: &mut Packet) -> RaySet {
-        let PacketEntry {
-            level,
-            rays32,
-            entered,
-        } = packet.enter(&self.frame, rays, local);
+    pub fn occluded_packet(&self, rays: RaySet, packet: &mut Packet) -> RaySet {
+        let PacketEntry { rays32, entered } = packet.enter(&self.frame, rays);
         if stays_packet(entered, packet) {
-            return packet.within(self.prototype, level, |packet| {
+            return packet.within(self.prototype, |packet| {
                 let (scene, width) = (self.scene(), self.workshop.packet_width());
                 scene.any_packet(&rays32, entered, width, self.coherence(), packet)
             });
         }
         let mut blocked = RaySet::EMPTY;
-        self.each_alone(entered, &level, packet, |scene, ray, query| {
+        self.each_alone(entered, packet, |scene, ray, query| {
             if scene.any(&rays32.ray(ray), query) {
                 blocked.insert(ray);
             }
@@ -265,12 +257,11 @@ impl Group {
     fn each_alone(
         &self,
         rays: RaySet,
-        level: &PacketLevel,
         packet: &mut Packet,
         mut trace: impl FnMut(&embree::Scene<Query>, usize, &mut Query),
     ) {
         for ray in rays {
-            packet.alone(self.prototype, (ray, level.of_ray(ray)), |query| {
+            packet.alone(self.prototype, ray, |query| {
                 trace(self.scene(), ray, query);
             });
         }

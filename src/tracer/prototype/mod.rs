@@ -80,7 +80,7 @@ impl Workshop {
 /// Whether rays that got into a prototype go on as a packet.
 #[inline]
 fn stays_packet(entered: RaySet, packet: &Packet) -> bool {
-    entered.len() >= LEAST_PACKET && packet.path.len() < GREATEST_PACKET_DEPTH
+    packet.is_together && entered.len() >= LEAST_PACKET && packet.path.len() < GREATEST_PACKET_DEPTH
 }
 
 /// A prototype that can be traced.
@@ -309,7 +309,8 @@ impl Prototype {
     /// Traces rays of a packet for their first hits.
     pub fn search_packet(&self, rays: RaySet, local: &PacketRays, packet: &mut Packet) {
         for group in &self.groups {
-            group.search_packet(rays, local, packet);
+            packet.arrive(local);
+            group.search_packet(rays, packet);
         }
     }
 
@@ -318,7 +319,8 @@ impl Prototype {
         let mut blocked = RaySet::EMPTY;
         for group in &self.groups {
             if blocked != rays {
-                blocked = blocked | group.occluded_packet(rays - blocked, local, packet);
+                packet.arrive(local);
+                blocked = blocked | group.occluded_packet(rays - blocked, packet);
             }
         }
         blocked

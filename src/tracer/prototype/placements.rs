@@ -14,7 +14,7 @@ use crate::embree::{
 use crate::math::{Bounds, ChildFromParent};
 use crate::scene::{Placement, PrototypeIndex, Scene};
 use crate::tracer::counters;
-use crate::tracer::frame::{Frame, LocalRay, PacketRays};
+use crate::tracer::frame::{Frame, LocalRay};
 use crate::tracer::query::{Packet, Query};
 
 /// Placements of a prototype, each of them for the group with the same number of what
@@ -102,23 +102,22 @@ impl Placements {
         answer
     }
 
-    /// Hands rays of a packet to `trace` likewise.
+    /// Brings a packet to the placed group for `trace`, likewise.
     #[inline]
     fn visit_packet(
         &self,
         index: u32,
         rays: RaySet,
         packet: &mut Packet,
-        trace: impl FnOnce(&Group, &PacketRays, &mut Packet) -> RaySet,
+        trace: impl FnOnce(&Group, &mut Packet) -> RaySet,
     ) -> RaySet {
         let Some((placement, child)) = self.get(index) else {
             return RaySet::EMPTY;
         };
         counters::handed_on(rays.len() as u32);
-        packet.leave_instance();
-        let in_child = packet.in_child(&ChildFromParent::new(&placement.parent_from_child));
+        packet.arrive_through(&ChildFromParent::new(&placement.parent_from_child));
         packet.path.push(index);
-        let answer = trace(child, &in_child, packet);
+        let answer = trace(child, packet);
         packet.path.pop();
         answer
     }
@@ -170,8 +169,8 @@ impl UserGeometry for Arc<Placements> {
         counters::called_back();
         packet.callbacks += 1;
         let number = self.called_back.number(at.primitive);
-        let shorter = self.visit_packet(number, rays, packet, |child, in_child, packet| {
-            child.search_packet(rays, in_child, packet)
+        let shorter = self.visit_packet(number, rays, packet, |child, packet| {
+            child.search_packet(rays, packet)
         });
         for ray in shorter {
             t_far[ray] = packet.t_far(ray);
@@ -189,8 +188,8 @@ impl UserGeometry for Arc<Placements> {
         counters::called_back();
         packet.callbacks += 1;
         let number = self.called_back.number(at.primitive);
-        self.visit_packet(number, rays, packet, |child, in_child, packet| {
-            child.occluded_packet(rays, in_child, packet)
+        self.visit_packet(number, rays, packet, |child, packet| {
+            child.occluded_packet(rays, packet)
         })
     }
 }

@@ -5,6 +5,7 @@
 //! f64 alone, for single rays ([`Query`]) as for packets of rays ([`Packet`]).
 
 mod found;
+mod levels;
 mod packet;
 mod single;
 

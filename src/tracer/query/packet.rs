@@ -7,6 +7,7 @@
 //! depends on another's.
 
 use super::found::{InstancePath, Keep, Member, Nearest, Place};
+use super::levels::Levels;
 use super::single::Query;
 use crate::embree::{GREATEST_PACKET, GeometryId, Instructions, RaySet};
 use crate::math::{ChildFromParent, LANES, LaneMask, LaneVectors, Lanes};
@@ -15,7 +16,7 @@ use crate::solid::lanes::{self, CylinderLanes, RayLanes};
 use crate::solid::{Cylinder, SolidKind};
 use crate::tracer::counters;
 use crate::tracer::frame::{
-    Enter, Frame, IntoChild, IntoInstance, Level, PacketEntry, PacketLevel, PacketRays, ROWS, Rows,
+    Enter, Frame, IntoChild, IntoInstance, PacketEntry, PacketRays, ROWS, Rows,
 };
 use crate::tracer::prototype::{Cylinders, Described, Ends, SolidList};
 use crate::tracer::traced::{Met, TracedSolid};
@@ -27,10 +28,11 @@ pub(crate) struct Packet {
     /// The greatest `t` that can still be a first hit.
     bound: Rows<Lanes>,
     nearest: [Option<Nearest>; GREATEST_PACKET],
+    /// Whether Embree gets the rays together, or one by one.
+    pub is_together: bool,
     /// The placements on the way, with that of the instance.
     pub path: InstancePath,
-    /// The rays in the prototypes on the way, the one being traced last.
-    levels: Vec<PacketLevel>,
+    levels: Levels,
     /// The prototype that is being traced.
     prototype: PrototypeIndex,
     /// The instance that the last callback was in, by the number of the placement, and
@@ -51,8 +53,9 @@ impl Packet {
             t_max: nowhere,
             bound: nowhere,
             nearest: [const { None }; GREATEST_PACKET],
+            is_together: true,
             path: InstancePath::new(),
-            levels: Vec::new(),
+            levels: Levels::new(),
             prototype: PrototypeIndex::ROOT,
             instance: None,
             in_instance: PacketRays::NOWHERE,
@@ -62,9 +65,10 @@ impl Packet {
     }
 
     /// Begins anew with rays in these ranges, for their first hits or whether
-    /// there are any.
-    pub fn begin(&mut self, t_min: Rows<Lanes>, t_max: Rows<Lanes>) {
+    /// there are any. Embree gets the rays together, or one by one.
+    pub fn begin(&mut self, t_min: Rows<Lanes>, t_max: Rows<Lanes>, is_together: bool) {
         (self.t_min, self.t_max, self.bound) = (t_min, t_max, t_max);
+        self.is_together = is_together;
         self.nearest.fill(None);
         self.callbacks = 0;
     }
@@ -74,31 +78,46 @@ impl Packet {
         self.nearest[ray].take()
     }
 
-    /// The rays in a prototype, of which those have entered that could find part
+    /// Brings rays to the root.
+    pub fn arrive(&mut self, rays: &PacketRays) {
+        self.levels.next().rays.clone_from(rays);
+    }
+
+    /// Brings the rays to a child, through a placement in the prototype that is being traced.
+    pub fn arrive_through(&mut self, way: &ChildFromParent) {
+        self.leave_instance();
+        let (level, next) = self.levels.current_and_next();
+        self.instructions.run(IntoChild {
+            rays: &level.rays,
+            way,
+            in_child: &mut next.rays,
+        });
+    }
+
+    /// Enters the prototype that the rays were brought to, with those that could find part
     /// of the answer there.
-    pub fn enter(&self, frame: &Frame, wanted: RaySet, rays: &PacketRays) -> PacketEntry {
+    pub fn enter(&mut self, frame: &Frame, wanted: RaySet) -> PacketEntry {
         self.instructions.run(Enter {
             frame,
-            rays,
+            level: self.levels.next(),
             wanted,
             t_min: &self.t_min,
             t_max: &self.bound,
         })
     }
 
-    /// Runs `trace` with the rays in a further prototype.
+    /// Runs `trace` with the rays in the prototype that they have entered.
     pub fn within<T>(
         &mut self,
         prototype: PrototypeIndex,
-        level: PacketLevel,
         trace: impl FnOnce(&mut Self) -> T,
     ) -> T {
         debug_assert_eq!(self.instance, None, "instances contain solids alone");
-        self.levels.push(level);
+        self.levels.descend();
         let outer = std::mem::replace(&mut self.prototype, prototype);
         let answer = trace(self);
         self.leave_instance();
-        self.levels.pop();
+        self.levels.ascend();
         self.prototype = outer;
         answer
     }
@@ -118,10 +137,11 @@ impl Packet {
             return;
         };
         counters::handed_on(1);
-        self.in_instance = self.instructions.run(IntoInstance {
-            rays: &self.level().rays,
+        self.instructions.run(IntoInstance {
+            rays: &self.levels.current().rays,
             way: &described.way_from(self.prototype, placement),
             frame: described.frame(),
+            in_child: &mut self.in_instance,
         });
         self.path.push(placement);
         self.instance = instance;
@@ -135,21 +155,16 @@ impl Packet {
         }
     }
 
-    /// The rays in a child, through a placement in the prototype that is being traced.
-    pub fn in_child(&self, way: &ChildFromParent) -> PacketRays {
-        let rays = self.rays();
-        self.instructions.run(IntoChild { rays, way })
-    }
-
-    /// Runs `trace` with a query of one ray of the packet in a further prototype, and
-    /// keeps its answer.
+    /// Runs `trace` with a query of one ray of the packet in the prototype that it has
+    /// entered, and keeps its answer.
     pub fn alone<T>(
         &mut self,
         prototype: PrototypeIndex,
-        (ray, level): (usize, Level),
+        ray: usize,
         trace: impl FnOnce(&mut Query) -> T,
     ) -> T {
         let (t_min, t_max) = (lane(&self.t_min, ray), lane(&self.t_max, ray));
+        let level = self.levels.next().of_ray(ray);
         let path = std::mem::take(&mut self.path);
         let mut query = Query::new(t_min, t_max, path, self.nearest[ray].take());
         let answer = query.within(prototype, level, trace);
@@ -164,19 +179,11 @@ impl Packet {
         answer
     }
 
-    /// The level that callbacks run in.
-    #[inline(always)]
-    fn level(&self) -> &PacketLevel {
-        self.levels
-            .last()
-            .expect("callbacks run within a prototype")
-    }
-
     /// The rays in the space of what a callback is for.
     #[inline(always)]
     fn rays(&self) -> &PacketRays {
         match self.instance {
-            None => &self.level().rays,
+            None => &self.levels.current().rays,
             Some(_) => &self.in_instance,
         }
     }
@@ -190,7 +197,7 @@ impl Packet {
     /// The `t_far` that leaves room for all hits that a ray would keep.
     #[inline(always)]
     pub fn t_far(&self, ray: usize) -> f32 {
-        self.level().window(ray).t_far(self.bound(ray))
+        self.levels.current().window(ray).t_far(self.bound(ray))
     }
 
     /// Keeps the points where rays first meet a cylinder of the current
