@@ -5,16 +5,20 @@
 //! as the tracer asks: one ray against eight cylinders, eight rays against one
 //! cylinder. The range is the ray's own, or begins or ends at, just before or
 //! just behind a hit, so that either end of the chord decides.
+//!
+//! Other kinds are solved eight rays at a time by their quick solvers, which leave cases
+//! open: those that they don't are compared.
 
 use std::array::from_fn;
 
-use cyltrace::cases::{Family, Inputs};
+use cyltrace::cases::{AnyFamily, Case, Family, Inputs};
 use cyltrace::math::{LANES, LaneMask, LaneVectors, Lanes, Random, Ray};
 use cyltrace::solid::formulations::Problem;
 use cyltrace::solid::lanes::{
     self, AllCapped, AllOpen, CylinderLanes, LaneCaps, MixedCaps, RayLanes,
 };
-use cyltrace::solid::{Caps, Cylinder, triple_product};
+use cyltrace::solid::{AnySolid, Caps, ConvexSolid, Cylinder, quick, triple_product};
+use glam::DVec3;
 use rayon::prelude::*;
 
 const SEED: u64 = 51;
@@ -172,6 +176,143 @@ fn lanes_answer_as_the_scalar_solver_does() {
                 .sum();
             // Some families aim past the solid, none always.
             assert!(hits > GROUPS, "{} has {hits} hits", family.name());
+        }
+    }
+}
+
+/// What became of the lanes of a family.
+#[derive(Clone, Copy, Debug, Default)]
+struct Count {
+    open: u64,
+    met: u64,
+    missed: u64,
+}
+
+/// Eight rays at one solid: those of the solid's own case and of seven others of the family,
+/// moved so that they are as far from it.
+fn rays_at(solid: &impl ConvexSolid, cases: &[Case; LANES], random: &mut Random) -> RayLanes {
+    let mut rays = cases.map(|Case { solid: own, ray }| {
+        let from_anchor = ray.origin - own.anchor();
+        let shift = match random.below(3) {
+            0 => random.uniform(-4.0, 4.0),
+            _ => 0.0,
+        };
+        let mut ray = Ray {
+            origin: from_anchor,
+            ..ray
+        };
+        if let Some(chord) = solid.chord(from_anchor, ray.direction) {
+            let mut limit = || {
+                let end = [chord.enter.t, chord.leave.t][random.below(2) as usize];
+                // The range of a ray that starts on a surface begins there, or just behind.
+                match random.below(8) {
+                    0 => ray.origin += ray.direction * end,
+                    1 => ray.origin += ray.direction * (end + 1e-14),
+                    _ => {}
+                }
+                let end = end + shift;
+                [end, end.next_up(), end.next_down()][random.below(3) as usize]
+            };
+            let (one, other) = (limit(), limit());
+            match random.below(6) {
+                0 => ray.t_min = one,
+                1 => ray.t_max = one,
+                2 => (ray.t_min, ray.t_max) = (one, other),
+                3 => (ray.t_min, ray.t_max) = (0.0, f64::INFINITY),
+                4 => (ray.t_min, ray.t_max) = (-0.0, f64::NAN),
+                _ => {}
+            }
+        }
+        (ray, shift)
+    });
+    match random.below(16) {
+        0 => rays[0].0.direction.x = f64::NAN,
+        1 => rays[0].0.origin.y = f64::INFINITY,
+        2 => rays[0].0.direction.z = f64::NEG_INFINITY,
+        3 => rays[0].0.direction = DVec3::ZERO,
+        4 => rays[0].0.origin = DVec3::NEG_X * 0.0,
+        _ => {}
+    }
+    RayLanes {
+        from_p0: LaneVectors::of(&rays.map(|(ray, _)| ray.origin)),
+        direction: LaneVectors::of(&rays.map(|(ray, _)| ray.direction)),
+        shift: Lanes(rays.map(|(_, shift)| shift)),
+        t_min: Lanes(rays.map(|(ray, _)| ray.t_min)),
+        t_max: Lanes(rays.map(|(ray, _)| ray.t_max)),
+    }
+}
+
+/// Fails where a lane that is not open has another answer than the scalar solver.
+fn verify_quick(solid: &impl ConvexSolid, rays: &RayLanes, active: u8, name: &str) -> Count {
+    let mut count = Count::default();
+    let answer = quick::first(solid, rays, &LaneMask::from_bits(active));
+    for lane in 0..LANES {
+        let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
+        let [shift, t_min, t_max] = [rays.shift, rays.t_min, rays.t_max].map(|lanes| lanes.0[lane]);
+        let is_active = active >> lane & 1 == 1;
+        let expected = solid.first(x, d, shift, t_min, t_max).filter(|_| is_active);
+        let is_met = answer.met.0[lane];
+        if answer.open.0[lane] {
+            assert!(is_active && !is_met, "{name}: lane {lane}");
+            count.open += 1;
+            continue;
+        }
+        let found = is_met.then(|| answer.t.0[lane].to_bits());
+        assert_eq!(
+            found,
+            expected.map(|meeting| meeting.t.to_bits()),
+            "seed {SEED}, {name}, lane {lane}: {solid:?} {x:?} {d:?} {shift:e} {t_min:e} {t_max:e}",
+        );
+        count.met += u64::from(is_met);
+        count.missed += u64::from(!is_met);
+    }
+    count
+}
+
+#[test]
+fn quick_solvers_answer_as_the_scalar_solvers_do_or_not_at_all() {
+    for family in AnyFamily::all() {
+        let name = family.name();
+        for inputs in Inputs::ALL {
+            let count = |index: u64| {
+                let mut random = Random::new(SEED, index);
+                let cases: [Case; LANES] =
+                    from_fn(|lane| family.case(SEED, index * LANES as u64 + lane as u64, inputs));
+                let active = match random.below(2) {
+                    0 => u8::MAX,
+                    _ => random.bits() as u8,
+                };
+                macro_rules! verify {
+                    ($solid:expr) => {{
+                        let rays = rays_at($solid, &cases, &mut random);
+                        verify_quick($solid, &rays, active, &name)
+                    }};
+                }
+                match &cases[0].solid {
+                    AnySolid::Cylinder(solid) => verify!(solid),
+                    AnySolid::Cone(solid) => verify!(solid),
+                    AnySolid::RoundedCone(solid) => verify!(solid),
+                    AnySolid::Sphere(solid) => verify!(solid),
+                    AnySolid::Cuboid(solid) => verify!(solid),
+                    AnySolid::Disk(solid) => verify!(solid),
+                }
+            };
+            let sum = |one: Count, other: Count| Count {
+                open: one.open + other.open,
+                met: one.met + other.met,
+                missed: one.missed + other.missed,
+            };
+            let total = (0..GROUPS)
+                .into_par_iter()
+                .map(count)
+                .reduce(Count::default, sum);
+            let is_quick = ["sphere-", "disk-", "cuboid-"]
+                .iter()
+                .any(|kind| name.starts_with(kind));
+            if is_quick && name.ends_with("uniform") {
+                let Count { open, met, .. } = total;
+                assert!(met > GROUPS && open < met, "{name}: {total:?}");
+            }
         }
     }
 }

@@ -24,6 +24,16 @@
 //! exact `D` always. (For an origin `k` radii away the relative error of `D` is some
 //! `k u`, but `√D` is a k-th of that sum.)
 //!
+//! Roots are spared where that is plain. The error of the rounded `D` is at most `2^-50
+//! (R + Q + √(Q S) + 2^-52 S)` with `R = radius² |d|²`, `Q = |x × d|²`, `S = |x|² |d|²`, so
+//! it is below `2^-36 |D|` if
+//!
+//! ```text
+//! R + Q <= 2^12 |D|,   2^-25 Q S <= D²,   2^-52 S <= 2^12 |D|              (3)
+//! ```
+//!
+//! for `2^12 + 2^12.5 + 2^12` is less than 2^14. Where `D²` overflows nothing is plain.
+//!
 //! Where the two terms of a root cancel, it is `C / q`, with `C` the constant
 //! term of (1), and `q` the sum that does not cancel; next to the sphere `C` is
 //! computed from exact numbers.
@@ -32,6 +42,7 @@ use glam::DVec3;
 
 use super::chord::{Chord, ChordEnd};
 use super::exact::{Expression, Number, cross, difference, dot, quotient, sign, vector};
+use super::quick::{End, Quick, Range};
 use super::{Location, Part};
 use crate::math::{UNIT_ROUNDOFF, power_of_two};
 
@@ -42,6 +53,12 @@ const GOOD: f64 = power_of_two(-36);
 /// How much of the sum that does not cancel the error of `√D` may be otherwise: the
 /// point of a hit is then within 2^-44 of the way to it.
 const GOOD_FROM_AFAR: f64 = power_of_two(-44);
+
+/// 2^12 of (3).
+const MOST_OF_PLAIN: f64 = power_of_two(12);
+
+/// 2^-25 of (3).
+const MOST_OF_SQUARES: f64 = power_of_two(-25);
 
 /// Below this, relative to `radius²`, `C` is computed from exact numbers; see
 /// the triple-product solver's limit.
@@ -78,27 +95,141 @@ pub(super) fn chord_about(
     if discriminant < 0.0 {
         return None;
     }
-    let s = discriminant.sqrt();
-    let (first, second) = (-b - s, s - b);
-    let root = |sum: f64, other: f64| {
-        if sum.abs() < 0.5 * b.abs() {
-            from.constant_term(x) / other
-        } else {
-            sum / dd
-        }
-    };
+    let [enter, leave] = Roots::new(dd, b, discriminant).both(|| from.constant_term(x));
     let end = |t| ChordEnd {
         t,
         part,
         on_rim: false,
     };
-    let enter = root(first, second);
     Some(Chord {
         enter: end(enter),
-        // Next to a tangent the two may come out in the wrong order by a rounding.
-        leave: end(root(second, first).max(enter)),
+        leave: end(leave),
         lies_on: None,
     })
+}
+
+/// The first meeting of the line `centre + x + t d`; see [`quick`](super::quick).
+#[inline(always)]
+pub(super) fn quick_first(x: DVec3, d: DVec3, radius: f64, range: &Range) -> Quick {
+    let (dd, b) = (d.dot(d), x.dot(d));
+    let discriminant = RoundedDiscriminant::new(x, d, dd, radius);
+    let (c, is_good) = rounded_constant_term(x, radius);
+    let roots = Roots::new(dd, b, discriminant.value);
+    let [enter, leave] = roots.both(|| c);
+    // Where `C` cancels, `|x|` is nearly the radius: its products round by 5 u of that square,
+    // and the quotient by less than as much.
+    let displaced = 8.0 * UNIT_ROUNDOFF * (radius * radius) / (b.abs() + roots.s);
+    let [of_enter, of_leave] = roots.sums().map(|sum| {
+        let is_poor = roots.cancels(sum) & !is_good;
+        if is_poor { displaced } else { 0.0 }
+    });
+    // An exit that may come out before the entry is taken there.
+    let is_in_order = leave - enter > 2.0 * of_enter;
+    let enter = End {
+        t: enter,
+        slack: of_enter,
+    };
+    let leave = End {
+        t: leave,
+        slack: of_leave + if is_in_order { 0.0 } else { of_enter },
+    };
+    Quick::of_ends(!discriminant.is_plain(), [enter, leave], range)
+}
+
+/// The roots of (1).
+#[derive(Clone, Copy, Debug)]
+struct Roots {
+    /// `|d|²`.
+    dd: f64,
+    /// `x·d`.
+    b: f64,
+    /// `√D`.
+    s: f64,
+}
+
+impl Roots {
+    #[inline(always)]
+    fn new(dd: f64, b: f64, discriminant: f64) -> Self {
+        Self {
+            dd,
+            b,
+            s: discriminant.sqrt(),
+        }
+    }
+
+    /// The numerators of (2).
+    #[inline(always)]
+    fn sums(&self) -> [f64; 2] {
+        [-self.b - self.s, self.s - self.b]
+    }
+
+    /// Whether the terms of one of them cancel.
+    #[inline(always)]
+    fn cancels(&self, sum: f64) -> bool {
+        sum.abs() < 0.5 * self.b.abs()
+    }
+
+    /// The roots in order. `constant_term` is called where terms cancel.
+    #[inline(always)]
+    fn both(&self, constant_term: impl Fn() -> f64) -> [f64; 2] {
+        let [first, second] = self.sums();
+        let root = |sum: f64, other: f64| {
+            let (numerator, denominator) = if self.cancels(sum) {
+                (constant_term(), other)
+            } else {
+                (sum, self.dd)
+            };
+            numerator / denominator
+        };
+        let enter = root(first, second);
+        // Next to a tangent the two may come out in the wrong order by a rounding.
+        [enter, root(second, first).max(enter)]
+    }
+}
+
+/// `C` of (1) from the rounded difference, and whether that will do.
+#[inline(always)]
+fn rounded_constant_term(x: DVec3, radius: f64) -> (f64, bool) {
+    let rr = radius * radius;
+    let rounded = x.dot(x) - rr;
+    (rounded, !(rounded.abs() < LEAST_CONSTANT_TERM * rr))
+}
+
+/// `D` of (2) from rounded products, and what its error is of.
+#[derive(Clone, Copy, Debug)]
+struct RoundedDiscriminant {
+    value: f64,
+    /// `radius² |d|²`.
+    reach: f64,
+    /// `|x × d|²`.
+    squared: f64,
+    /// `|x|² |d|²`.
+    spread: f64,
+}
+
+impl RoundedDiscriminant {
+    /// `x` is the rounded difference and `dd` is `|d|²`.
+    #[inline(always)]
+    fn new(x: DVec3, d: DVec3, dd: f64, radius: f64) -> Self {
+        let across = x.cross(d);
+        let (squared, reach) = (across.dot(across), radius * radius * dd);
+        Self {
+            value: reach - squared,
+            reach,
+            squared,
+            spread: x.dot(x) * dd,
+        }
+    }
+
+    /// Whether the value will do by (3).
+    #[inline(always)]
+    fn is_plain(&self) -> bool {
+        let (size, square) = (self.value.abs() * MOST_OF_PLAIN, self.value * self.value);
+        (self.reach + self.squared <= size)
+            & (MOST_OF_SQUARES * self.squared * self.spread <= square)
+            & (2.0 * UNIT_ROUNDOFF * self.spread <= size)
+            & (square < f64::INFINITY)
+    }
 }
 
 /// Where a point is, exactly.
@@ -125,12 +256,18 @@ impl FromBall {
     /// `D` of (2), of the line through the point; `x` is the rounded difference, `dd`
     /// is `|d|²` and `b` is `x·d`.
     fn discriminant(&self, x: DVec3, d: DVec3, dd: f64, b: f64) -> f64 {
-        let across = x.cross(d);
-        let (squared, reach) = (across.dot(across), self.radius * self.radius * dd);
-        let rounded = reach - squared;
+        let discriminant = RoundedDiscriminant::new(x, d, dd, self.radius);
+        if discriminant.is_plain() {
+            return discriminant.value;
+        }
+        let RoundedDiscriminant {
+            value: rounded,
+            reach,
+            squared,
+            spread,
+        } = discriminant;
         // The length of `x × d` is off by 4 u |x| |d| at most, squares round by 3 u and
         // 5 u of themselves; the last term is for what is of second order.
-        let spread = x.dot(x) * dd;
         let error = 8.0
             * UNIT_ROUNDOFF
             * (reach + squared + (squared * spread).sqrt() + 2.0 * UNIT_ROUNDOFF * spread);
@@ -149,12 +286,12 @@ impl FromBall {
 
     /// `C` of (1); `x` is the rounded difference.
     fn constant_term(&self, x: DVec3) -> f64 {
-        let rr = self.radius * self.radius;
-        let rounded = x.dot(x) - rr;
-        if rounded.abs() < LEAST_CONSTANT_TERM * rr {
-            return quotient(self, 1.0);
+        let (rounded, is_good) = rounded_constant_term(x, self.radius);
+        if is_good {
+            rounded
+        } else {
+            quotient(self, 1.0)
         }
-        rounded
     }
 }
 

@@ -10,6 +10,7 @@ use std::fmt::Debug;
 
 use glam::DVec3;
 
+use super::quick::{Quick, Range};
 use super::{Caps, Chord, Meeting, SolidKind, SurfacePoint};
 use crate::math::Bounds;
 
@@ -61,6 +62,14 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
     ) -> Option<Meeting> {
         let chord = self.chord(from_anchor, direction)?;
         chord.first(self.caps(), shift, t_min, t_max)
+    }
+
+    /// The same without a branch, where that needs no exact numbers; see
+    /// [`quick`](super::quick). It may take a line that [passes
+    /// by](ConvexSolid::passes_by) as open.
+    #[inline(always)]
+    fn quick_first(&self, _from_anchor: DVec3, _direction: DVec3, _range: &Range) -> Quick {
+        Quick::OPEN
     }
 
     /// The point of a part of the surface that is nearest to `anchor +

@@ -25,6 +25,7 @@ use glam::DVec3;
 use super::cylinder::disc_reach;
 use super::exact::{Expression, Number, cross, difference, dot, sign, vector};
 use super::passing::Line;
+use super::quick::{End, Quick, Range};
 use super::surface::Around;
 use super::{
     Chord, ChordEnd, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint, ball, linear,
@@ -154,7 +155,7 @@ impl ConvexSolid for Disk {
         }
         self.is_met(slope, x, d).then(|| {
             let end = ChordEnd {
-                t: (0.0 - height) / slope,
+                t: plane_at(height, slope),
                 part: Part::Side,
                 on_rim: false,
             };
@@ -169,6 +170,18 @@ impl ConvexSolid for Disk {
     #[inline(always)]
     fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
         Line::new(from_anchor, direction).passes_disk(self.normal, self.radius)
+    }
+
+    #[inline(always)]
+    fn quick_first(&self, from_anchor: DVec3, direction: DVec3, range: &Range) -> Quick {
+        let (n, x, d) = (self.normal, from_anchor, direction);
+        let (height, slope) = (linear::rounded_product(n, x), linear::rounded_product(n, d));
+        let is_within = Line::new(x, d).meets_disk(n, self.radius);
+        let end = End {
+            t: plane_at(height.value, slope.value),
+            slack: height.slack() / slope.value.abs(),
+        };
+        Quick::of_ends(!is_within | slope.is_poor(), [end; 2], range)
     }
 
     /// `u` is the angle about the normal in turns, counted as on a cylinder whose
@@ -203,6 +216,12 @@ impl ConvexSolid for Disk {
     fn size(&self) -> f64 {
         2.0 * self.radius
     }
+}
+
+/// Where a line meets the plane.
+#[inline(always)]
+fn plane_at(height: f64, slope: f64) -> f64 {
+    (0.0 - height) / slope
 }
 
 impl Disk {

@@ -9,7 +9,7 @@
 use glam::DVec3;
 
 use super::exact::{Expression, Number, dot, quotient, vector};
-use crate::math::power_of_two;
+use crate::math::{UNIT_ROUNDOFF, power_of_two};
 
 /// The share of its terms from which on a rounded value will do.
 const LEAST_SHARE: f64 = power_of_two(-10);
@@ -23,29 +23,68 @@ pub(super) const ERROR: f64 = power_of_two(-41);
 /// `f·x`, for finite numbers.
 #[inline]
 pub(super) fn product(f: DVec3, x: DVec3) -> f64 {
-    let terms = f * x;
-    let (sum, sizes) = (terms.x + terms.y + terms.z, terms.abs());
-    checked(sum, sizes.x + sizes.y + sizes.z, f, x, 0.0)
+    checked(rounded_product(f, x), f, x, 0.0)
 }
 
 /// `c + f·x` and `c - f·x`, for finite numbers.
 #[inline]
 pub(super) fn heights(f: DVec3, x: DVec3, c: f64) -> [f64; 2] {
+    let [over, under] = rounded_heights(f, x, c);
+    [checked(over, f, x, c), checked(under, -f, x, c)]
+}
+
+/// A value of rounded products, and the sum of the sizes of its terms.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rounded {
+    pub value: f64,
+    size: f64,
+}
+
+impl Rounded {
+    /// Whether it has lost too much to cancellation or underflow.
+    #[inline(always)]
+    pub fn is_poor(&self) -> bool {
+        (self.value.abs() < LEAST_SHARE * self.size) | (self.size < LEAST_SIZE)
+    }
+
+    /// Bounds by how much the value from exact numbers differs, zero if this one will do:
+    /// `4 u S`, and twice that for the roundings of a quotient with it.
+    #[inline(always)]
+    pub fn slack(&self) -> f64 {
+        let slack = if self.size < LEAST_SIZE {
+            f64::INFINITY
+        } else {
+            8.0 * UNIT_ROUNDOFF * self.size
+        };
+        if self.is_poor() { slack } else { 0.0 }
+    }
+}
+
+/// [`product`] without exact numbers.
+#[inline(always)]
+pub(super) fn rounded_product(f: DVec3, x: DVec3) -> Rounded {
     let terms = f * x;
     let (sum, sizes) = (terms.x + terms.y + terms.z, terms.abs());
-    let size = sizes.x + sizes.y + sizes.z + c.abs();
-    [
-        checked(c + sum, size, f, x, c),
-        checked(c - sum, size, -f, x, c),
-    ]
+    Rounded {
+        value: sum,
+        size: sizes.x + sizes.y + sizes.z,
+    }
+}
+
+/// [`heights`] without exact numbers.
+#[inline(always)]
+pub(super) fn rounded_heights(f: DVec3, x: DVec3, c: f64) -> [Rounded; 2] {
+    let product = rounded_product(f, x);
+    let size = product.size + c.abs();
+    [c + product.value, c - product.value].map(|value| Rounded { value, size })
 }
 
 #[inline(always)]
-fn checked(rounded: f64, size: f64, f: DVec3, x: DVec3, c: f64) -> f64 {
-    if rounded.abs() < LEAST_SHARE * size || size < LEAST_SIZE {
+fn checked(rounded: Rounded, f: DVec3, x: DVec3, c: f64) -> f64 {
+    if rounded.is_poor() {
         return from_exact_numbers(f, x, c);
     }
-    rounded
+    rounded.value
 }
 
 /// Takes copies, so that the caller need not have its vectors in memory for a

@@ -14,6 +14,7 @@ pub mod formulations;
 pub mod lanes;
 mod linear;
 mod passing;
+pub mod quick;
 mod rounded_cone;
 mod slab;
 mod spawn;

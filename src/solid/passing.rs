@@ -25,7 +25,7 @@
 //! τ w² > (1 + η) |k|² + ρ |d|² (r0² |a|² + Δ² |x|² + τ |x|² |a|²)
 //! ```
 //!
-//! `ε²` is the square of a sum of two, so at most twice the sum of their squares, and
+//! and, with the sides of the second exchanged, that it meets the disk. `ε²` is the square of a sum of two, so at most twice the sum of their squares, and
 //! for `k` twice that: `2 (12 u)²` and `4 (6 u)²` times what follows `ρ`. With `η` =
 //! 2^-20, `ρ` = 2^-77 is above `(1 + 1/η) · 288 u²`. Lines that pass by within 2^-19 of
 //! the radius, or a 2^-38th of the way to it, are left to the solver.
@@ -87,11 +87,24 @@ impl Line {
     /// is not zero. Says nothing if not.
     #[inline(always)]
     pub fn passes_disk(&self, normal: DVec3, radius: f64) -> bool {
+        let [beside, reach, sizes] = self.disk(normal, radius);
+        (beside > LEAST) & is_above(beside, reach, sizes)
+    }
+
+    /// Whether it certainly meets the plane within that disk. Says nothing if not.
+    #[inline(always)]
+    pub fn meets_disk(&self, normal: DVec3, radius: f64) -> bool {
+        let [beside, reach, sizes] = self.disk(normal, radius);
+        (reach > LEAST) & is_above(reach, beside, sizes)
+    }
+
+    /// `|P|²`, `r² v²` and what their roundings are of.
+    #[inline(always)]
+    fn disk(&self, normal: DVec3, radius: f64) -> [f64; 3] {
         let (p, slope) = (normal.cross(self.across), normal.dot(self.d));
-        let beside = p.dot(p);
         let rr = radius * radius;
         let sizes = self.dd * normal.dot(normal) * (self.xx + rr);
-        (beside > LEAST) & is_above(beside, rr * (slope * slope), sizes)
+        [p.dot(p), rr * (slope * slope), sizes]
     }
 
     /// Whether it certainly passes by the wall on both sides of the apex. Says nothing

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::passing::Line;
+use super::quick::{Quick, Range};
 use super::surface::FirstParameter;
 use super::{Chord, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint, ball};
 use crate::math::{Bounds, UNIT_ROUNDOFF, unit};
@@ -94,6 +95,11 @@ impl ConvexSolid for Sphere {
     #[inline(always)]
     fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
         Line::new(from_anchor, direction).passes_ball(self.radius)
+    }
+
+    #[inline(always)]
+    fn quick_first(&self, from_anchor: DVec3, direction: DVec3, range: &Range) -> Quick {
+        ball::quick_first(from_anchor, direction, self.radius, range)
     }
 
     /// `u` is the angle about z, from x towards y, in turns; 0 at the poles. `v` is

@@ -8,10 +8,12 @@
 
 use glam::DVec3;
 
-use super::frame::LocalRay;
+use super::frame::{LocalRay, PacketRays};
 use super::prototype::List;
-use crate::math::Bounds;
+use crate::math::{Bounds, LaneMask, LaneVectors, Lanes};
 use crate::scene::Listed;
+use crate::solid::lanes::RayLanes;
+use crate::solid::quick::{self, QuickLanes};
 use crate::solid::{
     Chord, ComposedMeeting, Composition, ConvexSolid, Meeting, SolidKind, SpawnMargin, SurfacePoint,
 };
@@ -42,6 +44,29 @@ impl Met {
     }
 }
 
+/// A row of the rays of a packet and their ranges.
+pub(crate) struct RowOfPacket<'a> {
+    pub rays: &'a PacketRays,
+    pub row: usize,
+    pub t_min: &'a Lanes,
+    pub t_max: &'a Lanes,
+}
+
+impl RowOfPacket<'_> {
+    /// The rays as seen from a point.
+    #[inline(always)]
+    pub fn seen_from(&self, point: DVec3) -> RayLanes {
+        let (rays, row) = (self.rays, self.row);
+        RayLanes {
+            from_p0: rays.origin[row] - (LaneVectors::splat(point) - rays.base[row]),
+            direction: rays.direction[row],
+            shift: rays.shift[row],
+            t_min: *self.t_min,
+            t_max: *self.t_max,
+        }
+    }
+}
+
 /// A solid as queries know it.
 pub(crate) trait TracedSolid: Listed + Send + Sync {
     /// The list of a prototype that it is in.
@@ -53,11 +78,15 @@ pub(crate) trait TracedSolid: Listed + Send + Sync {
     /// A box that holds it.
     fn bounds(&self) -> Bounds;
 
-    /// Whether the ray certainly misses it, if a few products tell; `false` says
-    /// nothing. As [`ConvexSolid::passes_by`].
+    /// The first meetings of the `active` rays of a row, without those that
+    /// [`TracedSolid::first`] has to find.
     #[inline(always)]
-    fn passes_by(&self, _ray: &LocalRay) -> bool {
-        false
+    fn quick_first(&self, _rays: &RowOfPacket, active: LaneMask) -> QuickLanes {
+        QuickLanes {
+            open: active,
+            met: LaneMask::splat(false),
+            t: Lanes::splat(0.0),
+        }
     }
 
     /// The first meeting of the ray with its surface in a range of the whole
@@ -96,8 +125,8 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
     }
 
     #[inline(always)]
-    fn passes_by(&self, ray: &LocalRay) -> bool {
-        ConvexSolid::passes_by(self, ray.origin_from(self.anchor()), ray.direction)
+    fn quick_first(&self, row: &RowOfPacket, active: LaneMask) -> QuickLanes {
+        quick::first(self, &row.seen_from(self.anchor()), &active)
     }
 
     #[inline]

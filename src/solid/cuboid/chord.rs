@@ -29,6 +29,7 @@ use glam::DVec3;
 use super::Cuboid;
 use crate::solid::chord::{Chord, ChordEnd};
 use crate::solid::exact::{Expression, Number, dot, sign, vector};
+use crate::solid::quick::{End, Quick, Range};
 use crate::solid::{Part, linear};
 
 /// Bounds the relative error of a `t`, with room for that of the comparison.
@@ -98,6 +99,43 @@ pub(super) fn chord(cuboid: &Cuboid, x: DVec3, d: DVec3) -> Option<Chord> {
     })
 }
 
+/// The first meeting of the line `centre + x + t d`; see [`quick`](crate::solid::quick).
+#[inline(always)]
+pub(super) fn quick_first(cuboid: &Cuboid, x: DVec3, d: DVec3, range: &Range) -> Quick {
+    let [mut enter, mut leave] = [f64::NEG_INFINITY, f64::INFINITY].map(|t| End { t, slack: 0.0 });
+    let mut is_open = false;
+    for axis in 0..3 {
+        let f = cuboid.axis(axis);
+        let slope = linear::rounded_product(f, d);
+        let heights = linear::rounded_heights(f, x, cuboid.half_widths[axis]);
+        let ts = planes_at(slope.value, heights.map(|height| height.value));
+        let [lower, upper] = [0, 1].map(|side| End {
+            t: ts[side],
+            slack: heights[side].slack() / slope.value.abs(),
+        });
+        let is_rising = slope.value > 0.0;
+        let (near, far) = if is_rising {
+            (lower, upper)
+        } else {
+            (upper, lower)
+        };
+        if axis > 0 {
+            is_open |= !enter.is_apart(&near, MARGIN) | !leave.is_apart(&far, MARGIN);
+        }
+        is_open |= slope.is_poor();
+        enter = if near.t > enter.t { near } else { enter };
+        leave = if far.t < leave.t { far } else { leave };
+    }
+    is_open |= !enter.is_apart(&leave, MARGIN);
+    let quick = Quick::of_ends(is_open, [enter, leave], range);
+    let is_inside = enter.t < leave.t;
+    Quick {
+        is_open: is_open | (quick.is_open & is_inside),
+        is_met: quick.is_met & is_inside,
+        ..quick
+    }
+}
+
 /// Whether two parameters differ by more than their errors.
 #[inline(always)]
 fn are_apart(one: f64, other: f64) -> bool {
@@ -114,8 +152,8 @@ fn slab(cuboid: &Cuboid, axis: usize, x: DVec3, d: DVec3) -> Option<Slab> {
         return along(axis, over_lower, under_upper);
     }
     let plane = |is_upper, t| Plane { axis, is_upper, t };
-    let lower = plane(false, (0.0 - over_lower) / slope);
-    let upper = plane(true, under_upper / slope);
+    let [lower, upper] = planes_at(slope, [over_lower, under_upper]);
+    let (lower, upper) = (plane(false, lower), plane(true, upper));
     Some(if slope > 0.0 {
         Slab::Crossed {
             near: lower,
@@ -127,6 +165,12 @@ fn slab(cuboid: &Cuboid, axis: usize, x: DVec3, d: DVec3) -> Option<Slab> {
             far: lower,
         }
     })
+}
+
+/// Where a line meets the planes of an axis.
+#[inline(always)]
+fn planes_at(slope: f64, [over_lower, under_upper]: [f64; 2]) -> [f64; 2] {
+    [(0.0 - over_lower) / slope, under_upper / slope]
 }
 
 fn along(axis: usize, over_lower: f64, under_upper: f64) -> Option<Slab> {

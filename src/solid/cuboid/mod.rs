@@ -6,6 +6,7 @@ mod passing;
 use glam::DVec3;
 
 use super::exact::{Expression, Number, difference, dot, sign, vector};
+use super::quick::{Quick, Range};
 use super::surface::FirstParameter;
 use super::{Chord, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint};
 use crate::math::{Bounds, Orientation, UNIT_ROUNDOFF, power_of_two};
@@ -135,6 +136,11 @@ impl ConvexSolid for Cuboid {
     #[inline]
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
         chord::chord(self, from_anchor, direction)
+    }
+
+    #[inline(always)]
+    fn quick_first(&self, from_anchor: DVec3, direction: DVec3, range: &Range) -> Quick {
+        chord::quick_first(self, from_anchor, direction, range)
     }
 
     #[inline(always)]

@@ -12,14 +12,15 @@ use super::single::Query;
 use crate::embree::{GREATEST_PACKET, GeometryId, Instructions, RaySet};
 use crate::math::{ChildFromParent, LANES, LaneMask, LaneVectors, Lanes};
 use crate::scene::PrototypeIndex;
-use crate::solid::lanes::{self, CylinderLanes, RayLanes};
+use crate::solid::lanes::{self, CylinderLanes};
+use crate::solid::quick::QuickLanes;
 use crate::solid::{Cylinder, SolidKind};
 use crate::tracer::counters;
 use crate::tracer::frame::{
     Enter, Frame, IntoChild, IntoInstance, PacketEntry, PacketRays, ROWS, Rows,
 };
 use crate::tracer::prototype::{Cylinders, Described, Ends, SolidList};
-use crate::tracer::traced::{Met, TracedSolid};
+use crate::tracer::traced::{RowOfPacket, TracedSolid};
 
 /// A packet on its way.
 pub(crate) struct Packet {
@@ -219,16 +220,14 @@ impl Packet {
                 continue;
             }
             let (met, t) = self.first::<E>(cylinder, row, wanted, &self.bound[row]);
-            let mut met = met.bits();
-            while met != 0 {
-                let in_row = met.trailing_zeros() as usize;
-                met &= met - 1;
-                let ray = row * LANES + in_row;
-                if self.offer(ray, t.0[in_row], cylinders.described(), member) {
-                    t_far[ray] = self.t_far(ray);
+            self.offer_row(
+                (row, met, t),
+                (cylinders.described(), member),
+                |packet, ray| {
+                    t_far[ray] = packet.t_far(ray);
                     shorter.insert(ray);
-                }
-            }
+                },
+            );
         }
         shorter
     }
@@ -247,8 +246,7 @@ impl Packet {
         RaySet::from_bits(blocked)
     }
 
-    /// As [`Packet::visit`] for a solid of another kind, ray by ray but for those
-    /// that pass it by.
+    /// As [`Packet::visit`] for a solid of another kind.
     #[inline(always)]
     pub fn visit_solid<S: TracedSolid>(
         &mut self,
@@ -260,13 +258,16 @@ impl Packet {
         let solid = list.solid(record);
         let member = Member::new(solid.kind(), record);
         let mut shorter = RaySet::EMPTY;
-        for ray in self.near(solid, rays) {
-            if let Some(met) = self.first_of_solid(solid, ray, self.bound(ray))
-                && self.offer(ray, met.meeting.t, list.described(), member)
-            {
-                t_far[ray] = self.t_far(ray);
-                shorter.insert(ray);
+        for row in 0..ROWS {
+            let wanted = (rays.bits() >> (row * LANES)) as u8;
+            if wanted == 0 {
+                continue;
             }
+            let (met, t) = self.first_of_solid(solid, row, wanted, &self.bound[row]);
+            self.offer_row((row, met, t), (list.described(), member), |packet, ray| {
+                t_far[ray] = packet.t_far(ray);
+                shorter.insert(ray);
+            });
         }
         shorter
     }
@@ -274,40 +275,38 @@ impl Packet {
     /// As [`Packet::meets`] for a solid of another kind.
     #[inline(always)]
     pub fn meets_solid(&self, solid: &impl TracedSolid, rays: RaySet) -> RaySet {
-        let mut blocked = RaySet::EMPTY;
-        for ray in self.near(solid, rays) {
-            let t_max = lane(&self.t_max, ray);
-            if self.first_of_solid(solid, ray, t_max).is_some() {
-                blocked.insert(ray);
-            }
-        }
-        blocked
-    }
-
-    /// The rays without those that certainly pass by a solid.
-    #[inline(always)]
-    fn near(&self, solid: &impl TracedSolid, rays: RaySet) -> RaySet {
-        counters::solved(rays.bits().count_ones());
-        let mut near = 0;
+        let mut blocked = 0;
         for row in 0..ROWS {
-            if (rays.bits() >> (row * LANES)) as u8 == 0 {
-                continue;
+            let wanted = (rays.bits() >> (row * LANES)) as u8;
+            if wanted != 0 {
+                let (met, _) = self.first_of_solid(solid, row, wanted, &self.t_max[row]);
+                blocked |= u16::from(met.bits()) << (row * LANES);
             }
-            let mut in_row = LaneMask::splat(false);
-            for lane in 0..LANES {
-                in_row.0[lane] = !solid.passes_by(&self.rays().ray(row, lane));
-            }
-            near |= u16::from(in_row.bits()) << (row * LANES);
         }
-        rays & RaySet::from_bits(near)
+        RaySet::from_bits(blocked)
     }
 
-    /// Where a ray first meets a solid, up to `t_max`. A call, for a solver with its
-    /// branches gains nothing from being compiled for each instruction set.
-    #[inline(never)]
-    fn first_of_solid(&self, solid: &impl TracedSolid, ray: usize, t_max: f64) -> Option<Met> {
-        let local = self.rays().ray(ray / LANES, ray % LANES);
-        solid.first(&local, lane(&self.t_min, ray), t_max)
+    /// Where the rays of a row that are `wanted` first meet a solid.
+    #[inline(always)]
+    fn first_of_solid(
+        &self,
+        solid: &impl TracedSolid,
+        row: usize,
+        wanted: u8,
+        t_max: &Lanes,
+    ) -> (LaneMask, Lanes) {
+        counters::solved(wanted.count_ones());
+        let in_row = RowOfPacket {
+            rays: self.rays(),
+            row,
+            t_min: &self.t_min[row],
+            t_max,
+        };
+        let QuickLanes { open, met, t } = solid.quick_first(&in_row, LaneMask::from_bits(wanted));
+        if open.any() {
+            return one_by_one(solid, &in_row, open, (met, t));
+        }
+        (met, t)
     }
 
     /// Where the rays of a row that are `wanted` first meet a cylinder.
@@ -320,21 +319,39 @@ impl Packet {
         t_max: &Lanes,
     ) -> (LaneMask, Lanes) {
         counters::solved(wanted.count_ones());
-        let rays = self.rays();
-        let p0 = LaneVectors::splat(cylinder.p0());
         let cylinders = CylinderLanes {
             axis: LaneVectors::splat(cylinder.p1() - cylinder.p0()),
             radius: Lanes::splat(cylinder.radius()),
             caps: E::of_one(cylinder.caps()),
         };
-        let in_row = RayLanes {
-            from_p0: rays.origin[row] - (p0 - rays.base[row]),
-            direction: rays.direction[row],
-            shift: rays.shift[row],
-            t_min: self.t_min[row],
-            t_max: *t_max,
-        };
+        let in_row = RowOfPacket {
+            rays: self.rays(),
+            row,
+            t_min: &self.t_min[row],
+            t_max,
+        }
+        .seen_from(cylinder.p0());
         lanes::first(&cylinders, &in_row, &LaneMask::from_bits(wanted))
+    }
+
+    /// Keeps the first hits of the rays of a row that have `met` a solid, where they are
+    /// before those that are known, and passes such rays to `is_shorter`.
+    #[inline(always)]
+    fn offer_row(
+        &mut self,
+        (row, met, t): (usize, LaneMask, Lanes),
+        (described, member): (&Described, Member),
+        mut is_shorter: impl FnMut(&Self, usize),
+    ) {
+        let mut met = met.bits();
+        while met != 0 {
+            let in_row = met.trailing_zeros() as usize;
+            met &= met - 1;
+            let ray = row * LANES + in_row;
+            if self.offer(ray, t.0[in_row], described, member) {
+                is_shorter(self, ray);
+            }
+        }
     }
 
     /// Keeps a ray's first hit if it is before the one that is known.
@@ -353,6 +370,25 @@ impl Packet {
         }
         is_first
     }
+}
+
+/// `answers` with those of [`TracedSolid::first`] where `open` is set. A call, for a solver
+/// with its branches gains nothing from being compiled for each instruction set.
+#[inline(never)]
+fn one_by_one(
+    solid: &impl TracedSolid,
+    row: &RowOfPacket,
+    open: LaneMask,
+    (mut met, mut t): (LaneMask, Lanes),
+) -> (LaneMask, Lanes) {
+    for lane in (0..LANES).filter(|&lane| open.0[lane]) {
+        let ray = row.rays.ray(row.row, lane);
+        if let Some(first) = solid.first(&ray, row.t_min.0[lane], row.t_max.0[lane]) {
+            met.0[lane] = true;
+            t.0[lane] = first.meeting.t;
+        }
+    }
+    (met, t)
 }
 
 #[inline(always)]

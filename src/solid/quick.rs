@@ -1,0 +1,138 @@
+//! First meetings without a branch, eight rays at once.
+//!
+//! A solid's quick solver is made of the pieces of its solver, without the exact numbers
+//! that rare cases need: it reports such a case as open, and the caller puts it to
+//! [`ConvexSolid::first`]. Where it is not open, the quick solver has the bits of
+//! [`ConvexSolid::first`]. A loop over its calls, which are inlined, becomes vector code.
+//!
+//! Most rays that come to a solid's box miss it widely, and [`ConvexSolid::passes_by`]
+//! finds that without a root or a division. So it goes first, and what it leaves of a row
+//! is solved if it leaves anything.
+
+use super::ConvexSolid;
+use super::lanes::RayLanes;
+use crate::math::{LANES, LaneMask, Lanes};
+
+/// The first meeting of a line and a solid in a range, as a quick solver finds it.
+#[derive(Clone, Copy, Debug)]
+pub struct Quick {
+    /// Whether the answer takes exact numbers; the rest has no meaning then.
+    pub is_open: bool,
+    /// Whether there is a meeting.
+    pub is_met: bool,
+    /// Its parameter on the whole ray; without meaning if there is none.
+    pub t: f64,
+}
+
+/// The range of a meeting's parameter.
+#[derive(Clone, Copy, Debug)]
+pub struct Range {
+    /// Where the origin is on the whole ray.
+    pub shift: f64,
+    /// The least parameter of the whole ray.
+    pub t_min: f64,
+    /// The greatest.
+    pub t_max: f64,
+}
+
+/// The first meetings of eight rays.
+#[derive(Clone, Copy, Debug)]
+pub struct QuickLanes {
+    /// Rays whose answer takes exact numbers.
+    pub open: LaneMask,
+    /// Other rays that meet the solid.
+    pub met: LaneMask,
+    /// Where they do, on the whole rays.
+    pub t: Lanes,
+}
+
+impl Quick {
+    /// An answer that a quick solver does not find.
+    pub const OPEN: Self = Self {
+        is_open: true,
+        is_met: false,
+        t: 0.0,
+    };
+
+    /// The first of the two ends of a chord that is in the range.
+    #[inline(always)]
+    pub(super) fn of_ends(is_open: bool, [enter, leave]: [End; 2], range: &Range) -> Self {
+        let is_entry = range.contains(&enter);
+        let t = if is_entry { enter.t } else { leave.t };
+        let is_leave_needed = !is_entry & !range.is_uncertain(&enter);
+        Self {
+            is_open: is_open
+                | range.is_uncertain(&enter)
+                | (is_leave_needed & range.is_uncertain(&leave)),
+            is_met: is_entry | range.contains(&leave),
+            t: t + range.shift,
+        }
+    }
+}
+
+/// An end of a chord.
+///
+/// A ray that starts next to a solid's surface, as shadow rays do, has an end next to its
+/// origin whose bits take exact numbers. That it is before the range takes none.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct End {
+    /// The parameter from the origin, as the solver has it if `slack` is zero.
+    pub t: f64,
+    /// Bounds by how much the solver's `t` may be another.
+    pub slack: f64,
+}
+
+impl End {
+    /// Whether the order of two ends is certain: they differ by more than a part `margin`
+    /// of them and what they may be displaced.
+    #[inline(always)]
+    pub fn is_apart(&self, other: &Self, margin: f64) -> bool {
+        let error = margin * (self.t.abs() + other.t.abs()) + 2.0 * (self.slack + other.slack);
+        (self.t - other.t).abs() > error
+    }
+}
+
+impl Range {
+    #[inline(always)]
+    fn contains(&self, end: &End) -> bool {
+        let t = end.t + self.shift;
+        (end.slack == 0.0) & (self.t_min <= t) & (t <= self.t_max)
+    }
+
+    /// Whether an end may be in the range or not. Sums round as those of the solver do, in
+    /// the same order as the numbers added.
+    #[inline(always)]
+    fn is_uncertain(&self, end: &End) -> bool {
+        let [least, most] = [end.t - end.slack, end.t + end.slack].map(|t| t + self.shift);
+        (end.slack != 0.0) & !(most < self.t_min) & !(least > self.t_max)
+    }
+}
+
+/// [`ConvexSolid::first`] of the rays that are `active`, which are seen from the
+/// solid's anchor.
+#[inline(always)]
+#[must_use]
+pub fn first(solid: &impl ConvexSolid, rays: &RayLanes, active: &LaneMask) -> QuickLanes {
+    let (mut open, mut met) = (LaneMask::splat(false), LaneMask::splat(false));
+    let mut t = Lanes::splat(0.0);
+    let mut near = LaneMask::splat(false);
+    for lane in 0..LANES {
+        let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
+        near.0[lane] = active.0[lane] & !solid.passes_by(x, d);
+    }
+    if near.any() {
+        for lane in 0..LANES {
+            let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
+            let range = Range {
+                shift: rays.shift.0[lane],
+                t_min: rays.t_min.0[lane],
+                t_max: rays.t_max.0[lane],
+            };
+            let quick = solid.quick_first(x, d, &range);
+            open.0[lane] = near.0[lane] & quick.is_open;
+            met.0[lane] = near.0[lane] & !quick.is_open & quick.is_met;
+            t.0[lane] = quick.t;
+        }
+    }
+    QuickLanes { open, met, t }
+}
