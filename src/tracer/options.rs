@@ -37,10 +37,10 @@ pub enum Layout {
 }
 
 /// The least number of solids of a kind in a prototype for which [`Layout::Auto`] makes
-/// blocks. There memory counts: blocks take 0.6 of what single primitives take. Rays that scatter are up to
-/// 1.1 times as fast in blocks of cylinders and 1.3 times in those of cones, and packets of coherent
-/// rays, which are most of a picture's, take 1.0 to 1.3 times as long; so fewer solids
-/// are primitives of their own.
+/// blocks. There memory counts: blocks take 0.6 of what single primitives take. Rays that
+/// scatter are up to 1.1 times as fast in blocks of cylinders and 1.3 times in those of cones,
+/// and packets of coherent rays, which are most of a picture's, take 1.1 to 1.7 times as
+/// long; so fewer solids are primitives of their own.
 const LEAST_FOR_BLOCKS: u64 = 1 << 20;
 
 impl Layout {
