@@ -29,7 +29,7 @@ impl Habit {
         self.pause == 0
     }
 
-    /// After so many rays that were traced one by one.
+    /// Counts `rays` that were traced one by one.
     pub fn traced_alone(&mut self, rays: usize, callbacks: u32) {
         // The newest count for more: what was long ago was elsewhere.
         if self.rays >= 256 {
