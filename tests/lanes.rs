@@ -188,30 +188,43 @@ struct Count {
     missed: u64,
 }
 
+/// Rays, and where their origins are on the whole rays.
+type Shifted = [(Ray, f64); LANES];
+
 /// Eight rays at one solid: those of the solid's own case and of seven others of the family,
 /// moved so that they are as far from it.
-fn rays_at(solid: &impl ConvexSolid, cases: &[Case; LANES], random: &mut Random) -> RayLanes {
-    let mut rays = cases.map(|Case { solid: own, ray }| {
-        let from_anchor = ray.origin - own.anchor();
+fn drawn_rays(cases: &[Case; LANES]) -> Shifted {
+    cases.map(|Case { solid: own, ray }| {
+        let origin = ray.origin - own.anchor();
+        (Ray { origin, ..ray }, 0.0)
+    })
+}
+
+/// The same with what is hard for solvers: origins on the surface, ranges that begin and end
+/// there, numbers that are none.
+fn hard_rays(solid: &impl ConvexSolid, drawn: &Shifted, random: &mut Random) -> Shifted {
+    let mut rays = drawn.map(|(mut ray, _)| {
+        let from_anchor = ray.origin;
         let shift = match random.below(3) {
             0 => random.uniform(-4.0, 4.0),
             _ => 0.0,
         };
-        let mut ray = Ray {
-            origin: from_anchor,
-            ..ray
-        };
         if let Some(chord) = solid.chord(from_anchor, ray.direction) {
+            let end = [chord.enter.t, chord.leave.t][random.below(2) as usize];
+            // Where rays start that leave a surface: there, or just behind.
+            match random.below(4) {
+                0 => ray.origin += ray.direction * end,
+                1 => ray.origin += ray.direction * (end + 1e-14),
+                _ => {}
+            }
+        }
+        // The ends of the ray as it starts now, about which its range begins and ends.
+        if let Some(chord) = solid.chord(ray.origin, ray.direction) {
+            let size = solid.size() / ray.direction.length();
             let mut limit = || {
-                let end = [chord.enter.t, chord.leave.t][random.below(2) as usize];
-                // The range of a ray that starts on a surface begins there, or just behind.
-                match random.below(8) {
-                    0 => ray.origin += ray.direction * end,
-                    1 => ray.origin += ray.direction * (end + 1e-14),
-                    _ => {}
-                }
-                let end = end + shift;
-                [end, end.next_up(), end.next_down()][random.below(3) as usize]
+                let end = [chord.enter.t, chord.leave.t][random.below(2) as usize] + shift;
+                let off = (random.below(33) as f64 - 16.0) * 1e-16 * size;
+                [end, end.next_up(), end.next_down(), end + off][random.below(4) as usize]
             };
             let (one, other) = (limit(), limit());
             match random.below(6) {
@@ -233,6 +246,10 @@ fn rays_at(solid: &impl ConvexSolid, cases: &[Case; LANES], random: &mut Random)
         4 => rays[0].0.origin = DVec3::NEG_X * 0.0,
         _ => {}
     }
+    rays
+}
+
+fn in_lanes(rays: &Shifted) -> RayLanes {
     RayLanes {
         from_p0: LaneVectors::of(&rays.map(|(ray, _)| ray.origin)),
         direction: LaneVectors::of(&rays.map(|(ray, _)| ray.direction)),
@@ -284,8 +301,10 @@ fn quick_solvers_answer_as_the_scalar_solvers_do_or_not_at_all() {
                 };
                 macro_rules! verify {
                     ($solid:expr) => {{
-                        let rays = rays_at($solid, &cases, &mut random);
-                        verify_quick($solid, &rays, active, &name)
+                        let drawn = drawn_rays(&cases);
+                        let hard = hard_rays($solid, &drawn, &mut random);
+                        verify_quick($solid, &in_lanes(&hard), active, &name);
+                        verify_quick($solid, &in_lanes(&drawn), active, &name)
                     }};
                 }
                 match &cases[0].solid {
@@ -311,7 +330,8 @@ fn quick_solvers_answer_as_the_scalar_solvers_do_or_not_at_all() {
                 .any(|kind| name.starts_with(kind));
             if is_quick && name.ends_with("uniform") {
                 let Count { open, met, .. } = total;
-                assert!(met > GROUPS && open < met, "{name}: {total:?}");
+                // The quick solvers are of use where few rays as drawn stay open.
+                assert!(met > GROUPS && 10 * open < met, "{name}: {total:?}");
             }
         }
     }
