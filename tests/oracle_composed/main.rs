@@ -8,7 +8,7 @@ mod random;
 #[allow(dead_code, reason = "only membership is needed here")]
 mod trees;
 
-use cyltrace::math::{Orientation, Ray};
+use cyltrace::math::{Orientation, Ray, power_of_two};
 use cyltrace::oracle::{ComposedTruth, to_f64};
 use cyltrace::solid::{
     AnySolid, Caps, Composition, Cone, Crossing, Cuboid, Cylinder, Location, Part, RoundedCone,
@@ -392,6 +392,13 @@ fn cones_at_their_apex() {
         (1, Part::Side),
     ];
     assert_eq!(found, apex);
+    // A needle that is narrower than a direction in f64 is rounded.
+    let (tip, thin) = (at(1e-7, -0.3, 2.5), power_of_two(-61));
+    let needle = RoundedCone::new(DVec3::ZERO, tip, thin, 0.0).expect("a needle");
+    assert_eq!(locate(&leaf(needle), tip), Boundary);
+    let half_as_thin = cone(DVec3::ZERO, tip, [thin * 0.5, 0.0]);
+    let shell = Difference(vec![cone(DVec3::ZERO, tip, [thin, 0.0]), half_as_thin]);
+    assert_eq!(locate(&shell, tip), Boundary);
     // A box that has half of the cone, and whose face has its apex.
     let cut = Intersection(vec![up, block(at(0.0, -5.0, -5.0), at(5.0, 5.0, 5.0))]);
     assert_eq!(

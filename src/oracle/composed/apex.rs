@@ -7,14 +7,16 @@
 //! that the signs of the two witnesses differ in this cone only, and they are tried
 //! nearer and nearer until that is so. Other cones are crossed where a
 //! fine step sees a change of sign.
+//!
+//! A needle's half opening angle may be far below the rounding of a direction. So a ruling is
+//! `v = a + σ (cos φ u + sin φ w)` in exact numbers, with the exact axis `a`; only `u` and `w`,
+//! unit vectors across it, and `σ` are rounded, which tilts the cone by 2^-52 of `σ`.
 
 use std::f64::consts::TAU;
 
-use glam::DVec3;
+use crate::oracle::number::{ExactVector, exact, to_f64};
 
-use crate::oracle::number::{ExactVector, to_f64};
-
-use super::around::{Curve, Survey};
+use super::around::{Active, Curve, Survey};
 use super::ring::Vector;
 
 /// Steps around a cone in which crossings are looked for.
@@ -30,25 +32,54 @@ const BETWEEN: f64 = 0.37;
 /// How far from the cone witnesses are, as a share.
 const NEAR: [f64; 4] = [1e-3, 1e-5, 1e-8, 1e-11];
 
-/// The rulings of a cone on the side of its solid and the other one.
+/// The rulings of a cone on the side of its solid or on the other one.
 struct Rulings {
-    axis: DVec3,
-    across: [DVec3; 2],
-    slope: f64,
+    axis: ExactVector,
+    across: [ExactVector; 2],
+    /// The radius of the cone at the end of the axis.
+    radius: f64,
 }
 
 impl Rulings {
-    fn at(&self, angle: f64, share: f64) -> DVec3 {
-        let [u, w] = self.across;
-        let radial = u * libm::cos(angle) + w * libm::sin(angle);
-        self.axis + radial * (self.slope * share)
+    /// That at an angle, with a share of the cone's radius.
+    fn at(&self, angle: f64, share: f64) -> ExactVector {
+        let [u, w] = &self.across;
+        let radius = self.radius * share;
+        let radial = &u.times(&exact(radius * libm::cos(angle)))
+            + &w.times(&exact(radius * libm::sin(angle)));
+        &self.axis + &radial
+    }
+
+    /// A function of the angle that has the sign of an active sheet on its ruling. Exact
+    /// coefficients are rounded once, so that a small radius loses nothing.
+    fn values_on(&self, active: &Active) -> Box<dyn Fn(f64) -> f64> {
+        let [a, u, w] = [&self.axis, &self.across[0], &self.across[1]];
+        let radius = self.radius;
+        if !active.gradient.is_zero() {
+            let slopes =
+                [a, u, w].map(|v| active.gradient.dot(&Vector::rational(v)).approximation());
+            return Box::new(move |angle| {
+                let [x, y] = [libm::cos(angle), libm::sin(angle)];
+                slopes[0] + radius * (x * slopes[1] + y * slopes[2])
+            });
+        }
+        let form = &active.sheet.form;
+        let [of_a, of_u, of_w] = [a, u, w].map(|v| form.image(v));
+        let constant = to_f64(&of_a.dot(a));
+        let linear = [u, w].map(|v| 2.0 * to_f64(&of_a.dot(v)));
+        let squares = [of_u.dot(u), of_u.dot(w), of_w.dot(w)].map(|number| to_f64(&number));
+        Box::new(move |angle| {
+            let [x, y] = [libm::cos(angle), libm::sin(angle)];
+            let bent = x * x * squares[0] + 2.0 * x * y * squares[1] + y * y * squares[2];
+            constant + radius * (x * linear[0] + y * linear[1] + radius * bent)
+        })
     }
 }
 
 pub(super) fn survey(survey: &mut Survey) {
     for number in 0..survey.active.len() {
         let active = &survey.active[number];
-        let Some((axis, slope)) = active.sheet.axis else {
+        let Some((axis, slope)) = &active.sheet.axis else {
             continue;
         };
         if !active.gradient.is_zero() {
@@ -57,22 +88,21 @@ pub(super) fn survey(survey: &mut Survey) {
         let same: Vec<usize> = (0..survey.active.len())
             .filter(|&other| is_same_cone(survey, number, other))
             .collect();
-        let axis = axis.normalize();
-        let u = axis.any_orthonormal_vector();
-        for axis in [axis, -axis] {
+        let rounded = axis.rounded();
+        let u = rounded.normalize().any_orthonormal_vector();
+        let w = rounded.normalize().cross(u);
+        let radius = slope * rounded.length();
+        for side in [1.0, -1.0] {
             let rulings = Rulings {
-                axis,
-                across: [u, axis.cross(u)],
-                slope,
+                axis: axis.times(&exact(side)),
+                across: [u, w].map(ExactVector::new),
+                radius,
             };
             for angle in stretches(survey, &rulings, &same) {
                 let pair = |near: f64| {
-                    [1.0 - near, 1.0 + near].map(|share| {
-                        let v = ExactVector::new(rulings.at(angle, share));
-                        Curve {
-                            v: Vector::rational(&v),
-                            a: None,
-                        }
+                    [1.0 - near, 1.0 + near].map(|share| Curve {
+                        v: Vector::rational(&rulings.at(angle, share)),
+                        a: None,
                     })
                 };
                 for near in NEAR {
@@ -108,16 +138,7 @@ fn stretches(survey: &Survey, rulings: &Rulings, same: &[usize]) -> Vec<f64> {
         if same.contains(&number) {
             continue;
         }
-        let g = active.gradient.approximation();
-        let rows = active.sheet.form.0.each_ref().map(ExactVector::rounded);
-        let value = |angle: f64| {
-            let v = rulings.at(angle, 1.0);
-            if active.gradient.is_zero() {
-                v.dot(DVec3::from_array(rows.map(|row| row.dot(v))))
-            } else {
-                g.dot(v)
-            }
-        };
+        let value = rulings.values_on(active);
         for i in 0..STEPS {
             let (mut low, mut high) = (FIRST + i as f64 * step, FIRST + (i + 1) as f64 * step);
             let starts = value(low) < 0.0;

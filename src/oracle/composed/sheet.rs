@@ -24,7 +24,7 @@ pub(super) struct Sheet {
     /// The part of the solid that it is, unless it only divides others.
     pub part: Option<Part>,
     /// The axis of a wall and the tangent of its half opening angle.
-    pub axis: Option<(glam::DVec3, f64)>,
+    pub axis: Option<(ExactVector, f64)>,
 }
 
 impl Sheet {
@@ -69,7 +69,7 @@ impl Sheet {
             linear,
             constant,
             part: Some(Part::Side),
-            axis: Some((a.rounded(), slope)),
+            axis: Some((a.clone(), slope)),
         }
         .of_usual_size()
     }
