@@ -122,7 +122,8 @@ fn parts_and_normals_are_those_of_faces_that_are_there() {
     // The first leaf ends where the second begins: of the set only the second is left, on the
     // outer side of the first.
     let [first, second] = [0.0, 2.0].map(|z| cuboid(DVec3::Z * z, DVec3::ONE));
-    let apart = cuboid(DVec3::Z * 9.0, DVec3::ONE);
+    // Its box is not apart from that of the first.
+    let apart = sphere(at(2.0, 2.0, 0.0), 1.25);
     let rest = Composition::Union(vec![Composition::Intersection(vec![first, apart]), second]);
     let met = meetings(&rest, at(0.25, 0.5, -5.0), DVec3::Z);
     assert_eq!((met[0].meeting.t, met[0].leaf), (6.0, 0));

@@ -10,7 +10,7 @@ mod reference;
 mod support;
 mod wedges;
 
-use cyltrace::math::Orientation;
+use cyltrace::math::{Orientation, power_of_two};
 use cyltrace::solid::{
     AnySolid, Caps, ComposedMeeting, Composition, Cone, Crossing, Cuboid, Cylinder, Location, Part,
     RoundedCone, SolidKind, Sphere,
@@ -202,6 +202,37 @@ fn tangents_are_two_meetings_also_of_holes() {
         touched,
         [(4.0, Enter, Part::Side, 1), (4.0, Leave, Part::Side, 1)]
     );
+}
+
+#[test]
+fn intersection_with_an_empty_box_is_empty() {
+    // The needle ends 2^-62 before the plane x = 0, where the drum begins.
+    let tiny = power_of_two(-61);
+    let tip = DVec3::splat(-tiny);
+    let needle = || cylinder(at(-0.0625, 1.375, 1.375), tip, tiny);
+    let drum = || cylinder(DVec3::ZERO, DVec3::X, 1.0);
+    let apart = Composition::Intersection(vec![drum(), needle(), drum()]);
+    assert!(apart.bounds().is_empty());
+    let ball = || sphere(DVec3::X * 9.0, 1.0);
+    let beside = Composition::Union(vec![ball(), apart.clone()]);
+    let bitten = Composition::Difference(vec![ball(), apart.clone()]);
+    let both = Composition::Intersection(vec![apart.clone(), drum()]);
+    for origin in [DVec3::ZERO, tip, tip * 0.5] {
+        for direction in [DVec3::X, DVec3::Y, DVec3::ONE, at(-0.0625, 1.375, 1.375)] {
+            for empty in [&apart, &both] {
+                assert_eq!(
+                    meetings(empty, origin, direction),
+                    [],
+                    "{origin} {direction}"
+                );
+            }
+            let alone = meetings(&ball(), origin, direction).len();
+            for solid in [&beside, &bitten] {
+                let found = meetings(solid, origin, direction);
+                assert_eq!(found.len(), alone, "{origin} {direction}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -90,21 +90,23 @@ impl<'a> Line<'a> {
         };
         composition.for_each_leaf(false, &mut |solid, _| {
             let from_anchor = origin_from(solid.anchor());
-            let chord = solid.chord(from_anchor, direction);
-            let leaf = line.leaves.len() as u32;
-            if let Some(chord) = &chord {
-                line.has_within |= chord.lies_on.is_some();
-                for (t, what) in [(chord.enter.t, What::Enter), (chord.leave.t, What::Leave)] {
-                    line.events.push(Event { t, leaf, what });
-                }
-            }
             line.leaves.push(Leaf {
                 solid,
                 from_anchor,
-                chord,
+                chord: solid.chord(from_anchor, direction),
                 stations: [0; 2],
             });
         });
+        composition.forget_disjoint(&mut line.leaves);
+        for (leaf, Leaf { chord, .. }) in (0..).zip(&line.leaves) {
+            let Some(chord) = chord else {
+                continue;
+            };
+            line.has_within |= chord.lies_on.is_some();
+            for (t, what) in [(chord.enter.t, What::Enter), (chord.leave.t, What::Leave)] {
+                line.events.push(Event { t, leaf, what });
+            }
+        }
         if line.has_within {
             line.add_osculations();
         }

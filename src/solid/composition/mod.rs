@@ -23,6 +23,7 @@ mod across;
 mod bend;
 mod circle;
 mod crossings;
+mod disjoint;
 mod first_order;
 mod leaf;
 mod line;
@@ -147,22 +148,13 @@ impl Composition {
     /// shows that nothing is left.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
-        let boxes = |parts: &[Self]| parts.iter().map(Self::bounds).collect::<Vec<_>>();
         match self {
             Self::Solid(solid) => solid.bounds(),
             Self::Union(parts) => {
-                let boxes = boxes(parts).into_iter();
+                let boxes = parts.iter().map(Self::bounds);
                 boxes.fold(Bounds::EMPTY, |sum, bounds| sum.union(&bounds))
             }
-            Self::Intersection(parts) => {
-                let common = boxes(parts).into_iter().reduce(|one, other| Bounds {
-                    lower: one.lower.max(other.lower),
-                    upper: one.upper.min(other.upper),
-                });
-                common
-                    .filter(|bounds| bounds.lower.cmple(bounds.upper).all())
-                    .unwrap_or(Bounds::EMPTY)
-            }
+            Self::Intersection(parts) => common_box(parts),
             Self::Difference(parts) => parts.first().map_or(Bounds::EMPTY, Self::bounds),
         }
     }
@@ -277,4 +269,16 @@ impl Composition {
     pub fn spawn_margin(&self, met: &ComposedMeeting, surface: &SurfacePoint) -> SpawnMargin {
         self.leaves()[met.leaf as usize].spawn_margin(surface)
     }
+}
+
+/// What is in the boxes of all operands of an intersection; [`Bounds::EMPTY`] if nothing is.
+fn common_box(operands: &[Composition]) -> Bounds {
+    let boxes = operands.iter().map(Composition::bounds);
+    let common = boxes.reduce(|one, other| Bounds {
+        lower: one.lower.max(other.lower),
+        upper: one.upper.min(other.upper),
+    });
+    common
+        .filter(|bounds| bounds.lower.cmple(bounds.upper).all())
+        .unwrap_or(Bounds::EMPTY)
 }

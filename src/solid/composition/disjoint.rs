@@ -1,0 +1,36 @@
+//! Intersections that are empty by the boxes of their operands.
+//!
+//! Ends of chords that are one station count as one point (`line.rs`), also those of solids
+//! with a gap between them that is thinner than their displacements. An intersection of
+//! such solids could have a point there, outside of its own box, which is empty
+//! ([`Composition::bounds`]). Queries reject by boxes first, so the answer would depend on
+//! the query. An empty box says that the intersection is false everywhere. Then the chords
+//! of its leaves decide nothing, and the line goes on without them.
+
+use super::leaf::Leaf;
+use super::{Composition, common_box};
+
+impl Composition {
+    /// Removes the chords of intersections whose boxes have no common point. `leaves`
+    /// begin with those of this composition; returns how many these are.
+    pub(super) fn forget_disjoint(&self, leaves: &mut [Leaf]) -> usize {
+        let (Self::Union(parts) | Self::Intersection(parts) | Self::Difference(parts)) = self
+        else {
+            return 1;
+        };
+        let mut count = 0;
+        let mut are_all_hit = true;
+        for part in parts {
+            let start = count;
+            count += part.forget_disjoint(&mut leaves[start..]);
+            are_all_hit &= leaves[start..count].iter().any(|leaf| leaf.chord.is_some());
+        }
+        // Boxes take longer than to see that an operand is not hit, which is the usual case.
+        if matches!(self, Self::Intersection(_)) && are_all_hit && common_box(parts).is_empty() {
+            for leaf in &mut leaves[..count] {
+                leaf.chord = None;
+            }
+        }
+        count
+    }
+}
