@@ -17,7 +17,7 @@
 //! `|x × d| / |d|` is the distance of line and centre. It does not change when
 //! the origin slides along the ray, so no square of the distance enters `D` and
 //! is taken off again. Rounded products leave an error of at most `3 u |x| |d|`
-//! in the length of `x × d`, u = 2^-53; its square and that of the radius round by
+//! in the length of `x × d`, u = 2^-53, and a rounding of `x` another `u |x| |d|`; its square and that of the radius round by
 //! a few u of themselves. Where that leaves the sign of `D` open, or displaces the sum
 //! `|x·d| + √D` too much, as for lines that graze the ball, `D` is computed from exact
 //! numbers: so its sign, which is all that tells a hit from a miss, is that of the
@@ -41,8 +41,9 @@
 use glam::DVec3;
 
 use super::chord::{Chord, ChordEnd};
-use super::exact::{Expression, Number, cross, difference, dot, quotient, sign, vector};
+use super::exact::{Expression, Number, cross, dot, quotient, sign, vector};
 use super::quick::{End, Quick, Range};
+use super::way::{Between, Way};
 use super::{Location, Part};
 use crate::math::{UNIT_ROUNDOFF, power_of_two};
 
@@ -67,25 +68,9 @@ const LEAST_CONSTANT_TERM: f64 = power_of_two(-20);
 /// The interval of `t` in which the line `centre + x + t d` is inside the closed
 /// ball, with both ends on `part`; `None` where it is not. A ball of radius zero is
 /// its centre. A non-finite argument is a miss.
-pub(super) fn chord(x: DVec3, d: DVec3, radius: f64, part: Part) -> Option<Chord> {
-    chord_about(DVec3::ZERO, x, d, radius, part)
-}
-
-/// The same of the line `origin + t d` and the ball around `centre`; their
-/// difference need not be a number of f64.
-pub(super) fn chord_about(
-    centre: DVec3,
-    origin: DVec3,
-    d: DVec3,
-    radius: f64,
-    part: Part,
-) -> Option<Chord> {
-    let from = FromBall {
-        point: origin,
-        centre,
-        radius,
-    };
-    let x = origin - centre;
+pub(super) fn chord(x: impl Way, d: DVec3, radius: f64, part: Part) -> Option<Chord> {
+    let from = FromBall { x, radius };
+    let x = x.rounded();
     if !(x.is_finite() && d.is_finite()) {
         return None;
     }
@@ -237,22 +222,22 @@ pub(super) fn locate(centre: DVec3, radius: f64, point: DVec3) -> Location {
     if !point.is_finite() {
         return Location::Outside;
     }
-    Location::of_sign(sign(&FromBall {
-        point,
-        centre,
-        radius,
-    }))
+    let x = Between {
+        from: centre,
+        to: point,
+    };
+    Location::of_sign(sign(&FromBall { x, radius }))
 }
 
-/// A point and a ball; as an expression `|point - centre|² - radius²`.
+/// A point and a ball; as an expression `|x|² - radius²`.
 #[derive(Clone, Copy, Debug)]
-struct FromBall {
-    point: DVec3,
-    centre: DVec3,
+struct FromBall<W> {
+    /// The way from the centre to the point.
+    x: W,
     radius: f64,
 }
 
-impl FromBall {
+impl<W: Way> FromBall<W> {
     /// `D` of (2), of the line through the point; `x` is the rounded difference, `dd`
     /// is `|d|²` and `b` is `x·d`.
     fn discriminant(&self, x: DVec3, d: DVec3, dd: f64, b: f64) -> f64 {
@@ -295,26 +280,22 @@ impl FromBall {
     }
 }
 
-impl Expression for FromBall {
+impl<W: Way> Expression for FromBall<W> {
     fn value<N: Number>(&self) -> N {
-        let (x, r) = (difference::<N>(self.point, self.centre), N::of(self.radius));
+        let (x, r) = (self.x.exactly::<N>(), N::of(self.radius));
         dot(&x, &x).minus(&r.times(&r))
     }
 }
 
-struct Discriminant {
-    from: FromBall,
+struct Discriminant<W> {
+    from: FromBall<W>,
     d: DVec3,
 }
 
-impl Expression for Discriminant {
+impl<W: Way> Expression for Discriminant<W> {
     fn value<N: Number>(&self) -> N {
-        let FromBall {
-            point,
-            centre,
-            radius,
-        } = self.from;
-        let (x, d) = (difference::<N>(point, centre), vector(self.d));
+        let FromBall { x, radius } = self.from;
+        let (x, d) = (x.exactly::<N>(), vector(self.d));
         let (across, r) = (cross(&x, &d), N::of(radius));
         let reach = r.times(&r).times(&dot(&d, &d));
         reach.minus(&dot(&across, &across))

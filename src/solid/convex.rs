@@ -11,7 +11,7 @@ use std::fmt::Debug;
 use glam::DVec3;
 
 use super::quick::{Quick, Range};
-use super::{Caps, Chord, Meeting, SolidKind, SurfacePoint};
+use super::{Caps, Chord, Meeting, RayOrigin, SolidKind, SurfacePoint};
 use crate::math::Bounds;
 
 /// A kind of solid. Adding one is a file with an implementation of this, and its
@@ -41,6 +41,27 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// direction` is inside the closed solid, or `None` where it is not. A
     /// non-finite argument is a miss.
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord>;
+
+    /// The interval in which the line `origin + t * direction` is inside the closed solid,
+    /// decided from the numbers as stated: whether there is one, its parts, the order of
+    /// its ends and the signs of their `t` are those of exact arithmetic on the solid and
+    /// the line. [`ConvexSolid::chord`] decides from the rounded difference that it is
+    /// given, and of solids with two ends from the rounded axis.
+    fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord>;
+
+    /// The first point of that line on the surface, among those with
+    /// `t_min <= t + shift <= t_max`, likewise; see [`Chord::first`].
+    #[inline]
+    fn exact_first(
+        &self,
+        origin: &RayOrigin,
+        direction: DVec3,
+        shift: f64,
+        [t_min, t_max]: [f64; 2],
+    ) -> Option<Meeting> {
+        let chord = self.exact_chord(origin, direction)?;
+        chord.first(self.caps(), shift, t_min, t_max)
+    }
 
     /// Whether that line certainly misses the closed solid, if a few products tell;
     /// `false` says nothing. It has no branch, so that a row of rays is tested at once.

@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::{
-    Chord, Cone, ConvexSolid, Location, Part, SolidKind, SurfacePoint, surface_point,
-    triple_product,
+    Chord, Cone, ConvexSolid, Location, Meeting, Part, RayOrigin, SolidKind, SurfacePoint, settled,
+    surface_point, triple_product,
 };
 use crate::math::{Bounds, UNIT_ROUNDOFF, power_of_two};
 
@@ -209,6 +209,20 @@ impl ConvexSolid for Cylinder {
 
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
         triple_product::chord(self, from_anchor, direction)
+    }
+
+    fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
+        settled::chord(self, origin, direction)
+    }
+
+    fn exact_first(
+        &self,
+        origin: &RayOrigin,
+        direction: DVec3,
+        shift: f64,
+        range: [f64; 2],
+    ) -> Option<Meeting> {
+        settled::first(self, origin, direction, shift, range)
     }
 
     fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {

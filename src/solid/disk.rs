@@ -9,9 +9,9 @@
 //!
 //! and within the disk where `|P| <= radius |n·d|`. `x × d` does not change when the
 //! origin slides along the ray, so that nothing is as large as the way to the origin
-//! and taken off again. Rounded products leave an error of at most `12 u |n| |x| |d|`
+//! and taken off again. Rounded products leave an error of at most `13 u |n| |x| |d|`
 //! in `|P|` (3 u for either vector product, what the first leaves within the second,
-//! and 4 u for the length) and `6 u |n| |d| radius` on the other side. Where the two
+//! 4 u for the length, and u for `x`, which may be rounded) and `6 u |n| |d| radius` on the other side. Where the two
 //! sides are nearer to each other the squares are compared in exact numbers.
 //!
 //! `n·x` and `n·d` come from `linear.rs`: `t` is within 2^-40 of itself, and whether
@@ -27,8 +27,10 @@ use super::exact::{Expression, Number, cross, difference, dot, sign, vector};
 use super::passing::Line;
 use super::quick::{End, Quick, Range};
 use super::surface::Around;
+use super::way::Way;
 use super::{
-    Chord, ChordEnd, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint, ball, linear,
+    Chord, ChordEnd, ConvexSolid, Cylinder, Location, Part, RayOrigin, SolidKind, SurfacePoint,
+    ball, linear,
 };
 use crate::math::{Bounds, UNIT_ROUNDOFF};
 
@@ -144,27 +146,11 @@ impl ConvexSolid for Disk {
 
     #[inline]
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
-        let (n, x, d) = (self.normal, from_anchor, direction);
-        // Zero times anything but a number is NaN.
-        if (x + d).dot(DVec3::ZERO) != 0.0 {
-            return None;
-        }
-        let (height, slope) = (linear::product(n, x), linear::product(n, d));
-        if slope == 0.0 {
-            return self.chord_in_plane(height, x, d);
-        }
-        self.is_met(slope, x, d).then(|| {
-            let end = ChordEnd {
-                t: plane_at(height, slope),
-                part: Part::Side,
-                on_rim: false,
-            };
-            Chord {
-                enter: end,
-                leave: end,
-                lies_on: None,
-            }
-        })
+        self.chord_of(from_anchor, direction)
+    }
+
+    fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
+        self.chord_of(origin.way_from(self.centre), direction)
     }
 
     #[inline(always)]
@@ -225,8 +211,34 @@ fn plane_at(height: f64, slope: f64) -> f64 {
 }
 
 impl Disk {
+    /// The chord of the line `centre + x + t d`.
+    #[inline(always)]
+    fn chord_of(&self, x: impl Way, d: DVec3) -> Option<Chord> {
+        let n = self.normal;
+        // Zero times anything but a number is NaN.
+        if (x.rounded() + d).dot(DVec3::ZERO) != 0.0 {
+            return None;
+        }
+        let (height, slope) = (linear::product(n, x), linear::product(n, d));
+        if slope == 0.0 {
+            return self.chord_in_plane(height, x, d);
+        }
+        self.is_met(slope, x, d).then(|| {
+            let end = ChordEnd {
+                t: plane_at(height, slope),
+                part: Part::Side,
+                on_rim: false,
+            };
+            Chord {
+                enter: end,
+                leave: end,
+                lies_on: None,
+            }
+        })
+    }
+
     #[cold]
-    fn chord_in_plane(&self, height: f64, x: DVec3, d: DVec3) -> Option<Chord> {
+    fn chord_in_plane<W: Way>(&self, height: f64, x: W, d: DVec3) -> Option<Chord> {
         if height != 0.0 {
             return None;
         }
@@ -239,7 +251,8 @@ impl Disk {
 
     /// Whether the line meets the plane within the disk.
     #[inline]
-    fn is_met(&self, slope: f64, x: DVec3, d: DVec3) -> bool {
+    fn is_met<W: Way>(&self, slope: f64, way: W, d: DVec3) -> bool {
+        let x = way.rounded();
         let point = self.normal.cross(x.cross(d)).length();
         let reach = self.radius * slope.abs();
         let error =
@@ -247,22 +260,27 @@ impl Disk {
         if (point - reach).abs() > error {
             return point < reach;
         }
-        sign(&Within { disk: *self, x, d }) != Ordering::Less
+        let within = Within {
+            disk: *self,
+            x: way,
+            d,
+        };
+        sign(&within) != Ordering::Less
     }
 }
 
 /// `radius² (n·d)² - |P|²`.
-struct Within {
+struct Within<W> {
     disk: Disk,
-    x: DVec3,
+    x: W,
     d: DVec3,
 }
 
-impl Expression for Within {
+impl<W: Way> Expression for Within<W> {
     fn value<N: Number>(&self) -> N {
         let (n, x, d) = (
             vector::<N>(self.disk.normal),
-            vector(self.x),
+            self.x.exactly(),
             vector(self.d),
         );
         let point = cross(&n, &cross(&x, &d));

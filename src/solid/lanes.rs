@@ -213,10 +213,7 @@ fn overlap<'a, C: LaneCaps>(
     lane: usize,
     is_unsettled: &'a Cell<bool>,
 ) -> Overlap<f64, Roots<f64, LaneAxis<'a>>> {
-    let axis = LaneAxis {
-        stated: cylinders.axis(lane),
-        is_unsettled,
-    };
+    let axis = cylinders.rounded_axis(lane, is_unsettled);
     let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
     let (nn, discriminant) = (lines.nn.0[lane], lines.discriminant.0[lane]);
     let roots = Roots::of(&axis, x, lines.n.lane(lane), nn, discriminant);
@@ -233,6 +230,20 @@ impl<C: LaneCaps> CylinderLanes<C> {
             rays.t_max.0[lane],
         )
     }
+
+    /// The axis of a lane, without exact products.
+    #[inline(always)]
+    pub(super) fn rounded_axis<'a>(
+        &self,
+        lane: usize,
+        is_unsettled: &'a Cell<bool>,
+    ) -> LaneAxis<'a> {
+        LaneAxis {
+            stated: self.axis(lane),
+            is_unsettled,
+        }
+    }
+
     #[inline(always)]
     fn axis(&self, lane: usize) -> StatedAxis<f64> {
         StatedAxis {
@@ -244,7 +255,7 @@ impl<C: LaneCaps> CylinderLanes<C> {
 
 /// An axis that, asked for exact products, notes that it was.
 #[derive(Clone, Copy)]
-struct LaneAxis<'a> {
+pub(super) struct LaneAxis<'a> {
     stated: StatedAxis<f64>,
     is_unsettled: &'a Cell<bool>,
 }
@@ -284,8 +295,13 @@ impl Axis<f64> for LaneAxis<'_> {
 
 /// (2) of this file.
 #[inline(always)]
-fn certainly_misses(axis: &StatedAxis<f64>, x: DVec3, d: DVec3, line: &Line<f64>) -> bool {
-    let rr = axis.radius * axis.radius;
+pub(super) fn certainly_misses(
+    axis: &impl Axis<f64>,
+    x: DVec3,
+    d: DVec3,
+    line: &Line<f64>,
+) -> bool {
+    let rr = axis.radius() * axis.radius();
     let roundings = ROUNDINGS * (x.dot(x) + rr) * (axis.aa() * d.dot(d));
     line.w * line.w > 8.0 * rr * line.nn + roundings
 }

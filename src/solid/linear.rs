@@ -1,14 +1,15 @@
-//! Heights over planes: linear forms `f·x + c` of numbers taken as exact.
+//! Heights over planes: linear forms `f·x + c`, of which `x` may be a rounded [`Way`].
 //!
 //! Three products and three sums round by at most `4 u S` together, u = 2^-53,
-//! with `S = Σ |f_i x_i| + |c|`. A value of at least `2^-10 S` is therefore within
-//! `2^-41` of itself, 2^-17 of an ulp of f32, and has the right sign. A smaller one
-//! has lost that much to cancellation and is computed again from exact numbers: so
-//! every value has the exact sign, and is zero only if it truly is.
+//! with `S = Σ |f_i x_i| + |c|`, and a rounded `x` adds `u S`. A value of at least `2^-10 S` is
+//! therefore within `1.25 · 2^-41` of itself, 2^-16 of an ulp of f32, and has the right
+//! sign. A smaller one has lost that much to cancellation and is computed again from
+//! exact numbers: so every value has the exact sign, and is zero only if it truly is.
 
 use glam::DVec3;
 
 use super::exact::{Expression, Number, dot, quotient, vector};
+use super::way::Way;
 use crate::math::{UNIT_ROUNDOFF, power_of_two};
 
 /// The share of its terms from which on a rounded value will do.
@@ -17,19 +18,20 @@ const LEAST_SHARE: f64 = power_of_two(-10);
 /// Below this, products may have lost bits to underflow.
 const LEAST_SIZE: f64 = power_of_two(-900);
 
-/// The bound of the relative error of a value.
-pub(super) const ERROR: f64 = power_of_two(-41);
+/// Bounds the relative error of a quotient of two values, with room for that of a
+/// comparison.
+pub(super) const MARGIN: f64 = power_of_two(-39);
 
 /// `f·x`, for finite numbers.
 #[inline]
-pub(super) fn product(f: DVec3, x: DVec3) -> f64 {
-    checked(rounded_product(f, x), f, x, 0.0)
+pub(super) fn product(f: DVec3, x: impl Way) -> f64 {
+    checked(rounded_product(f, x.rounded()), f, x, 0.0)
 }
 
 /// `c + f·x` and `c - f·x`, for finite numbers.
 #[inline]
-pub(super) fn heights(f: DVec3, x: DVec3, c: f64) -> [f64; 2] {
-    let [over, under] = rounded_heights(f, x, c);
+pub(super) fn heights(f: DVec3, x: impl Way, c: f64) -> [f64; 2] {
+    let [over, under] = rounded_heights(f, x.rounded(), c);
     [checked(over, f, x, c), checked(under, -f, x, c)]
 }
 
@@ -48,7 +50,7 @@ impl Rounded {
     }
 
     /// Bounds by how much the value from exact numbers differs, zero if this one will do:
-    /// `4 u S`, and twice that for the roundings of a quotient with it.
+    /// `5 u S`, and a half more for the roundings of a quotient with it.
     #[inline(always)]
     pub fn slack(&self) -> f64 {
         let slack = if self.size < LEAST_SIZE {
@@ -80,7 +82,7 @@ pub(super) fn rounded_heights(f: DVec3, x: DVec3, c: f64) -> [Rounded; 2] {
 }
 
 #[inline(always)]
-fn checked(rounded: Rounded, f: DVec3, x: DVec3, c: f64) -> f64 {
+fn checked(rounded: Rounded, f: DVec3, x: impl Way, c: f64) -> f64 {
     if rounded.is_poor() {
         return from_exact_numbers(f, x, c);
     }
@@ -91,27 +93,27 @@ fn checked(rounded: Rounded, f: DVec3, x: DVec3, c: f64) -> f64 {
 /// case that is rare.
 #[cold]
 #[inline(never)]
-fn from_exact_numbers(f: DVec3, x: DVec3, c: f64) -> f64 {
+fn from_exact_numbers<W: Way>(f: DVec3, x: W, c: f64) -> f64 {
     // Along a coordinate axis there is one term, and nothing but its sum with `c`
     // to round.
     let is_whole = |factor: &f64| *factor == 0.0 || factor.abs() == 1.0;
-    let terms = f * x;
+    let terms = f * x.rounded();
     let count = terms.to_array().iter().filter(|term| **term != 0.0).count();
-    if f.to_array().iter().all(is_whole) && count <= 1 {
+    if x.is_rounded() && f.to_array().iter().all(is_whole) && count <= 1 {
         return c + (terms.x + terms.y + terms.z);
     }
     quotient(&Linear { f, x, c }, 1.0)
 }
 
-struct Linear {
+struct Linear<W> {
     f: DVec3,
-    x: DVec3,
+    x: W,
     c: f64,
 }
 
-impl Expression for Linear {
+impl<W: Way> Expression for Linear<W> {
     fn value<N: Number>(&self) -> N {
-        dot(&vector::<N>(self.f), &vector(self.x)).plus(&N::of(self.c))
+        dot(&vector::<N>(self.f), &self.x.exactly()).plus(&N::of(self.c))
     }
 }
 

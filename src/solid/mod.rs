@@ -16,12 +16,14 @@ mod linear;
 mod passing;
 pub mod quick;
 mod rounded_cone;
+pub mod settled;
 mod slab;
 mod spawn;
 mod sphere;
 mod surface;
 pub mod tessellation;
 pub mod triple_product;
+mod way;
 
 pub use any::AnySolid;
 pub use chord::{Chord, ChordEnd, Meeting};
@@ -35,6 +37,7 @@ pub use rounded_cone::{RoundedCone, RoundedConeError};
 pub use spawn::{SpawnMargin, spawned_ray};
 pub use sphere::{Sphere, SphereError};
 pub use surface::{SurfacePoint, surface_point};
+pub use way::RayOrigin;
 
 /// The kinds of solids; [`SolidKind::name`] is the `solid` column of `trace`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

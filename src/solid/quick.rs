@@ -46,6 +46,19 @@ pub struct QuickLanes {
     pub t: Lanes,
 }
 
+impl QuickLanes {
+    /// Leaves all rays that are active open.
+    #[inline(always)]
+    #[must_use]
+    pub fn all_open(active: LaneMask) -> Self {
+        Self {
+            open: active,
+            met: LaneMask::splat(false),
+            t: Lanes::splat(0.0),
+        }
+    }
+}
+
 impl Quick {
     /// An answer that a quick solver does not find.
     pub const OPEN: Self = Self {

@@ -5,7 +5,9 @@ use glam::DVec3;
 use super::passing::Line;
 use super::quick::{Quick, Range};
 use super::surface::FirstParameter;
-use super::{Chord, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint, ball};
+use super::{
+    Chord, ConvexSolid, Cylinder, Location, Part, RayOrigin, SolidKind, SurfacePoint, ball,
+};
 use crate::math::{Bounds, UNIT_ROUNDOFF, unit};
 
 /// A sphere: its centre and radius, taken as exact numbers. The solid is
@@ -90,6 +92,11 @@ impl ConvexSolid for Sphere {
     #[inline]
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
         ball::chord(from_anchor, direction, self.radius, Part::Side)
+    }
+
+    fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
+        let x = origin.way_from(self.centre);
+        ball::chord(x, direction, self.radius, Part::Side)
     }
 
     #[inline(always)]

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::wall::{Fit, Taper};
 use crate::solid::Cylinder;
+use crate::solid::way::{Between, ExactWay};
 
 /// Two points and the radius at either, all taken as exact numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,6 +95,20 @@ impl Ends {
     /// The length and the greater diameter together.
     pub fn size(&self) -> f64 {
         self.length() + 2.0 * self.radius0.max(self.radius1)
+    }
+
+    /// The same as [`Ends::taper`], with the axis as stated.
+    pub fn exact_taper(&self, fit: Fit) -> Taper<ExactWay> {
+        let axis = Between {
+            from: self.p0,
+            to: self.p1,
+        };
+        Taper {
+            a: axis.exact(),
+            radius0: self.radius0,
+            radius1: self.radius1,
+            fit,
+        }
     }
 
     /// The cone's wall that belongs to them.

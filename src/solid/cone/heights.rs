@@ -23,6 +23,7 @@ use glam::DVec3;
 use super::wall::{Fit, Measures, Taper, Term};
 use crate::math::power_of_two;
 use crate::solid::exact::{Expression, Number, dot, quotient, sign, vector};
+use crate::solid::way::Way;
 
 /// How near to an end rounded heights do not tell, relative to their terms.
 const NEAR: f64 = power_of_two(-28);
@@ -50,9 +51,9 @@ pub(in crate::solid) enum Root {
 
 /// A line as seen along the axis.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solid) struct Heights<'a> {
-    taper: &'a Taper,
-    x: DVec3,
+pub(in crate::solid) struct Heights<'a, A, X> {
+    taper: &'a Taper<A>,
+    x: X,
     d: DVec3,
     /// What `t = 1` adds to the height; its sign is exact.
     pub slope: f64,
@@ -62,11 +63,15 @@ pub(in crate::solid) struct Heights<'a> {
     terms: f64,
 }
 
-impl<'a> Heights<'a> {
-    pub fn new(taper: &'a Taper, x: DVec3, d: DVec3) -> Self {
-        let (length, delta) = (taper.a.length(), taper.radius1 - taper.radius0);
+impl<'a, A: Way, X: Way> Heights<'a, A, X> {
+    pub fn new(taper: &'a Taper<A>, way: X, d: DVec3) -> Self {
+        let (a, x) = (taper.axis(), way.rounded());
+        let (length, delta) = (a.length(), taper.radius1 - taper.radius0);
         let terms = length * (x.length() + length) + taper.radius0.max(taper.radius1) * delta.abs();
-        let exactly = |which| quotient(&At { taper, x, d, which }, 1.0);
+        let exactly = |which| {
+            let x = way;
+            quotient(&At { taper, x, d, which }, 1.0)
+        };
         let checked = |rounded: f64, terms: f64, which| {
             if rounded.abs() < CANCELS * terms {
                 exactly(which)
@@ -74,16 +79,16 @@ impl<'a> Heights<'a> {
                 rounded
             }
         };
-        let (from_p0, from_p1) = (x.dot(taper.a), (x - taper.a).dot(taper.a));
+        let (from_p0, from_p1) = (x.dot(a), (x - a).dot(a));
         let [seam0, seam1] = match taper.fit {
             Fit::Discs => [0.0, 0.0],
             Fit::Balls => [taper.radius0 * delta, taper.radius1 * delta],
         };
         Self {
             taper,
-            x,
+            x: way,
             d,
-            slope: checked(d.dot(taper.a), d.length() * length, Which::Slope),
+            slope: checked(d.dot(a), d.length() * length, Which::Slope),
             above: [
                 checked(from_p0 + seam0, terms, Which::Above(End::First)),
                 checked(from_p1 + seam1, terms, Which::Above(End::Second)),
@@ -160,17 +165,18 @@ enum Which {
     Linear(End),
 }
 
-struct At<'a> {
-    taper: &'a Taper,
-    x: DVec3,
+struct At<'a, A, X> {
+    taper: &'a Taper<A>,
+    x: X,
     d: DVec3,
     which: Which,
 }
 
-impl Expression for At<'_> {
+impl<A: Way, X: Way> Expression for At<'_, A, X> {
     fn value<N: Number>(&self) -> N {
         let taper = self.taper;
-        let (a, x, d) = (vector::<N>(taper.a), vector(self.x), vector(self.d));
+        let (a, x) = (taper.a.exactly::<N>(), self.x.exactly());
+        let d = vector(self.d);
         let measures = taper.measures(&a);
         let Measures {
             aa, delta, beta, ..

@@ -12,7 +12,11 @@ use glam::DVec3;
 use super::cylinder::disc_reach;
 use super::exact::{self, Expression, Number, difference, dot};
 use super::passing::Line;
-use super::{Caps, Chord, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint};
+use super::way::Way;
+use super::{
+    Caps, Chord, ConvexSolid, Cylinder, Location, Part, RayOrigin, SolidKind, SurfacePoint,
+    triple_product,
+};
 use crate::math::Bounds;
 pub use ends::ConeError;
 pub(super) use ends::Ends;
@@ -95,6 +99,17 @@ impl Cone {
         self.caps
     }
 
+    /// The same solid as a cylinder, if the radii are equal.
+    fn as_cylinder(&self) -> Option<Cylinder> {
+        let Ends {
+            p0,
+            p1,
+            radius0,
+            radius1,
+        } = self.ends;
+        (radius0 == radius1).then(|| Cylinder::from_valid(p0, p1, radius0, Caps::Both))
+    }
+
     /// Whether a point of the boundary is on the surface of a part, exactly.
     pub(super) fn is_on(&self, part: Part, point: DVec3) -> bool {
         let limit = match part {
@@ -137,7 +152,21 @@ impl ConvexSolid for Cone {
         if self.passes_by(from_anchor, direction) {
             return None;
         }
-        solver::chord(self, from_anchor, direction)
+        match self.as_cylinder() {
+            Some(cylinder) => triple_product::chord(&cylinder, from_anchor, direction),
+            None => solver::chord(&self.ends.taper(Fit::Discs), from_anchor, direction),
+        }
+    }
+
+    fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
+        let from_p0 = origin.way_from(self.ends.p0);
+        if self.passes_by(from_p0.rounded(), direction) {
+            return None;
+        }
+        match self.as_cylinder() {
+            Some(cylinder) => cylinder.exact_chord(origin, direction),
+            None => solver::chord(&self.ends.exact_taper(Fit::Discs), from_p0, direction),
+        }
     }
 
     #[inline(always)]

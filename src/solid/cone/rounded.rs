@@ -14,6 +14,10 @@
 //! `E` that leaves the sign certain will do if it displaces the sum by less than
 //! [`GOOD_FROM_AFAR`] of it, and for a line that certainly passes by, any.
 //!
+//! `x` and `a` may be rounded differences ([`Way`]). That adds u to the first, third and
+//! fourth of these bounds and 2 u to the second, so that errors are below twice the
+//! bounds. Exact numbers are those of the differences.
+//!
 //! Of the two roots one has no cancellation in its sum `q`; where the other's terms
 //! cancel it is `C / q`, with an error of `C` below [`GOOD_CONSTANT_TERM`].
 
@@ -21,6 +25,7 @@ use glam::DVec3;
 
 use super::wall::Taper;
 use crate::math::{UNIT_ROUNDOFF, power_of_two};
+use crate::solid::way::Way;
 
 /// The relative error up to which rounded products will do: a root then has less
 /// than 2^-11 of an ulp of f32.
@@ -38,6 +43,10 @@ const GOOD_CONSTANT_TERM: f64 = power_of_two(-30);
 /// The factor of all bounds: the roundings named above and those of further products and
 /// sums, at most 13 u, and of `β`, at most 10 u.
 const ROUNDINGS: f64 = 24.0 * UNIT_ROUNDOFF;
+
+/// How many times the bounds are exceeded at most if `x` and `a` are rounded. Only the sign of
+/// `E` is decided so near to a bound that it matters.
+const INPUTS: f64 = 2.0;
 
 /// A rounded difference and a bound of its error.
 #[derive(Clone, Copy, Debug)]
@@ -70,9 +79,9 @@ pub(super) struct Rounded {
 }
 
 impl Rounded {
-    pub fn new(taper: &Taper, x: DVec3, d: DVec3) -> Self {
+    pub fn new(taper: &Taper<impl Way>, x: DVec3, d: DVec3) -> Self {
         const U: f64 = UNIT_ROUNDOFF;
-        let (axis, r0) = (taper.a, taper.radius0);
+        let (axis, r0) = (taper.axis(), taper.radius0);
         let delta = taper.radius1 - r0;
         let (aa, dd, beta) = (axis.dot(axis), d.dot(d), taper.beta());
         let (length, speed, distance) = (aa.sqrt(), dd.sqrt(), x.length());
@@ -122,7 +131,7 @@ impl Rounded {
 
     /// Whether the line certainly does not reach the wall.
     pub fn passes_by(&self) -> bool {
-        self.e.value < -self.e.error
+        self.e.value < -INPUTS * self.e.error
     }
 
     /// Whether the roots, but for `C`, are good.
@@ -139,9 +148,9 @@ impl Rounded {
     }
 
     /// `C` of (2), if it is good.
-    pub fn constant_term(&self, taper: &Taper, x: DVec3) -> Option<f64> {
+    pub fn constant_term(&self, taper: &Taper<impl Way>, x: DVec3) -> Option<f64> {
         let delta = taper.radius1 - taper.radius0;
-        let g = taper.radius0 * self.aa + delta * x.dot(taper.a);
+        let g = taper.radius0 * self.aa + delta * x.dot(taper.axis());
         let size = taper.radius0 * self.aa + delta.abs() * self.reach;
         let mm = self.m.dot(self.m);
         let wide = self.reach * mm.sqrt() + mm + g.abs() * (size / self.beta);

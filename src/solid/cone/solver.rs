@@ -2,32 +2,22 @@
 //!
 //! `wall.rs` finds where the line is inside the infinite wall; that is overlapped
 //! with the slab between the discs by where the roots lie to the discs' planes
-//! (`heights.rs`). The other nappe lies beyond the apex, so outside of the slab. A
-//! cone with equal radii is left to the triple-product solver, whose answers it has
-//! bit for bit.
+//! (`heights.rs`). The other nappe lies beyond the apex, so outside of the slab.
 
 use std::cmp::Ordering::{Equal, Greater, Less};
 
 use glam::DVec3;
 
 use super::heights::{End, Heights, Root};
-use super::wall::{Fit, Inside, Meets};
-use super::{Cone, Ends};
+use super::wall::{Inside, Meets, Taper};
+use crate::solid::Part;
 use crate::solid::chord::{Chord, ChordEnd};
-use crate::solid::{Caps, Cylinder, Part, triple_product};
+use crate::solid::way::Way;
 
-/// The interval in which the line `p0 + x + t d` is inside the closed cone.
-pub(super) fn chord(cone: &Cone, x: DVec3, d: DVec3) -> Option<Chord> {
-    let Ends {
-        p0, p1, radius0, ..
-    } = cone.ends;
-    if radius0 == cone.ends.radius1 {
-        let cylinder = Cylinder::from_valid(p0, p1, radius0, Caps::Both);
-        return triple_product::chord(&cylinder, x, d);
-    }
-    let taper = cone.ends.taper(Fit::Discs);
+/// The interval in which the line `p0 + x + t d` is inside the closed cone with this wall.
+pub(super) fn chord<A: Way>(taper: &Taper<A>, x: impl Way, d: DVec3) -> Option<Chord> {
     let meets = taper.meets(x, d)?;
-    let heights = Heights::new(&taper, x, d);
+    let heights = Heights::new(taper, x, d);
     match meets {
         Meets::Along => Some(along(&heights, Part::Side)),
         Meets::Inside(inside) if heights.slope == 0.0 => across(&heights, inside),
@@ -44,7 +34,7 @@ fn part_at(end: End) -> Part {
 }
 
 /// The ends in the order in which the line comes through their planes.
-fn in_order(heights: &Heights) -> (End, End) {
+fn in_order(heights: &Heights<impl Way, impl Way>) -> (End, End) {
     if heights.slope > 0.0 {
         (End::First, End::Second)
     } else {
@@ -53,7 +43,7 @@ fn in_order(heights: &Heights) -> (End, End) {
 }
 
 /// The chord of a line of the wall, from end to end; it lies on `part`.
-pub(in crate::solid) fn along(heights: &Heights, part: Part) -> Chord {
+pub(in crate::solid) fn along(heights: &Heights<impl Way, impl Way>, part: Part) -> Chord {
     let (near, far) = in_order(heights);
     let rim = |end| ChordEnd {
         t: heights.at(end),
@@ -69,7 +59,7 @@ pub(in crate::solid) fn along(heights: &Heights, part: Part) -> Chord {
 
 /// The chord of a line across the axis: from wall to wall at one height, which may
 /// be that of a disc.
-fn across(heights: &Heights, inside: Inside) -> Option<Chord> {
+fn across(heights: &Heights<impl Way, impl Way>, inside: Inside) -> Option<Chord> {
     let [above0, above1] = heights.above;
     if above0 < 0.0 || above1 > 0.0 {
         return None;
@@ -94,7 +84,7 @@ fn across(heights: &Heights, inside: Inside) -> Option<Chord> {
 }
 
 /// The chord of any other line.
-fn oblique(heights: &Heights, inside: Inside) -> Option<Chord> {
+fn oblique(heights: &Heights<impl Way, impl Way>, inside: Inside) -> Option<Chord> {
     let (near, far) = in_order(heights);
     // How far the line has come, as seen in its own direction.
     let passed = |root, t, end| {

@@ -51,6 +51,7 @@ use glam::DVec3;
 
 use super::rounded::Rounded;
 use crate::solid::exact::{Expression, Number, cross, dot, quotient, vector};
+use crate::solid::way::Way;
 
 /// Which cone belongs to two radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,8 +64,9 @@ pub(in crate::solid) enum Fit {
 
 /// The infinite wall, as seen from `p0`.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solid) struct Taper {
-    pub a: DVec3,
+pub(in crate::solid) struct Taper<A = DVec3> {
+    /// The way from `p0` to `p1`.
+    pub a: A,
     pub radius0: f64,
     pub radius1: f64,
     pub fit: Fit,
@@ -89,13 +91,19 @@ pub(in crate::solid) enum Meets {
     Along,
 }
 
-impl Taper {
+impl<A: Way> Taper<A> {
+    /// `a`, rounded.
+    #[inline(always)]
+    pub fn axis(&self) -> DVec3 {
+        self.a.rounded()
+    }
+
     /// `β`.
     pub fn beta(&self) -> f64 {
         match self.fit {
-            Fit::Discs => self.a.dot(self.a),
+            Fit::Discs => self.axis().length_squared(),
             Fit::Balls => {
-                let (aa, delta) = (self.a.dot(self.a), self.radius1 - self.radius0);
+                let (aa, delta) = (self.axis().length_squared(), self.radius1 - self.radius0);
                 if delta * delta < 0.5 * aa {
                     aa - delta * delta
                 } else {
@@ -107,19 +115,21 @@ impl Taper {
 
     /// Where the line `x + t d` is inside the wall, on the solid's nappe if it is
     /// less steep than the wall. `None` if nowhere, and for NaN.
-    pub fn meets(&self, x: DVec3, d: DVec3) -> Option<Meets> {
-        if !(x.is_finite() && d.is_finite()) {
+    pub fn meets(&self, x: impl Way, d: DVec3) -> Option<Meets> {
+        if !(x.rounded().is_finite() && d.is_finite()) {
             return None;
         }
-        let rounded = Rounded::new(self, x, d);
+        let rounded = Rounded::new(self, x.rounded(), d);
         if rounded.passes_by() {
             return None;
         }
-        let (a, b, e) = if rounded.is_good() {
-            (rounded.a.value, rounded.b.value, rounded.e.value)
+        let (a, b, e, h) = if rounded.is_good() {
+            let Rounded { a, b, e, h, .. } = rounded;
+            (a.value, b.value, e.value, h)
         } else {
             let exactly = |term| self.exactly(term, x, d, rounded.beta);
-            (exactly(Term::A), exactly(Term::B), exactly(Term::E))
+            let [a, b, e, h] = [Term::A, Term::B, Term::E, Term::H].map(exactly);
+            (a, b, e, h)
         };
         if !(e >= 0.0) {
             return None;
@@ -140,7 +150,7 @@ impl Taper {
             }
         };
         let is_half = !(a > 0.0);
-        let rises = rounded.h > 0.0;
+        let rises = h > 0.0;
         if a == 0.0 && (b < 0.0) != rises {
             // Parallel to the wall it is inside of one nappe only: the other.
             return None;
@@ -160,15 +170,16 @@ impl Taper {
     }
 
     /// `C` of (2).
-    fn constant_term(&self, rounded: &Rounded, x: DVec3, d: DVec3) -> f64 {
-        let c = rounded.constant_term(self, x);
+    fn constant_term(&self, rounded: &Rounded, x: impl Way, d: DVec3) -> f64 {
+        let c = rounded.constant_term(self, x.rounded());
         c.unwrap_or_else(|| self.exactly(Term::C, x, d, rounded.beta))
     }
 
-    fn exactly(&self, term: Term, x: DVec3, d: DVec3, beta: f64) -> f64 {
+    fn exactly(&self, term: Term, x: impl Way, d: DVec3, beta: f64) -> f64 {
         let divisor = match term {
-            Term::E => self.a.dot(self.a),
-            _ => beta,
+            Term::E => self.axis().length_squared(),
+            Term::H => 1.0,
+            Term::A | Term::B | Term::C => beta,
         };
         let taper = self;
         quotient(&Exactly { taper, x, d, term }, divisor)
@@ -181,7 +192,7 @@ impl Taper {
 
     /// A term as numbers `N`.
     pub fn term<N: Number>(&self, x: &[N; 3], d: &[N; 3], term: Term) -> N {
-        let a = vector::<N>(self.a);
+        let a = self.a.exactly::<N>();
         let measures = self.measures(&a);
         let Measures {
             aa, delta, beta, ..
@@ -191,6 +202,7 @@ impl Taper {
         }
         let (n, h) = (cross(&a, d), delta.times(&dot(d, &a)));
         match term {
+            Term::H => h,
             Term::A => beta.times(&dot(&n, &n)).minus(&h.times(&h)),
             Term::E => {
                 let (l, w) = (cross(x, d), dot(x, &n));
@@ -244,33 +256,35 @@ impl<N: Number> Measures<N> {
     }
 }
 
-struct Beta<'a>(&'a Taper);
+struct Beta<'a, A>(&'a Taper<A>);
 
-impl Expression for Beta<'_> {
+impl<A: Way> Expression for Beta<'_, A> {
     fn value<N: Number>(&self) -> N {
-        self.0.measures(&vector(self.0.a)).beta
+        self.0.measures(&self.0.a.exactly()).beta
     }
 }
 
-/// A term of (2) times `β`, or `E` times `|a|²`.
+/// A term of (2) times `β`, `E` times `|a|²`, or `h`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::solid) enum Term {
     A,
     B,
     C,
     E,
+    H,
 }
 
 /// One of them.
-pub(in crate::solid) struct Exactly<'a> {
-    pub taper: &'a Taper,
-    pub x: DVec3,
+pub(in crate::solid) struct Exactly<'a, A, X> {
+    pub taper: &'a Taper<A>,
+    pub x: X,
     pub d: DVec3,
     pub term: Term,
 }
 
-impl Expression for Exactly<'_> {
+impl<A: Way, X: Way> Expression for Exactly<'_, A, X> {
     fn value<N: Number>(&self) -> N {
-        self.taper.term(&vector(self.x), &vector(self.d), self.term)
+        let x = self.x.exactly::<N>();
+        self.taper.term(&x, &vector(self.d), self.term)
     }
 }

@@ -13,8 +13,7 @@
 //! line or none of it.
 //!
 //! Each numerator and denominator is a height over a plane, which `linear.rs`
-//! computes to [`ERROR`] of itself and with the exact sign, so that a `t` is within
-//! [`MARGIN`] of itself. Two that differ by more are ordered by it. Where they do
+//! computes with the exact sign and so that a `t` is within [`MARGIN`] of itself. Two that differ by more are ordered by it. Where they do
 //! not, at edges and corners, and for a line within a face, the order of the planes
 //! is the sign of `N_i V_j - N_j V_i`, the difference of two quotients `N / V`
 //! without their division, from exact numbers. So the answer, hit or miss and which
@@ -27,13 +26,12 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::Cuboid;
+use crate::solid::Part;
 use crate::solid::chord::{Chord, ChordEnd};
 use crate::solid::exact::{Expression, Number, dot, sign, vector};
+use crate::solid::linear::{self, MARGIN};
 use crate::solid::quick::{End, Quick, Range};
-use crate::solid::{Part, linear};
-
-/// Bounds the relative error of a `t`, with room for that of the comparison.
-const MARGIN: f64 = 4.0 * linear::ERROR;
+use crate::solid::way::Way;
 
 /// One of the two planes of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,9 +56,9 @@ enum Slab {
 
 /// The chord of the line `centre + x + t d`.
 #[inline]
-pub(super) fn chord(cuboid: &Cuboid, x: DVec3, d: DVec3) -> Option<Chord> {
+pub(super) fn chord(cuboid: &Cuboid, x: impl Way, d: DVec3) -> Option<Chord> {
     // Zero times anything but a number is NaN.
-    if (x + d).dot(DVec3::ZERO) != 0.0 {
+    if (x.rounded() + d).dot(DVec3::ZERO) != 0.0 {
         return None;
     }
     let slabs = [
@@ -144,7 +142,7 @@ fn are_apart(one: f64, other: f64) -> bool {
 
 /// `None` where the line is beside the slab.
 #[inline(always)]
-fn slab(cuboid: &Cuboid, axis: usize, x: DVec3, d: DVec3) -> Option<Slab> {
+fn slab(cuboid: &Cuboid, axis: usize, x: impl Way, d: DVec3) -> Option<Slab> {
     let f = cuboid.axis(axis);
     let slope = linear::product(f, d);
     let [over_lower, under_upper] = linear::heights(f, x, cuboid.half_widths[axis]);
@@ -208,7 +206,7 @@ fn end(t: f64, part: Part) -> ChordEnd {
 /// The same with every comparison from exact numbers.
 #[cold]
 #[inline(never)]
-fn exact_chord(cuboid: Cuboid, x: DVec3, d: DVec3, slabs: [Slab; 3]) -> Option<Chord> {
+fn exact_chord<W: Way>(cuboid: Cuboid, x: W, d: DVec3, slabs: [Slab; 3]) -> Option<Chord> {
     let line = Line { cuboid, x, d };
     let crossed = || {
         slabs.iter().filter_map(|slab| match *slab {
@@ -271,13 +269,13 @@ fn exact_chord(cuboid: Cuboid, x: DVec3, d: DVec3, slabs: [Slab; 3]) -> Option<C
     })
 }
 
-struct Line {
+struct Line<W> {
     cuboid: Cuboid,
-    x: DVec3,
+    x: W,
     d: DVec3,
 }
 
-impl Line {
+impl<W: Way> Line<W> {
     /// How the parameters of two planes compare that the line crosses.
     fn compare(&self, one: Plane, other: Plane) -> Ordering {
         if one == other {
@@ -298,15 +296,15 @@ impl Line {
 }
 
 /// `N_i V_j - N_j V_i` of two planes.
-struct Order<'a> {
-    line: &'a Line,
+struct Order<'a, W> {
+    line: &'a Line<W>,
     one: Plane,
     other: Plane,
 }
 
-impl Expression for Order<'_> {
+impl<W: Way> Expression for Order<'_, W> {
     fn value<N: Number>(&self) -> N {
-        let (x, d) = (vector::<N>(self.line.x), vector(self.line.d));
+        let (x, d) = (self.line.x.exactly::<N>(), vector(self.line.d));
         let cuboid = &self.line.cuboid;
         let quotient = |plane: Plane| {
             let f = vector(cuboid.axis(plane.axis));

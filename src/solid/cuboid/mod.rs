@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::exact::{Expression, Number, difference, dot, sign, vector};
 use super::quick::{Quick, Range};
 use super::surface::FirstParameter;
-use super::{Chord, ConvexSolid, Cylinder, Location, Part, SolidKind, SurfacePoint};
+use super::{Chord, ConvexSolid, Cylinder, Location, Part, RayOrigin, SolidKind, SurfacePoint};
 use crate::math::{Bounds, Orientation, UNIT_ROUNDOFF, power_of_two};
 
 /// A box that may be turned: its centre, half of its width along each of its own
@@ -136,6 +136,10 @@ impl ConvexSolid for Cuboid {
     #[inline]
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
         chord::chord(self, from_anchor, direction)
+    }
+
+    fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
+        chord::chord(self, origin.way_from(self.centre), direction)
     }
 
     #[inline(always)]

@@ -11,8 +11,11 @@
 
 use std::cmp::Ordering::{self, Equal, Greater, Less};
 
+use glam::DVec3;
+
 use super::{Number, cross, difference, dot};
 use crate::math::Ray;
+use crate::solid::way::{Between, Way};
 use crate::solid::{Caps, Crossing, Cylinder, Part};
 
 /// How the parameter of the first hit is to be computed.
@@ -52,10 +55,10 @@ pub(super) struct Terms<N> {
 }
 
 impl<N: Number> Terms<N> {
-    pub fn new(cylinder: &Cylinder, ray: &Ray) -> Self {
+    pub fn new(cylinder: &Cylinder, x: &impl Way, direction: DVec3) -> Self {
         let a: [N; 3] = difference(cylinder.p1(), cylinder.p0());
-        let x = difference(ray.origin, cylinder.p0());
-        let d = ray.direction.to_array().map(N::of);
+        let x = x.exactly();
+        let d = direction.to_array().map(N::of);
         let r = N::of(cylinder.radius());
         let (n, m) = (cross(&a, &d), cross(&a, &x));
         let (nn, mn, w) = (dot(&n, &n), dot(&m, &n), dot(&x, &n));
@@ -120,56 +123,65 @@ impl<N: Number> Terms<N> {
 /// The decision in the numbers `N`: the first hit, or that there is none.
 /// `None` if the numbers are not certain enough.
 pub(super) fn decide<N: Number>(cylinder: &Cylinder, ray: &Ray) -> Option<Option<Decision>> {
-    let terms = Terms::<N>::new(cylinder, ray);
+    let x = Between {
+        from: cylinder.p0(),
+        to: ray.origin,
+    };
+    let terms = Terms::<N>::new(cylinder, &x, ray.direction);
+    let Some(ends) = terms.ends()? else {
+        return Some(None);
+    };
     let case = Case {
         terms,
         caps: cylinder.caps(),
         ray,
     };
-    let ends = match case.terms.nn.sign()? {
-        Equal => case.parallel_ends()?,
-        _ if case.terms.s.sign()? == Less => None,
-        _ if case.terms.yd.sign()? == Equal => case.perpendicular_ends()?,
-        _ => case.oblique_ends()?,
-    };
-    match ends {
-        Some(ends) => case.first(&ends),
-        None => Some(None),
-    }
+    case.first(&ends)
 }
 
 /// A point where the line goes in or comes out.
 #[derive(Clone, Copy)]
-struct End {
-    at: At,
-    part: Part,
-    on_rim: bool,
+pub(super) struct End {
+    pub at: At,
+    pub part: Part,
+    pub on_rim: bool,
+    /// Whether the other end is on this one's rim, so that the line only touches it.
+    pub touches: bool,
 }
 
 /// Both, and the part within which the line runs between them, if it does.
-struct Ends {
-    enter: End,
-    leave: End,
-    lies_on: Option<Part>,
-}
-
-struct Case<'a, N> {
-    terms: Terms<N>,
-    caps: Caps,
-    ray: &'a Ray,
+pub(super) struct Ends {
+    pub enter: End,
+    pub leave: End,
+    pub lies_on: Option<Part>,
 }
 
 /// A decision, or nothing; the outer `None` stands for uncertainty.
-type Certain<T> = Option<T>;
+pub(super) type Certain<T> = Option<T>;
 
-impl<N: Number> Case<'_, N> {
+impl<N: Number> Terms<N> {
+    /// Where the line goes into the closed solid and comes out of it, if it does.
+    pub fn ends(&self) -> Certain<Option<Ends>> {
+        match self.nn.sign()? {
+            Equal => self.parallel_ends(),
+            _ if self.s.sign()? == Less => Some(None),
+            _ if self.yd.sign()? == Equal => self.perpendicular_ends(),
+            _ => self.oblique_ends(),
+        }
+    }
+
     /// A line along the axis.
     fn parallel_ends(&self) -> Certain<Option<Ends>> {
-        let on_rim = match self.terms.outside.sign()? {
+        let on_rim = match self.outside.sign()? {
             Greater => return Some(None),
             to_wall => to_wall == Equal,
         };
-        let plane = |at, part| End { at, part, on_rim };
+        let plane = |at, part| End {
+            at,
+            part,
+            on_rim,
+            touches: false,
+        };
         let ends = [plane(At::Plane0, Part::Cap0), plane(At::Plane1, Part::Cap1)];
         let lies_on = on_rim.then_some(Part::Side);
         Some(Some(self.in_order(ends, lies_on)?))
@@ -177,7 +189,7 @@ impl<N: Number> Case<'_, N> {
 
     /// The disc that is met first, going along the axis.
     fn in_order(&self, [cap0, cap1]: [End; 2], lies_on: Option<Part>) -> Certain<Ends> {
-        let (enter, leave) = match self.terms.yd.sign()? {
+        let (enter, leave) = match self.yd.sign()? {
             Greater => (cap0, cap1),
             _ => (cap1, cap0),
         };
@@ -190,7 +202,7 @@ impl<N: Number> Case<'_, N> {
 
     /// A line across the axis.
     fn perpendicular_ends(&self) -> Certain<Option<Ends>> {
-        let (ya, beyond) = (&self.terms.ya, self.terms.ya.minus(&self.terms.aa));
+        let (ya, beyond) = (&self.ya, self.ya.minus(&self.aa));
         let disc = match (ya.sign()?, beyond.sign()?) {
             (Less, _) | (_, Greater) => return Some(None),
             (Equal, _) => Some(Part::Cap0),
@@ -201,6 +213,7 @@ impl<N: Number> Case<'_, N> {
             at,
             part: disc.unwrap_or(Part::Side),
             on_rim: disc.is_some(),
+            touches: false,
         };
         Some(Some(Ends {
             enter: end(At::FirstRoot),
@@ -213,7 +226,7 @@ impl<N: Number> Case<'_, N> {
     fn oblique_ends(&self) -> Certain<Option<Ends>> {
         let Terms {
             nn, mn, aa, ya, yd, ..
-        } = &self.terms;
+        } = self;
         // y |n|² = p0 ∓ yd √s, and from the other disc p1 ∓ yd √s.
         let p0 = ya.times(nn).minus(&mn.times(yd));
         let p1 = p0.minus(&aa.times(nn));
@@ -222,16 +235,16 @@ impl<N: Number> Case<'_, N> {
         // outside of the solid) and to the one that is met last.
         let to_first = |root| {
             if forward {
-                self.terms.at_root(&p0, yd, root)
+                self.at_root(&p0, yd, root)
             } else {
-                Some(self.terms.at_root(&p1, yd, root)?.reverse())
+                Some(self.at_root(&p1, yd, root)?.reverse())
             }
         };
         let to_last = |root| {
             if forward {
-                self.terms.at_root(&p1, yd, root)
+                self.at_root(&p1, yd, root)
             } else {
-                Some(self.terms.at_root(&p0, yd, root)?.reverse())
+                Some(self.at_root(&p0, yd, root)?.reverse())
             }
         };
         let disc0 = (At::Plane0, Part::Cap0);
@@ -243,7 +256,7 @@ impl<N: Number> Case<'_, N> {
         };
         // A root outside of the disc it comes from is cut off by that disc's
         // plane; one on the plane of either disc is on that one's rim.
-        let end = |root, outside: Ordering, (to_near, near), (to_far, far)| {
+        let end = |root, outside: Ordering, (to_near, near), (to_far, far), touches| {
             let (near_plane, near_cap): (At, Part) = near;
             let (_, far_cap): (At, Part) = far;
             let (at, part, on_rim) = if to_near == outside {
@@ -255,7 +268,12 @@ impl<N: Number> Case<'_, N> {
             } else {
                 (root, Part::Side, false)
             };
-            End { at, part, on_rim }
+            End {
+                at,
+                part,
+                on_rim,
+                touches: touches && to_near == outside,
+            }
         };
         let heights = |root| Some((to_first(root)?, to_last(root)?));
         let (enter_first, enter_last) = heights(At::FirstRoot)?;
@@ -269,17 +287,27 @@ impl<N: Number> Case<'_, N> {
                 Less,
                 (enter_first, first_disc),
                 (enter_last, last_disc),
+                leave_first == Equal,
             ),
             leave: end(
                 At::SecondRoot,
                 Greater,
                 (leave_last, last_disc),
                 (leave_first, first_disc),
+                enter_last == Equal,
             ),
             lies_on: None,
         }))
     }
+}
 
+struct Case<'a, N> {
+    terms: Terms<N>,
+    caps: Caps,
+    ray: &'a Ray,
+}
+
+impl<N: Number> Case<'_, N> {
     /// How the parameter of an end compares with a limit of the range.
     fn compare(&self, at: At, limit: f64) -> Certain<Ordering> {
         if limit.is_infinite() {

@@ -26,12 +26,15 @@ mod root;
 
 use std::cmp::Ordering;
 
-use super::{Cylinder, Part};
+use glam::DVec3;
+
+use super::way::Way;
+use super::{Chord, ChordEnd, Cylinder, Part};
 use crate::math::Ray;
 use crate::solid::Crossing;
 pub(super) use big::{Big, ratio, unit};
 use bounded::Bounded;
-use decide::At;
+use decide::{At, End, Terms};
 pub(super) use expression::{Expression, cross, difference, dot, quotient, sign, vector};
 pub use root::Target;
 
@@ -114,6 +117,33 @@ fn first_uncertified(cylinder: Cylinder, ray: Ray) -> (Option<ExactHit>, Stage) 
         }
     });
     (hit, stage)
+}
+
+/// The interval in which the line `p0 + x + t direction` is inside the closed solid, or
+/// `None` where it is not: which parts its ends are on is exact, and its `t` are the
+/// nearest numbers. A non-finite argument is a miss.
+///
+/// It is for the rare line about which rounded numbers do not suffice: it takes some
+/// hundred times as long as the triple-product solver.
+pub(super) fn chord(cylinder: &Cylinder, x: &impl Way, direction: DVec3) -> Option<Chord> {
+    if !(x.rounded().is_finite() && direction.is_finite()) {
+        return None;
+    }
+    let bounded = Terms::<Bounded>::new(cylinder, x, direction).ends();
+    let ends = bounded.unwrap_or_else(|| {
+        let ends = Terms::<Big>::new(cylinder, x, direction).ends();
+        ends.expect("signs of numbers of any length are certain")
+    })?;
+    let end = |end: End| ChordEnd {
+        t: root::rounded_on_line(cylinder, x, direction, end.at),
+        part: end.part,
+        on_rim: end.on_rim | end.touches,
+    };
+    Some(Chord {
+        enter: end(ends.enter),
+        leave: end(ends.leave),
+        lies_on: ends.lies_on,
+    })
 }
 
 /// The f32 or f64 nearest to the true parameter of a hit of this cylinder and

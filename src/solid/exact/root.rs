@@ -10,11 +10,14 @@
 
 use std::cmp::Ordering;
 
+use glam::DVec3;
+
 use super::big::Big;
 use super::bounded::Bounded;
 use super::decide::{At, Terms};
 use super::{Cylinder, Number, Ray};
 use crate::math::{DoubleDouble, Real, UNIT_ROUNDOFF, power_of_two};
+use crate::solid::way::{Between, Way};
 
 /// The bound of a double-double root or quotient, relative to its size.
 const STEP_ERROR: f64 = power_of_two(-100);
@@ -88,9 +91,23 @@ pub(super) fn rounded<S: Target>(cylinder: Cylinder, ray: Ray, at: At) -> S {
     if at == At::Start {
         return S::from_f64(ray.t_min);
     }
-    let terms = Terms::<Bounded>::new(&cylinder, &ray);
+    let x = Between {
+        from: cylinder.p0(),
+        to: ray.origin,
+    };
+    rounded_on_line(&cylinder, &x, ray.direction, at)
+}
+
+/// The same of a point other than the start of the range.
+pub(super) fn rounded_on_line<S: Target>(
+    cylinder: &Cylinder,
+    x: &impl Way,
+    direction: DVec3,
+    at: At,
+) -> S {
+    let terms = Terms::<Bounded>::new(cylinder, x, direction);
     in_double_double(&terms, at)
-        .unwrap_or_else(|| in_long_numbers(&Terms::new(&cylinder, &ray), at))
+        .unwrap_or_else(|| in_long_numbers(&Terms::new(cylinder, x, direction), at))
 }
 
 /// The numerator and denominator of the parameter, the root left to `root`.

@@ -6,10 +6,13 @@ mod surface;
 use glam::DVec3;
 
 use super::cone::Ends;
-use super::cone::wall::{Fit, Measures};
+use super::cone::wall::{Fit, Measures, Taper};
 use super::exact::{self, Expression, Number, difference, dot};
 use super::passing::Line;
-use super::{Chord, ConeError, ConvexSolid, Location, Part, SolidKind, SurfacePoint, ball};
+use super::way::{Between, Way};
+use super::{
+    Chord, ConeError, ConvexSolid, Location, Part, RayOrigin, SolidKind, SurfacePoint, ball,
+};
 use crate::math::Bounds;
 
 /// The surface of the convex hull of two balls: two centres and a radius each,
@@ -66,6 +69,31 @@ impl RoundedCone {
         self.ends.radius1
     }
 
+    /// The chord of a line as seen from both ends.
+    fn chord_of<A: Way>(
+        &self,
+        taper: &Taper<A>,
+        from_p0: impl Way,
+        from_p1: impl Way,
+        direction: DVec3,
+    ) -> Option<Chord> {
+        if self.is_passed([from_p0.rounded(), from_p1.rounded()], direction) {
+            return None;
+        }
+        solver::chord(taper, from_p0, from_p1, direction)
+    }
+
+    #[inline(always)]
+    fn is_passed(&self, [from_p0, from_p1]: [DVec3; 2], direction: DVec3) -> bool {
+        let Ends {
+            radius0, radius1, ..
+        } = self.ends;
+        let [from_p0, from_p1] = [from_p0, from_p1].map(|x| Line::new(x, direction));
+        from_p0.passes_ball(radius0)
+            & from_p1.passes_ball(radius1)
+            & from_p0.passes_wall(&self.ends.taper(Fit::Balls))
+    }
+
     /// Whether a point of the boundary is on the surface of a part, exactly: a seam is on
     /// that of its sphere and of the wall. Neither ball contains the other.
     pub(super) fn is_on(&self, part: Part, point: DVec3) -> bool {
@@ -107,22 +135,24 @@ impl ConvexSolid for RoundedCone {
     }
 
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
-        if self.passes_by(from_anchor, direction) {
-            return None;
-        }
-        solver::chord(self, from_anchor, direction)
+        let taper = self.ends.taper(Fit::Balls);
+        let from_p1 = Between {
+            from: taper.a,
+            to: from_anchor,
+        };
+        self.chord_of(&taper, from_anchor, from_p1, direction)
+    }
+
+    fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
+        let taper = self.ends.exact_taper(Fit::Balls);
+        let [from_p0, from_p1] = [self.p0(), self.p1()].map(|end| origin.way_from(end));
+        self.chord_of(&taper, from_p0, from_p1, direction)
     }
 
     #[inline(always)]
     fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
-        let Ends {
-            radius0, radius1, ..
-        } = self.ends;
-        let from_p0 = Line::new(from_anchor, direction);
-        let from_p1 = Line::new(from_anchor - self.ends.axis(), direction);
-        from_p0.passes_ball(radius0)
-            & from_p1.passes_ball(radius1)
-            & from_p0.passes_wall(&self.ends.taper(Fit::Balls))
+        let from_p1 = from_anchor - self.ends.axis();
+        self.is_passed([from_anchor, from_p1], direction)
     }
 
     fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {

@@ -23,23 +23,26 @@ use crate::solid::chord::{Chord, ChordEnd};
 use crate::solid::cone::heights::{End, Heights, Root};
 use crate::solid::cone::solver::along;
 use crate::solid::cone::wall::{Fit, Meets, Taper};
+use crate::solid::way::Way;
 use crate::solid::{Part, ball};
 
-/// The interval in which the line `p0 + x + t d` is inside the hull.
-pub(super) fn chord(solid: &RoundedCone, x: DVec3, d: DVec3) -> Option<Chord> {
-    let a = solid.ends.axis();
-    let ball0 = || ball::chord(x, d, solid.ends.radius0, Part::Cap0);
-    let ball1 = || ball::chord_about(a, x, d, solid.ends.radius1, Part::Cap1);
-    let Some(taper) = solid.taper() else {
-        return if solid.ends.radius0 >= solid.ends.radius1 {
-            ball0()
-        } else {
-            ball1()
-        };
-    };
+/// The interval in which the line `p0 + x + t d` is inside the hull; `from_p1` is its origin as
+/// seen from the other end.
+pub(super) fn chord<A: Way>(
+    taper: &Taper<A>,
+    x: impl Way,
+    from_p1: impl Way,
+    d: DVec3,
+) -> Option<Chord> {
+    let (radius0, radius1) = (taper.radius0, taper.radius1);
+    let ball0 = || ball::chord(x, d, radius0, Part::Cap0);
+    let ball1 = || ball::chord(from_p1, d, radius1, Part::Cap1);
+    if !(taper.beta() > 0.0) {
+        return if radius0 >= radius1 { ball0() } else { ball1() };
+    }
     let [mut enter, mut leave] = [None, None];
     if let Some(meets) = taper.meets(x, d) {
-        let heights = Heights::new(&taper, x, d);
+        let heights = Heights::new(taper, x, d);
         let inside = match meets {
             Meets::Along => return Some(along(&heights, Part::Side)),
             Meets::Inside(inside) => inside,
@@ -81,7 +84,7 @@ fn first(
 }
 
 /// The end that a root of the wall is, if it is between the seams.
-fn between_seams(heights: &Heights, root: Root, t: f64) -> Option<ChordEnd> {
+fn between_seams(heights: &Heights<impl Way, impl Way>, root: Root, t: f64) -> Option<ChordEnd> {
     let is_between = if heights.slope == 0.0 {
         heights.above[0] > 0.0 && heights.above[1] < 0.0
     } else {
