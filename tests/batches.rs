@@ -124,13 +124,19 @@ fn bits(hit: Option<&Hit>) -> Vec<u64> {
     numbers.chain(names).collect()
 }
 
-/// A tracer for each way to trace, with a name.
-fn tracers(scene: &Arc<Scene>) -> Vec<(String, Tracer)> {
+/// A tracer for each way to trace, with a name. Exact decisions are tried with one set
+/// of instructions: they take rays one by one.
+fn tracers(scene: &Arc<Scene>, exact: bool) -> Vec<(String, Tracer)> {
     let named = |options: Options| {
         let tracer = Tracer::new(Arc::clone(scene), &options).unwrap();
         (format!("{options:?}"), tracer)
     };
-    ways_to_trace().into_iter().map(named).collect()
+    let mut ways = ways_to_trace();
+    if exact {
+        ways.drain(..ways.len() - 4);
+    }
+    let ways = ways.into_iter().map(|way| Options { exact, ..way });
+    ways.map(named).collect()
 }
 
 /// Traces bundles in every way and compares the answers with those of every
@@ -140,13 +146,22 @@ fn assert_same_answers(
     scene: &Arc<Scene>,
     bundle_of: impl Fn(&mut Random) -> Vec<Ray> + Sync,
 ) {
-    let tracers = tracers(scene);
+    for exact in [false, true] {
+        assert_same_answers_of(name, &tracers(scene, exact), &bundle_of);
+    }
+}
+
+fn assert_same_answers_of(
+    name: &str,
+    tracers: &[(String, Tracer)],
+    bundle_of: impl Fn(&mut Random) -> Vec<Ray> + Sync,
+) {
     let (_, witness) = &tracers[0];
     let counted = (0..bundle_count()).into_par_iter().map(|number| {
         let rays = bundle_of(&mut Random::new(SEED, 1000 + number));
         let truth = rays.iter().map(|ray| witness.closest_exhaustive(ray));
         let truth: Vec<Option<Hit>> = truth.collect();
-        for (way, tracer) in &tracers {
+        for (way, tracer) in tracers {
             let replay = |ray: usize| {
                 let bits = support::bits(&rays[ray]);
                 format!("{name}, {way}, seed {SEED}, bundle {number}, ray {ray}: {bits}")
@@ -317,7 +332,7 @@ fn bundles_at_coinciding_solids() {
 
     // The least number of each cylinder's copies, worked out without a tracer.
     let same = |one: &CylinderRecord, other: &CylinderRecord| one.cylinder() == other.cylinder();
-    for (way, tracer) in tracers(&scene) {
+    for (way, tracer) in tracers(&scene, false) {
         for number in 0..50 {
             let rays = aim(&mut Random::new(SEED, number));
             let mut hits = Vec::new();

@@ -25,6 +25,8 @@ pub struct DrawnScene {
     pub scene: Arc<Scene>,
     /// The instruction set to trace with.
     pub max_isa: Option<MaxIsa>,
+    /// Whether hits are decided exactly.
+    pub is_exact: bool,
     /// Rays in bundles of those that may be traced together.
     pub rays: Vec<Ray>,
     /// Points that may be in solids.
@@ -70,8 +72,12 @@ impl DrawnScene {
             add_bundle(&mut drawing, &mut rays)?;
         }
         let points = (0..4).map(|_| drawing.old_point());
+        let points = points.collect::<Result<_>>()?;
+        // Last, and optional, so that committed inputs stay what they were.
+        let is_exact = drawing.one_in(3).unwrap_or(false);
         Ok(Self {
-            points: points.collect::<Result<_>>()?,
+            points,
+            is_exact,
             scene,
             max_isa,
             rays,

@@ -31,6 +31,7 @@ pub fn check(drawn: &DrawnScene) {
             max_isa: drawn.max_isa,
             layout,
             build,
+            exact: drawn.is_exact,
             view: None,
         };
         // Placements that flatten or stretch too much are refused.

@@ -102,6 +102,8 @@ pub struct RenderArguments {
     #[command(flatten)]
     pub memory: MemoryArguments,
     #[command(flatten)]
+    pub decisions: DecisionArguments,
+    #[command(flatten)]
     pub common: Common,
 }
 
@@ -126,7 +128,18 @@ pub struct TraceArguments {
     #[command(flatten)]
     pub memory: MemoryArguments,
     #[command(flatten)]
+    pub decisions: DecisionArguments,
+    #[command(flatten)]
     pub common: Common,
+}
+
+/// How hits are decided.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct DecisionArguments {
+    /// Decide hits, misses and parts of cylinders as exact arithmetic does for any f64
+    /// ray, which takes longer: cylinders that share their ends leave no seam
+    #[arg(long)]
+    pub exact: bool,
 }
 
 /// What is asked about.
@@ -302,6 +315,8 @@ pub struct CheckArguments {
     /// them, or CLASS:INDEX
     #[arg(long, value_name = "BITS", conflicts_with_all = ["hits", "mesh", "report"])]
     pub replay: Option<Replay>,
+    #[command(flatten)]
+    pub decisions: DecisionArguments,
     #[command(flatten)]
     pub common: Common,
 }

@@ -51,9 +51,10 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let options = Options {
         view: settings.view(&scene),
         layout: arguments.memory.layout.into(),
+        exact: arguments.decisions.exact,
         ..Options::default()
     };
-    let tracer = scene::build_with(common, &scene, options)?;
+    let tracer = scene::build(common, &scene, options)?;
     let build = start.elapsed().as_secs_f64();
 
     let cancelled = interrupt::end_in_order();

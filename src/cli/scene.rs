@@ -52,13 +52,8 @@ fn within(
     Ok(scene)
 }
 
-/// Makes ready what is traced.
-pub fn build(common: &Common, scene: &Arc<Scene>) -> anyhow::Result<Tracer> {
-    build_with(common, scene, Options::default())
-}
-
 /// Makes ready what is traced, with options that are the command's own.
-pub fn build_with(common: &Common, scene: &Arc<Scene>, options: Options) -> anyhow::Result<Tracer> {
+pub fn build(common: &Common, scene: &Arc<Scene>, options: Options) -> anyhow::Result<Tracer> {
     let spinner = progress::spinner(common, "building the scene");
     let options = Options {
         threads: common.threads,

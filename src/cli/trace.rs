@@ -194,11 +194,12 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         let scene = Arc::new(scene::load(common, file, Need::Build, limit)?);
         let load = (read + start.elapsed()).as_secs_f64();
         let start = Instant::now();
-        let tracer = scene::build_with(
+        let tracer = scene::build(
             common,
             &scene,
             Options {
                 layout: arguments.memory.layout.into(),
+                exact: arguments.decisions.exact,
                 ..Options::default()
             },
         )?;

@@ -7,7 +7,9 @@ use super::family::StressFamily;
 use crate::cases::Case;
 use crate::math::Ray;
 use crate::solid::formulations::{self, Answer, Formulation, Precision, Problem};
-use crate::solid::{AnySolid, ConvexSolid, Meeting, Part, SolidKind, SpawnMargin, SurfacePoint};
+use crate::solid::{
+    AnySolid, ConvexSolid, Meeting, Part, RayOrigin, SolidKind, SpawnMargin, SurfacePoint,
+};
 
 /// Someone who answers cases of one kind of solid.
 pub enum Contender {
@@ -15,6 +17,8 @@ pub enum Contender {
     Formulation(Box<dyn Formulation>),
     /// The library's solver of another kind.
     Solver(SolidKind),
+    /// The library's solver with exact decisions, of any kind.
+    ExactSolver(SolidKind),
     /// The library's solver of set operations, which `composed.rs` judges.
     Composition,
 }
@@ -33,6 +37,8 @@ impl Contender {
         let formulations = formulations::all().into_iter().map(Self::Formulation);
         formulations
             .chain(solvers.map(Self::Solver))
+            .chain([Self::ExactSolver(SolidKind::Cylinder)])
+            .chain(solvers.map(Self::ExactSolver))
             .chain([Self::Composition])
             .collect()
     }
@@ -43,6 +49,7 @@ impl Contender {
         match self {
             Self::Formulation(formulation) => formulation.name(),
             Self::Solver(kind) => kind.name(),
+            Self::ExactSolver(kind) => exact_name(*kind),
             Self::Composition => "set_operations",
         }
     }
@@ -52,7 +59,7 @@ impl Contender {
     pub fn precision(&self) -> Precision {
         match self {
             Self::Formulation(formulation) => formulation.precision(),
-            Self::Solver(_) | Self::Composition => Precision::F64,
+            Self::Solver(_) | Self::ExactSolver(_) | Self::Composition => Precision::F64,
         }
     }
 
@@ -61,7 +68,7 @@ impl Contender {
     pub fn kind(&self) -> Option<SolidKind> {
         match self {
             Self::Formulation(_) => Some(SolidKind::Cylinder),
-            Self::Solver(kind) => Some(*kind),
+            Self::Solver(kind) | Self::ExactSolver(kind) => Some(*kind),
             Self::Composition => None,
         }
     }
@@ -88,7 +95,7 @@ impl Contender {
             Self::Formulation(formulation) => {
                 formulation.precision() == Precision::F64 && own.contains(&formulation.name())
             }
-            Self::Solver(_) | Self::Composition => true,
+            Self::Solver(_) | Self::ExactSolver(_) | Self::Composition => true,
         }
     }
 
@@ -112,23 +119,51 @@ impl Contender {
                 formulation.answers(&problems)
             }
             Self::Solver(_) => cases.iter().map(first_answer).collect(),
+            Self::ExactSolver(_) => cases.iter().map(exact_answer).collect(),
             Self::Composition => unreachable!("set operations were given single solids"),
         }
     }
 }
 
+/// The name of the solver of a kind with exact decisions.
+fn exact_name(kind: SolidKind) -> &'static str {
+    match kind {
+        SolidKind::Cylinder => "exact_cylinder",
+        SolidKind::Cone => "exact_cone",
+        SolidKind::RoundedCone => "exact_rounded_cone",
+        SolidKind::Sphere => "exact_sphere",
+        SolidKind::Cuboid => "exact_cuboid",
+        SolidKind::Disk => "exact_disk",
+        SolidKind::Union | SolidKind::Intersection | SolidKind::Difference => {
+            unreachable!("set operations have one solver")
+        }
+    }
+}
+
 fn first_answer(case: &Case) -> Option<Answer> {
+    let first = solver(&case.solid).first(&case.ray)?;
+    Some(answer_of(case, &first))
+}
+
+fn exact_answer(case: &Case) -> Option<Answer> {
+    let first = solver(&case.solid).exact_first(&case.ray)?;
+    Some(answer_of(case, &first))
+}
+
+fn answer_of(case: &Case, first: &Meeting) -> Answer {
     let (solid, ray) = (solver(&case.solid), &case.ray);
-    let Meeting { t, part, .. } = solid.first(ray)?;
+    let Meeting { t, part, .. } = *first;
     let on_ray = (ray.origin - solid.anchor()) + ray.direction * t;
     let normal = solid.surface_point(part, on_ray).normal;
-    Some(Answer { t, part, normal })
+    Answer { t, part, normal }
 }
 
 /// What is asked of a solid of any kind.
 pub(super) trait Solver {
     /// The first point of a ray on the surface.
     fn first(&self, ray: &Ray) -> Option<Meeting>;
+    /// The same, decided exactly.
+    fn exact_first(&self, ray: &Ray) -> Option<Meeting>;
     /// As [`ConvexSolid::anchor`].
     fn anchor(&self) -> DVec3;
     /// As [`ConvexSolid::surface_point`].
@@ -143,6 +178,11 @@ impl<S: ConvexSolid> Solver for S {
     fn first(&self, ray: &Ray) -> Option<Meeting> {
         let x = ray.origin - ConvexSolid::anchor(self);
         ConvexSolid::first(self, x, ray.direction, 0.0, ray.t_min, ray.t_max)
+    }
+
+    fn exact_first(&self, ray: &Ray) -> Option<Meeting> {
+        let origin = RayOrigin::at(ray.origin);
+        ConvexSolid::exact_first(self, &origin, ray.direction, 0.0, [ray.t_min, ray.t_max])
     }
 
     fn anchor(&self) -> DVec3 {

@@ -54,6 +54,16 @@ const EXACT_ROUNDED: &[&str] = &["exact-rounded"];
 /// The solvers of the solids that are no cylinders, by their kinds.
 const SOLVERS: &[&str] = &["cone", "rounded_cone", "sphere", "cuboid", "disk"];
 
+/// The solvers of all kinds with exact decisions.
+const EXACT_SOLVERS: &[&str] = &[
+    "exact_cylinder",
+    "exact_cone",
+    "exact_rounded_cone",
+    "exact_sphere",
+    "exact_cuboid",
+    "exact_disk",
+];
+
 /// The solver of set operations.
 const SET_OPERATIONS: &[&str] = &["set_operations"];
 
@@ -62,6 +72,7 @@ const DERIVED: &str = "derived, (3) to (6)";
 const MEASURED: &str = "measured, 20 families of 10^6";
 const CERTIFIED: &str = "certified by construction";
 const EXACT_SIGNS: &str = "signs decided exactly, section 8";
+const STATED: &str = "signs decided exactly from the stated numbers, section 8";
 const NEIGHBOURHOOD: &str = "neighbourhoods classified exactly";
 const SPAWN: &str = "derived, section 5";
 
@@ -127,6 +138,13 @@ pub const PROMISES: &[Promise] = &[
     ),
     promise(SOLVERS, Inputs::F64, Claim::Finite, EXACT_SIGNS),
     promise(SOLVERS, Inputs::F64, Claim::NoSelfHit, SPAWN),
+    promise(EXACT_SOLVERS, Inputs::F32, Claim::Right, STATED),
+    promise(EXACT_SOLVERS, Inputs::F32, ROUNDED_TO_F32, STATED),
+    promise(EXACT_SOLVERS, Inputs::F32, Claim::Finite, STATED),
+    promise(EXACT_SOLVERS, Inputs::F32, Claim::NoSelfHit, SPAWN),
+    promise(EXACT_SOLVERS, Inputs::F64, Claim::Right, STATED),
+    promise(EXACT_SOLVERS, Inputs::F64, Claim::Finite, STATED),
+    promise(EXACT_SOLVERS, Inputs::F64, Claim::NoSelfHit, SPAWN),
     promise(SET_OPERATIONS, Inputs::F32, Claim::Right, NEIGHBOURHOOD),
     promise(
         SET_OPERATIONS,

@@ -89,7 +89,8 @@ impl<'a> AllHits<'a> {
     fn search(&mut self) -> Option<()> {
         let (ray, _) = self.ray?;
         let root = self.tracer.root.as_ref()?;
-        let mut query = Query::next(&ray, self.last.take(), self.batch);
+        let decisions = self.tracer.decisions();
+        let mut query = Query::next(&ray, decisions, self.last.take(), self.batch);
         root.search(&LocalRay::new(&ray), &mut query);
         let Keep::Next(next) = query.keep else {
             unreachable!("a query keeps the kind of answer that it began with");

@@ -13,6 +13,7 @@ mod batch;
 mod build;
 mod contains;
 pub mod counters;
+mod decisions;
 mod estimate;
 mod filter;
 mod first_hit;
@@ -49,6 +50,7 @@ use crate::embree::{Device, DeviceOptions, MaxIsa};
 use crate::math::{Bounds, Ray, power_of_two, power_of_two_below};
 use crate::scene::Scene;
 use build::Plan;
+use decisions::Decisions;
 use glam::DVec3;
 use prototype::{Prototype, Workshop};
 use query::{Keep, Place, Query};
@@ -204,7 +206,7 @@ impl Tracer {
         let (Some(root), Some((ray, _))) = (&self.root, self.in_use(ray)) else {
             return (false, 0);
         };
-        let mut query = Query::first(&ray);
+        let mut query = Query::first(&ray, self.decisions());
         let is_blocked = root.occluded(&LocalRay::new(&ray), &mut query);
         (is_blocked, query.callbacks)
     }
@@ -250,6 +252,12 @@ impl Tracer {
         prototypes.map(|prototype| prototype.instances()).sum()
     }
 
+    /// How its queries decide about hits.
+    #[inline(always)]
+    fn decisions(&self) -> Decisions {
+        Decisions::new(self.options.exact)
+    }
+
     /// The scene that was built.
     #[must_use]
     pub fn scene(&self) -> &Arc<Scene> {
@@ -274,7 +282,7 @@ impl Tracer {
         let (Some(root), Some((ray, factor))) = (&self.root, self.in_use(ray)) else {
             return (None, 0);
         };
-        let mut query = Query::first(&ray);
+        let mut query = Query::first(&ray, self.decisions());
         trace(root, &LocalRay::new(&ray), &mut query);
         let first = match query.keep {
             Keep::First(nearest) => nearest.map(|nearest| FirstHit::new(nearest, factor)),
@@ -292,7 +300,8 @@ impl Tracer {
         which: Which,
         fields: HitFields,
     ) -> Hit {
-        let mut hit = resolve::resolve(&self.scene, root, ray, place, which, fields);
+        let search = (self.decisions(), which, fields);
+        let mut hit = resolve::resolve(&self.scene, root, ray, place, search);
         hit.t *= factor;
         hit
     }

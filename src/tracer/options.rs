@@ -6,7 +6,7 @@ use crate::embree::MaxIsa;
 use crate::scene::ViewVolume;
 
 /// How a tracer is built. No choice changes an answer, but for what [`view`](Self::view)
-/// says.
+/// and [`exact`](Self::exact) say.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Threads that Embree builds with; as many as there are cores if `None`.
@@ -17,6 +17,11 @@ pub struct Options {
     pub layout: Layout,
     /// When prototypes are built.
     pub build: BuildTime,
+    /// Whether hits, misses and parts are decided as exact arithmetic on the numbers of a
+    /// prototype's space does, for any f64 numbers, and not only where f32 holds them.
+    /// Then open cylinders that share their ends leave no seam between them. Tracing takes longer
+    /// (`docs/performance.md`). Set operations decide by rounded numbers always.
+    pub exact: bool,
     /// The part of space that all rays will be in, if it is known: placements in
     /// the root that are outside are not built. Other rays then miss them.
     pub view: Option<ViewVolume>,

@@ -24,6 +24,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 use smallvec::SmallVec;
 
+use super::decisions::{Decisions, exact_first};
 use super::frame::LocalRay;
 use super::prototype::Prototype;
 use super::query::Place;
@@ -56,6 +57,7 @@ struct LocalHit {
 struct Search<'a> {
     ray: &'a LocalRay,
     t_min: f64,
+    decisions: Decisions,
     which: Which,
     fields: HitFields,
 }
@@ -74,6 +76,9 @@ impl Search<'_> {
         let (cylinder, ray) = (record.cylinder(), self.ray);
         let from_p0 = ray.origin_from(cylinder.p0());
         let Met { meeting, .. } = self.met(|t| {
+            if self.decisions == Decisions::Exact {
+                return exact_first(&cylinder, ray, self.t_min, t).map(Met::whole);
+            }
             let (direction, shift) = (ray.direction, ray.shift);
             let first = triple_product::first(&cylinder, from_p0, direction, shift, self.t_min, t);
             first.map(Met::whole)
@@ -90,7 +95,7 @@ impl Search<'_> {
     }
 
     fn on_solid<S: TracedSolid>(&self, record: &SolidRecord<S>) -> LocalHit {
-        let met = self.met(|t| record.solid.first(self.ray, self.t_min, t));
+        let met = self.met(|t| (record.solid).first(self.ray, self.decisions, self.t_min, t));
         let surface = record.solid.surface(self.ray, &met);
         LocalHit {
             meeting: met.meeting,
@@ -163,15 +168,14 @@ impl Carried {
     }
 }
 
-/// The answer for a hit of a query with `ray`. Of the fields that [`HitFields`] names, those
+/// The answer for a hit of a query with `ray` that decided so. Of the fields that [`HitFields`] names, those
 /// that are not in `fields` are NaN, and the path is empty.
 pub(crate) fn resolve(
     scene: &Scene,
     root: &Arc<Prototype>,
     ray: &Ray,
     place: &Place,
-    which: Which,
-    fields: HitFields,
+    (decisions, which, fields): (Decisions, Which, HitFields),
 ) -> Hit {
     // Down to the prototype that was hit.
     let mut local = LocalRay::new(ray);
@@ -190,6 +194,7 @@ pub(crate) fn resolve(
     let search = Search {
         ray: &local,
         t_min: ray.t_min,
+        decisions,
         which,
         fields,
     };

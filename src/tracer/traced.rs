@@ -8,14 +8,15 @@
 
 use glam::DVec3;
 
+use super::decisions::Decisions;
 use super::frame::{LocalRay, PacketRays};
 use super::prototype::List;
-use crate::math::{Bounds, LaneMask, LaneVectors, Lanes};
+use crate::math::{Bounds, LANES, LaneMask, LaneVectors, Lanes};
 use crate::scene::Listed;
 use crate::solid::lanes::RayLanes;
 use crate::solid::quick::{self, QuickLanes};
 use crate::solid::{
-    Chord, ComposedMeeting, Composition, ConvexSolid, Meeting, SolidKind, SpawnMargin, SurfacePoint,
+    ComposedMeeting, Composition, ConvexSolid, Meeting, SolidKind, SpawnMargin, SurfacePoint,
 };
 
 /// A meeting with a solid.
@@ -53,6 +54,12 @@ pub(crate) struct RowOfPacket<'a> {
 }
 
 impl RowOfPacket<'_> {
+    /// Whether no ray was moved nearer, so that f64 has their origins.
+    pub fn is_plain(&self) -> bool {
+        let base = &self.rays.base[self.row];
+        (0..LANES).all(|lane| base.lane(lane) == DVec3::ZERO)
+    }
+
     /// The rays as seen from a point.
     #[inline(always)]
     pub fn seen_from(&self, point: DVec3) -> RayLanes {
@@ -82,19 +89,22 @@ pub(crate) trait TracedSolid: Listed + Send + Sync {
     /// [`TracedSolid::first`] has to find.
     #[inline(always)]
     fn quick_first(&self, _rays: &RowOfPacket, active: LaneMask) -> QuickLanes {
-        QuickLanes {
-            open: active,
-            met: LaneMask::splat(false),
-            t: Lanes::splat(0.0),
-        }
+        QuickLanes::all_open(active)
     }
 
     /// The first meeting of the ray with its surface in a range of the whole
     /// ray's `t`.
-    fn first(&self, ray: &LocalRay, t_min: f64, t_max: f64) -> Option<Met>;
+    fn first(&self, ray: &LocalRay, decisions: Decisions, t_min: f64, t_max: f64) -> Option<Met>;
 
     /// Hands on all of them.
-    fn each_meeting(&self, ray: &LocalRay, t_min: f64, t_max: f64, keep: impl FnMut(Met));
+    fn each_meeting(
+        &self,
+        ray: &LocalRay,
+        decisions: Decisions,
+        t_min: f64,
+        t_max: f64,
+        keep: impl FnMut(Met),
+    );
 
     /// The point of the surface where the ray meets it.
     fn surface(&self, ray: &LocalRay, met: &Met) -> SurfacePoint;
@@ -104,12 +114,6 @@ pub(crate) trait TracedSolid: Listed + Send + Sync {
 
     /// Whether the closed solid holds a point.
     fn contains(&self, point: DVec3) -> bool;
-}
-
-/// The interval in which a ray is inside a convex solid.
-#[inline]
-fn chord<S: ConvexSolid>(solid: &S, ray: &LocalRay) -> Option<Chord> {
-    solid.chord(ray.origin_from(solid.anchor()), ray.direction)
 }
 
 impl<S: ConvexSolid + Listed> TracedSolid for S {
@@ -130,14 +134,22 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
     }
 
     #[inline]
-    fn first(&self, ray: &LocalRay, t_min: f64, t_max: f64) -> Option<Met> {
-        chord(self, ray)?
+    fn first(&self, ray: &LocalRay, decisions: Decisions, t_min: f64, t_max: f64) -> Option<Met> {
+        decisions
+            .chord(self, ray)?
             .first(self.caps(), ray.shift, t_min, t_max)
             .map(Met::whole)
     }
 
-    fn each_meeting(&self, ray: &LocalRay, t_min: f64, t_max: f64, keep: impl FnMut(Met)) {
-        if let Some(chord) = chord(self, ray) {
+    fn each_meeting(
+        &self,
+        ray: &LocalRay,
+        decisions: Decisions,
+        t_min: f64,
+        t_max: f64,
+        keep: impl FnMut(Met),
+    ) {
+        if let Some(chord) = decisions.chord(self, ray) {
             let meetings = chord.meetings(self.caps(), ray.shift, t_min, t_max);
             meetings.map(Met::whole).for_each(keep);
         }
@@ -191,13 +203,20 @@ impl TracedSolid for Composition {
         self.bounds()
     }
 
-    fn first(&self, ray: &LocalRay, t_min: f64, t_max: f64) -> Option<Met> {
+    fn first(&self, ray: &LocalRay, _: Decisions, t_min: f64, t_max: f64) -> Option<Met> {
         let from = |anchor| ray.origin_from(anchor);
         self.first(from, ray.direction, ray.shift, [t_min, t_max])
             .map(Met::from)
     }
 
-    fn each_meeting(&self, ray: &LocalRay, t_min: f64, t_max: f64, mut keep: impl FnMut(Met)) {
+    fn each_meeting(
+        &self,
+        ray: &LocalRay,
+        _: Decisions,
+        t_min: f64,
+        t_max: f64,
+        mut keep: impl FnMut(Met),
+    ) {
         let from = |anchor| ray.origin_from(anchor);
         let range = [t_min, t_max];
         self.meetings(from, ray.direction, ray.shift, range, |met| {

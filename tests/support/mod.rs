@@ -38,7 +38,7 @@ pub struct Row {
 }
 
 /// Runs `cyltrace trace` in `folder` and answers with one row a ray.
-pub fn trace(folder: &Path, scene: &str, rays: &[Ray]) -> Vec<Option<Row>> {
+pub fn trace(folder: &Path, scene: &str, rays: &[Ray], options: &[&str]) -> Vec<Option<Row>> {
     let mut table = String::from("ox,oy,oz,dx,dy,dz,t_min,t_max\n");
     for ray in rays {
         let (o, d) = (ray.origin, ray.direction);
@@ -60,6 +60,7 @@ pub fn trace(folder: &Path, scene: &str, rays: &[Ray]) -> Vec<Option<Row>> {
             "hits.csv",
             "--quiet",
         ])
+        .args(options)
         .assert()
         .success();
 

@@ -7,8 +7,8 @@ use clap::{Args, Subcommand};
 use cyltrace::bench::traversal::{Representation, SceneName};
 use cyltrace::scene::{GREATEST_CASES, GREATEST_ROUNDS, GREATEST_TIMED_RAYS};
 
-use super::Common;
 use super::numbers::count_up_to;
+use super::{Common, DecisionArguments};
 use crate::cli::memory;
 
 /// Measure run times and errors
@@ -91,6 +91,8 @@ pub struct TraversalArguments {
     /// Write figures, traversal.csv and index.html to DIR
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub decisions: DecisionArguments,
     #[command(flatten)]
     pub common: Common,
 }

@@ -91,6 +91,7 @@ fn plan(arguments: &TraversalArguments, all_threads: usize) -> anyhow::Result<Pl
         options: Options {
             threads: common.threads,
             max_isa: common.max_isa,
+            exact: arguments.decisions.exact,
             ..Options::default()
         },
     })

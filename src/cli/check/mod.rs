@@ -16,7 +16,7 @@ use cyltrace::embree::DeviceOptions;
 use cyltrace::render::NewFile;
 use cyltrace::report::{Table, figure};
 use cyltrace::scene::Film;
-use cyltrace::tracer::Tracer;
+use cyltrace::tracer::{Options, Tracer};
 
 use super::arguments::{CheckArguments, Rays};
 use super::limit::{Limit, Need};
@@ -84,7 +84,11 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
     files.check_with(&file)?;
     let told = workers.install(|| Told::read(arguments))?;
     let loaded = Arc::new(scene::load(common, file, Need::Build, Limit::available())?);
-    let tracer = scene::build(common, &loaded)?;
+    let options = Options {
+        exact: arguments.decisions.exact,
+        ..Options::default()
+    };
+    let tracer = scene::build(common, &loaded, options)?;
     let settings = settings(arguments);
     if let Some(which) = &arguments.replay {
         return workers.install(|| replay(&tracer, which, &settings));

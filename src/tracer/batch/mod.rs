@@ -100,7 +100,8 @@ impl Tracer {
         alone: impl Fn(&Ray) -> (T, u32),
         together: impl Fn(&Prototype, &mut Usual, &mut Vec<T>),
     ) {
-        let (mut habit, mut usual) = (Habit::default(), Usual::new(self.device.instructions()));
+        let mut habit = Habit::default();
+        let mut usual = Usual::new(self.device.instructions(), self.decisions());
         let mut answer = |rays: &[Ray], is_alike, answers: &mut Vec<T>| match &self.root {
             Some(root)
                 if rays.len() >= LEAST_RAYS

@@ -3,6 +3,7 @@
 use crate::embree::{GREATEST_PACKET, Instructions, RaySet};
 use crate::math::{LANES, Lanes, Ray};
 use crate::tracer::Tracer;
+use crate::tracer::decisions::Decisions;
 use crate::tracer::frame::{LocalRay, PacketRays, ROWS};
 use crate::tracer::query::Packet;
 
@@ -17,10 +18,10 @@ pub(super) struct Usual {
 
 impl Usual {
     /// No rays yet, to be computed with these instructions.
-    pub fn new(instructions: Instructions) -> Self {
+    pub fn new(instructions: Instructions, decisions: Decisions) -> Self {
         Self {
             all: RaySet::EMPTY,
-            packet: Packet::new(instructions),
+            packet: Packet::new(instructions, decisions),
             local: PacketRays::NOWHERE,
             factors: [1.0; GREATEST_PACKET],
         }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::math::{ChildFromParent, Ray, UNIT_ROUNDOFF};
+use crate::solid::RayOrigin;
 
 /// A ray in a prototype's own space.
 ///
@@ -31,6 +32,14 @@ impl LocalRay {
     #[inline(always)]
     pub fn origin_from(&self, point: DVec3) -> DVec3 {
         self.origin - (point - self.base)
+    }
+
+    /// The ray's origin, as exactly as it is known.
+    pub fn start(&self) -> RayOrigin {
+        RayOrigin {
+            base: self.base,
+            offset: self.origin,
+        }
     }
 
     /// The ray in the space of a placed prototype. The direction keeps its

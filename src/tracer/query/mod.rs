@@ -7,6 +7,7 @@
 mod found;
 mod levels;
 mod packet;
+mod row;
 mod single;
 
 pub(crate) use found::{Found, Keep, Member, Nearest, Place};

@@ -8,14 +8,14 @@
 
 use super::found::{InstancePath, Keep, Member, Nearest, Place};
 use super::levels::Levels;
+use super::row;
 use super::single::Query;
 use crate::embree::{GREATEST_PACKET, GeometryId, Instructions, RaySet};
-use crate::math::{ChildFromParent, LANES, LaneMask, LaneVectors, Lanes};
+use crate::math::{ChildFromParent, LANES, LaneMask, Lanes};
 use crate::scene::PrototypeIndex;
-use crate::solid::lanes::{self, CylinderLanes};
-use crate::solid::quick::QuickLanes;
 use crate::solid::{Cylinder, SolidKind};
 use crate::tracer::counters;
+use crate::tracer::decisions::Decisions;
 use crate::tracer::frame::{
     Enter, Frame, IntoChild, IntoInstance, PacketEntry, PacketRays, ROWS, Rows,
 };
@@ -26,6 +26,7 @@ use crate::tracer::traced::{RowOfPacket, TracedSolid};
 pub(crate) struct Packet {
     t_min: Rows<Lanes>,
     t_max: Rows<Lanes>,
+    decisions: Decisions,
     /// The greatest `t` that can still be a first hit.
     bound: Rows<Lanes>,
     nearest: [Option<Nearest>; GREATEST_PACKET],
@@ -47,11 +48,12 @@ pub(crate) struct Packet {
 
 impl Packet {
     /// A packet of no rays, to be computed with these instructions.
-    pub fn new(instructions: Instructions) -> Self {
+    pub fn new(instructions: Instructions, decisions: Decisions) -> Self {
         let nowhere = [Lanes::splat(0.0); ROWS];
         Self {
             t_min: nowhere,
             t_max: nowhere,
+            decisions,
             bound: nowhere,
             nearest: [const { None }; GREATEST_PACKET],
             is_together: true,
@@ -167,7 +169,12 @@ impl Packet {
         let (t_min, t_max) = (lane(&self.t_min, ray), lane(&self.t_max, ray));
         let level = self.levels.next().of_ray(ray);
         let path = std::mem::take(&mut self.path);
-        let mut query = Query::new(t_min, t_max, path, self.nearest[ray].take());
+        let mut query = Query::new(
+            [t_min, t_max],
+            self.decisions,
+            path,
+            self.nearest[ray].take(),
+        );
         let answer = query.within(prototype, level, trace);
         self.callbacks += query.callbacks;
         if let Keep::First(nearest) = query.keep {
@@ -286,6 +293,17 @@ impl Packet {
         RaySet::from_bits(blocked)
     }
 
+    /// A row of the rays, with their ranges up to `t_max`.
+    #[inline(always)]
+    fn row<'a>(&'a self, row: usize, t_max: &'a Lanes) -> RowOfPacket<'a> {
+        RowOfPacket {
+            rays: self.rays(),
+            row,
+            t_min: &self.t_min[row],
+            t_max,
+        }
+    }
+
     /// Where the rays of a row that are `wanted` first meet a solid.
     #[inline(always)]
     fn first_of_solid(
@@ -296,17 +314,8 @@ impl Packet {
         t_max: &Lanes,
     ) -> (LaneMask, Lanes) {
         counters::solved(wanted.count_ones());
-        let in_row = RowOfPacket {
-            rays: self.rays(),
-            row,
-            t_min: &self.t_min[row],
-            t_max,
-        };
-        let QuickLanes { open, met, t } = solid.quick_first(&in_row, LaneMask::from_bits(wanted));
-        if open.any() {
-            return one_by_one(solid, &in_row, open, (met, t));
-        }
-        (met, t)
+        let active = LaneMask::from_bits(wanted);
+        row::first_of_solid(solid, &self.row(row, t_max), active, self.decisions)
     }
 
     /// Where the rays of a row that are `wanted` first meet a cylinder.
@@ -319,19 +328,9 @@ impl Packet {
         t_max: &Lanes,
     ) -> (LaneMask, Lanes) {
         counters::solved(wanted.count_ones());
-        let cylinders = CylinderLanes {
-            axis: LaneVectors::splat(cylinder.p1() - cylinder.p0()),
-            radius: Lanes::splat(cylinder.radius()),
-            caps: E::of_one(cylinder.caps()),
-        };
-        let in_row = RowOfPacket {
-            rays: self.rays(),
-            row,
-            t_min: &self.t_min[row],
-            t_max,
-        }
-        .seen_from(cylinder.p0());
-        lanes::first(&cylinders, &in_row, &LaneMask::from_bits(wanted))
+        let active = LaneMask::from_bits(wanted);
+        let how = (self.decisions, self.instructions);
+        row::first_of_cylinder::<E>(cylinder, &self.row(row, t_max), active, how)
     }
 
     /// Keeps the first hits of the rays of a row that have `met` a solid, where they are
@@ -370,25 +369,6 @@ impl Packet {
         }
         is_first
     }
-}
-
-/// `answers` with those of [`TracedSolid::first`] where `open` is set. A call, for a solver
-/// with its branches gains nothing from being compiled for each instruction set.
-#[inline(never)]
-fn one_by_one(
-    solid: &impl TracedSolid,
-    row: &RowOfPacket,
-    open: LaneMask,
-    (mut met, mut t): (LaneMask, Lanes),
-) -> (LaneMask, Lanes) {
-    for lane in (0..LANES).filter(|&lane| open.0[lane]) {
-        let ray = row.rays.ray(row.row, lane);
-        if let Some(first) = solid.first(&ray, row.t_min.0[lane], row.t_max.0[lane]) {
-            met.0[lane] = true;
-            t.0[lane] = first.meeting.t;
-        }
-    }
-    (met, t)
 }
 
 #[inline(always)]

@@ -10,6 +10,7 @@ use crate::math::Ray;
 use crate::scene::PrototypeIndex;
 use crate::solid::{ConvexSolid, Cylinder, Meeting, SolidKind, triple_product};
 use crate::tracer::counters;
+use crate::tracer::decisions::{Decisions, exact_first};
 use crate::tracer::frame::{Frame, Level, LocalRay};
 use crate::tracer::prototype::{Cylinders, Described, SolidList};
 use crate::tracer::traced::{Met, TracedSolid};
@@ -19,6 +20,7 @@ use crate::tracer::traced::{Met, TracedSolid};
 pub(crate) struct Query {
     t_min: f64,
     t_max: f64,
+    decisions: Decisions,
     /// The ray in the prototype that is being traced.
     level: Option<Level>,
     /// That prototype.
@@ -40,16 +42,22 @@ impl embree::Query for Query {
 
 impl Query {
     /// A query for the first hit, or whether there is any.
-    pub fn first(ray: &Ray) -> Self {
-        Self::new(ray.t_min, ray.t_max, InstancePath::new(), None)
+    pub fn first(ray: &Ray, decisions: Decisions) -> Self {
+        Self::new([ray.t_min, ray.t_max], decisions, InstancePath::new(), None)
     }
 
     /// A query for the first hit in a range, on the way along `path`, where one
     /// is known.
-    pub fn new(t_min: f64, t_max: f64, path: InstancePath, nearest: Option<Nearest>) -> Self {
+    pub fn new(
+        [t_min, t_max]: [f64; 2],
+        decisions: Decisions,
+        path: InstancePath,
+        nearest: Option<Nearest>,
+    ) -> Self {
         Self {
             t_min,
             t_max,
+            decisions,
             level: None,
             prototype: PrototypeIndex::ROOT,
             instance: None,
@@ -61,11 +69,11 @@ impl Query {
     }
 
     /// A query for the next hits after one, at most `most`.
-    pub fn next(ray: &Ray, after: Option<Found>, most: usize) -> Self {
+    pub fn next(ray: &Ray, decisions: Decisions, after: Option<Found>, most: usize) -> Self {
         let hits = BinaryHeap::new();
         Self {
             keep: Keep::Next(Next { after, most, hits }),
-            ..Self::first(ray)
+            ..Self::first(ray, decisions)
         }
     }
 
@@ -74,7 +82,7 @@ impl Query {
     pub fn holding(ray: &Ray) -> Self {
         Self {
             keep: Keep::Holding(Vec::new()),
-            ..Self::first(ray)
+            ..Self::first(ray, Decisions::default())
         }
     }
 
@@ -176,6 +184,9 @@ impl Query {
     fn first_meeting(&self, cylinder: &Cylinder, t_max: f64) -> Option<Meeting> {
         counters::solved(1);
         let ray = self.ray();
+        if self.decisions == Decisions::Exact {
+            return exact_first(cylinder, ray, self.t_min, t_max);
+        }
         let (direction, shift) = (ray.direction, ray.shift);
         let from_p0 = ray.origin_from(cylinder.p0());
         triple_product::first(cylinder, from_p0, direction, shift, self.t_min, t_max)
@@ -211,8 +222,8 @@ impl Query {
             });
         }
         let ray = self.ray();
-        let (from_p0, shift) = (ray.origin_from(cylinder.p0()), ray.shift);
-        let Some(chord) = triple_product::chord(cylinder, from_p0, ray.direction) else {
+        let shift = ray.shift;
+        let Some(chord) = self.decisions.chord(cylinder, ray) else {
             return;
         };
         let (bound, t_min) = (self.bound(), self.t_min);
@@ -229,15 +240,16 @@ impl Query {
         let solid = list.solid(record);
         let member = Member::new(solid.kind(), record);
         let (ray, bound, t_min) = (*self.ray(), self.bound(), self.t_min);
+        let decisions = self.decisions;
         match self.keep {
             Keep::First(_) => {
-                if let Some(met) = solid.first(&ray, t_min, bound) {
+                if let Some(met) = solid.first(&ray, decisions, t_min, bound) {
                     self.offer(met.meeting.t, list.described(), member);
                 }
             }
             Keep::Next(_) => {
                 let offer = self.next_of(list.described(), member);
-                solid.each_meeting(&ray, t_min, bound, offer);
+                solid.each_meeting(&ray, decisions, t_min, bound, offer);
             }
             Keep::Holding(_) => {
                 self.hold(list.described(), member, |point| solid.contains(point));
@@ -267,7 +279,7 @@ impl Query {
     #[inline]
     pub fn meets_solid(&self, solid: &impl TracedSolid) -> bool {
         counters::solved(1);
-        let met = solid.first(self.ray(), self.t_min, self.t_max);
+        let met = solid.first(self.ray(), self.decisions, self.t_min, self.t_max);
         met.is_some()
     }
 
