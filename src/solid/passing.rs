@@ -25,12 +25,13 @@
 //! τ w² > (1 + η) |k|² + ρ |d|² (r0² |a|² + Δ² |x|² + τ |x|² |a|²)
 //! ```
 //!
-//! and, with the sides of the second exchanged, that it meets the disk. `ε²` is the square of a sum of two, so at most twice the sum of their squares, and
-//! for `k` twice that: `2 (12 u)²` and `4 (6 u)²` times what follows `ρ`. With `η` =
-//! 2^-20, `ρ` = 2^-77 is above `(1 + 1/η) · 288 u²`. Lines that pass by within 2^-19 of
-//! the radius, or a 2^-38th of the way to it, are left to the solver.
+//! and, with the sides of the second exchanged, that it meets the disk. `ε²` is the square
+//! of a sum of two, so at most twice the sum of their squares, and for `k` twice that:
+//! `2 (12 u)²` and `4 (6 u)²` times what follows `ρ`. With `η` = 2^-20, `ρ` = 2^-77 is above
+//! `(1 + 1/η) · 288 u²`. Lines that miss by less than 2^-19 of the radius, or a 2^-38th of
+//! the way to it, are left to the solver.
 //!
-//! **Underflow.** Lines are told where `|l|²`, `|P|²` or `w²` is above 2^-400. What
+//! **Underflow.** Lines are rejected where `|l|²`, `|P|²` or `w²` is above 2^-400. What
 //! the sides lose is then too little to matter: for the wall `|x| |a| |d| >= |w|`, so
 //! `|x|² |a|²` is above 2^-602 and `|x|²` above 2^-906, and the last of its terms is
 //! more than 2^-478, where products that lost all add up to less than 2^-870. That needs

@@ -1,10 +1,10 @@
 //! Many rays at a time.
 //!
-//! Rays that go the same way are traced sixteen together, as a packet: Embree
-//! walks its tree once for all of them, and the solver takes eight to a row.
-//! Others enter the root together, in the same rows, but are then traced one by one, for
-//! a packet visits whatever any of its rays has to. Rays that start at many places are first put in an order in which
-//! neighbours have most in common. Answers do not depend on any of it.
+//! Coherent rays are traced sixteen together, as a packet: Embree walks its tree
+//! once for all of them, and the solver takes eight to a row. Others enter the root
+//! together, in the same rows, but are then traced one by one, for a packet visits
+//! whatever any of its rays has to. Rays that start at many places are first put in an
+//! order in which neighbours have most in common. Answers depend on none of this.
 
 mod habit;
 mod order;
