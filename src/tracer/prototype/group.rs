@@ -13,6 +13,7 @@ use super::cylinders::Cylinders;
 use super::described::{Described, SolidList};
 use super::members::{List, Members};
 use super::outline::Outline;
+use super::parts::Parts;
 use super::placements::Placements;
 use super::{Children, Prototype, Workshop, stays_packet};
 use crate::embree::{self, Coherence, GREATEST_PACKET, JointCommit, RaySet, SceneBuilder};
@@ -28,6 +29,7 @@ pub(crate) struct Group {
     /// Contains every point at which a query may place a hit: the box of its members,
     /// and what roundings on the way through placements can add to it.
     pub reach: Bounds,
+    pub parts: Parts,
     pub frame: Frame,
     prototype: PrototypeIndex,
     /// What it contains of the prototype.
@@ -80,6 +82,7 @@ impl Group {
         let described = Described::new(description, index, &outline.frame);
         Self {
             reach: outline.reach,
+            parts: outline.parts,
             cylinders: Cylinders::new(&described, &outline.members),
             frame: outline.frame,
             prototype: index,

@@ -20,6 +20,7 @@ mod instances;
 mod members;
 mod numbers;
 mod outline;
+mod parts;
 mod placements;
 mod sight;
 mod solids;

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::instances::{MOST_INSTANCES, needed_growth};
 use super::members::{Boxes, Members};
 use super::numbers::Numbers;
+use super::parts::Parts;
 use super::sight::Sight;
 use crate::math::Bounds;
 use crate::scene::{Placement, PrototypeIndex, Scene};
@@ -25,6 +26,7 @@ pub(crate) struct Outline {
     pub(super) sight: Sight,
     /// Contains every point at which a query may place a hit.
     pub reach: Bounds,
+    pub(super) parts: Parts,
     pub frame: Frame,
     /// The placements that are instances of Embree's, in ascending order.
     pub instances: Vec<u32>,
@@ -68,7 +70,14 @@ impl Outlines {
         let boxes = Boxes::new(prototype, &boxes_of);
         let groups = boxes.groups().into_iter();
         groups
-            .map(|(members, bounds)| self.of_group(&prototype.placements, members, bounds))
+            .map(|(members, bounds)| {
+                let placements = &prototype.placements;
+                let mut outline = self.of_group(placements, members, bounds);
+                if index != PrototypeIndex::ROOT {
+                    outline.parts = self.parts(&boxes, placements, &outline);
+                }
+                outline
+            })
             .collect()
     }
 
@@ -98,15 +107,7 @@ impl Outlines {
 
     fn of_group(&self, placements: &[Placement], members: Members, bounds: Bounds) -> Outline {
         let lists: Vec<_> = members.placements().collect();
-        let placed = || {
-            lists.par_iter().flat_map(|&(group, numbers)| {
-                numbers.par_iter().filter_map(move |number| {
-                    let placement = &placements[number as usize];
-                    let child = self.of[placement.of.0 as usize].get(group)?;
-                    Some((placement, child))
-                })
-            })
-        };
+        let placed = || self.placed(placements, &lists);
         let sight = Sight::new(&bounds, placed().map(|(placement, _)| placement));
         let reach = placed()
             .map(|(placement, child)| sight.placement_reach(placement, &child.reach))
@@ -117,8 +118,40 @@ impl Outlines {
             bounds,
             sight,
             reach,
+            parts: Parts::default(),
             instances: Vec::new(),
         }
+    }
+
+    /// The placements of a group, each with the group it places.
+    fn placed<'a>(
+        &'a self,
+        placements: &'a [Placement],
+        lists: &'a [(usize, &'a Numbers)],
+    ) -> impl ParallelIterator<Item = (&'a Placement, &'a Outline)> {
+        lists.par_iter().flat_map(move |&(group, numbers)| {
+            numbers.par_iter().filter_map(move |number| {
+                let placement = &placements[number as usize];
+                let child = self.of[placement.of.0 as usize].get(group)?;
+                Some((placement, child))
+            })
+        })
+    }
+
+    /// The parts of a group.
+    fn parts(&self, boxes: &Boxes, placements: &[Placement], outline: &Outline) -> Parts {
+        let solids: Vec<_> = outline.members.solids().collect();
+        let solids = solids.par_iter().flat_map(|&(list, numbers)| {
+            numbers
+                .par_iter()
+                .map(move |number| boxes.entry(list, number))
+        });
+        let lists: Vec<_> = outline.members.placements().collect();
+        let placed = self.placed(placements, &lists).map(|(placement, child)| {
+            let (sight, count) = (&outline.sight, placements.len());
+            sight.tight_reach(placement, &child.reach, &child.parts, count)
+        });
+        Parts::new(&outline.bounds, solids.chain(placed))
     }
 
     /// Chooses the placements of a prototype that are instances of Embree's, and grows the

@@ -132,11 +132,14 @@ impl UserGeometry for Arc<Placements> {
 
     fn bounds(&self, primitive: u32) -> Box32 {
         // Where nothing is placed any box will do; the least is best.
-        let reach = self
-            .get(self.called_back.number(primitive))
-            .map_or(Bounds::at(self.frame.centre()), |(placement, child)| {
-                self.sight.placement_reach(placement, &child.reach)
-            });
+        let reach = self.get(self.called_back.number(primitive)).map_or(
+            Bounds::at(self.frame.centre()),
+            |(placement, child)| {
+                let count = self.placements().len();
+                let (sight, reach) = (&self.sight, &child.reach);
+                sight.tight_reach(placement, reach, &child.parts, count)
+            },
+        );
         self.frame.grown_box(&reach)
     }
 
