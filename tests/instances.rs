@@ -1,6 +1,7 @@
 //! Placements that are Embree's own instances lose nothing and change no answer: small,
 //! large, flat, far, mirrored, turned by right angles, and nested up to five deep, against
-//! trying everything and against the same scene without instances.
+//! trying everything and against the same scene without instances. So do prototypes that are
+//! opened into their parents, since they contain nothing but a few placements.
 //!
 //! `CYLTRACE_RAYS=1000000 cargo test --release --test instances` is the full run; the
 //! default is a tenth of it.
@@ -11,7 +12,7 @@ use std::sync::Arc;
 
 use cyltrace::math::{Random, Ray};
 use cyltrace::scene::{CylinderRecord, Placement, Prototype, Scene};
-use cyltrace::tracer::{Layout, Options, Tracer};
+use cyltrace::tracer::{Hit, Layout, Options, Tracer};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 use support::aim::{carried, farthest_point, ray_at};
@@ -81,6 +82,8 @@ fn placement(random: &mut Random, kind: Kind) -> DAffine3 {
 struct Nest {
     kind: Kind,
     depth: usize,
+    /// Whether prototypes with placements contain nothing else, but for the root.
+    is_bare: bool,
     scene: Arc<Scene>,
     /// The same, with so many placements of nothing that none is an instance.
     without: Arc<Scene>,
@@ -90,8 +93,8 @@ struct Nest {
 
 impl Nest {
     /// `depth` levels of placements, one of them with an unusual one. All prototypes
-    /// contain cylinders too.
-    fn new(kind: Kind, depth: usize) -> Self {
+    /// contain cylinders too, or the root and the innermost alone.
+    fn new(kind: Kind, depth: usize, is_bare: bool) -> Self {
         let mut random = Random::new(SEED, depth as u64 * 16 + kind as u64);
         let unusual = random.below(depth as u64) as usize;
         let cylinders = cylinders_in_a_box(SEED, 24);
@@ -112,7 +115,8 @@ impl Nest {
                 .iter()
                 .flat_map(|outer| placements.iter().map(|one| *outer * one.parent_from_child))
                 .collect();
-            let own = cylinders_in_a_box(SEED + 1 + level as u64, 3);
+            let own = if is_bare && level > 0 { 0 } else { 3 };
+            let own = cylinders_in_a_box(SEED + 1 + level as u64, own);
             prototypes.push(Prototype {
                 cylinders: own.into(),
                 ..placing(placements)
@@ -138,6 +142,7 @@ impl Nest {
         Self {
             kind,
             depth,
+            is_bare,
             scene: scene_of(prototypes),
             without: scene_of(padded),
             images,
@@ -148,7 +153,14 @@ impl Nest {
     fn all() -> impl Iterator<Item = Self> {
         KINDS
             .into_iter()
-            .flat_map(|kind| (1..=5).map(move |depth| Self::new(kind, depth)))
+            .flat_map(|kind| (1..=5).map(move |depth| (kind, depth)))
+            .flat_map(|(kind, depth)| {
+                // With one level there is nothing to open; what is deeper has the same in it.
+                let bare = (2..=3)
+                    .contains(&depth)
+                    .then(|| Self::new(kind, depth, true));
+                std::iter::once(Self::new(kind, depth, false)).chain(bare)
+            })
     }
 
     fn image(&self, random: &mut Random) -> DAffine3 {
@@ -157,7 +169,10 @@ impl Nest {
 
     fn ray(&self, random: &mut Random) -> Ray {
         let image = self.image(random);
-        carried(&image, &ray_at(random, &self.cylinders, 1e4))
+        // From so far, too, that opened prototypes would have moved them nearer.
+        let is_far = self.is_bare && random.below(2) == 0;
+        let reach = if is_far { 1e8 } else { 1e4 };
+        carried(&image, &ray_at(random, &self.cylinders, reach))
     }
 
     /// Rays that go about the same way, so that they are a packet, some of them along
@@ -200,6 +215,19 @@ fn tracer(scene: &Arc<Scene>, options: &Options) -> Tracer {
     Tracer::new(Arc::clone(scene), options).unwrap()
 }
 
+/// The first of all hits at each `t`, against the first hits beyond one another, of everything tried.
+/// A prototype of placements alone has other groups where it is padded, and then
+/// other last bits for rays from afar.
+fn assert_one_by_one(tracer: &Tracer, ray: &Ray, all: &[Hit], case: &str) {
+    let mut rest = *ray;
+    for hits in all.chunk_by(|one, other| one.t == other.t).take(6) {
+        let next = tracer.closest_exhaustive(&rest).expect("one more hit");
+        let key = |hit: &Hit| (hit.t, hit.instance.clone(), hit.primitive);
+        assert_eq!(key(&hits[0]), key(&next), "{case}");
+        rest.t_min = next.t.next_up();
+    }
+}
+
 /// Every way of asking, for a nest and one instruction set.
 fn assert_same(nest: &Nest, options: &Options, rays: u64) -> u64 {
     let (tracer, without) = (tracer(&nest.scene, options), tracer(&nest.without, options));
@@ -207,17 +235,22 @@ fn assert_same(nest: &Nest, options: &Options, rays: u64) -> u64 {
         let mut random = Random::new(SEED, 10_000 + number);
         let ray = nest.ray(&mut random);
         let case = || {
-            let (kind, depth, bits) = (nest.kind, nest.depth, support::bits(&ray));
-            format!("{kind:?}, depth {depth}, {options:?}, seed {SEED}, ray {number}: {bits}")
+            let (kind, depth, bare) = (nest.kind, nest.depth, nest.is_bare);
+            let bits = support::bits(&ray);
+            format!("{kind:?}, depth {depth}, bare {bare}, {options:?}, seed {SEED}, ray {number}: {bits}")
         };
         let truth = tracer.closest_exhaustive(&ray);
         assert_eq!(tracer.closest(&ray), truth, "{}", case());
         assert_eq!(tracer.occluded(&ray), truth.is_some(), "{}", case());
         if number % 4 == 0 {
             let all: Vec<_> = tracer.all_hits(&ray, 4).collect();
-            let expected: Vec<_> = without.all_hits(&ray, 4).collect();
-            assert_eq!(all, expected, "{}", case());
             assert_eq!(all.first(), truth.as_ref(), "{}", case());
+            if nest.is_bare {
+                assert_one_by_one(&tracer, &ray, &all, &case());
+            } else {
+                let expected: Vec<_> = without.all_hits(&ray, 4).collect();
+                assert_eq!(all, expected, "{}", case());
+            }
             let point = nest.point(&mut random);
             let containing = tracer.contains(point);
             assert_eq!(containing, tracer.contains_exhaustive(point), "{}", case());
@@ -267,4 +300,37 @@ fn instances_answer_as_everything_tried_does() {
     assert!(hits * 3 > asked, "only {hits} hits: the test sees nothing");
     // Of 5 scenes of 8 kinds most have one at least.
     assert!(instances > 40, "{instances}");
+}
+
+/// A root with three assemblies in a row, each of so many parts along y.
+fn assemblies(parts: u32) -> Arc<Scene> {
+    let along = |axis: DVec3, count: u32, of: u32| {
+        let each = (0..count)
+            .map(|number| placed(of, DAffine3::from_translation(axis * f64::from(3 * number))));
+        placing(each.collect())
+    };
+    let part = Prototype {
+        cylinders: cylinders_in_a_box(SEED, 20).into(),
+        ..Prototype::default()
+    };
+    scene_of(vec![along(DVec3::X, 3, 1), along(DVec3::Y, parts, 2), part])
+}
+
+/// A prototype of eight placements is opened: the root has instances of all parts, and the first ray
+/// has nothing else to build. One of nine is not.
+#[test]
+fn few_placements_are_opened_into_their_parent() {
+    for (parts, instances) in [(1, 3), (8, 24), (9, 9)] {
+        let scene = assemblies(parts);
+        let tracer = tracer(&scene, &Options::default());
+        let cylinder = scene.prototypes[2].cylinders.get(0).cylinder();
+        let middle = cylinder.p0().lerp(cylinder.p1(), 0.5) + DVec3::X * 6.0;
+        let ray = Ray::new(middle + DVec3::Z * 10.0, DVec3::NEG_Z);
+        let hit = tracer.closest(&ray).expect("a hit");
+        assert_eq!(hit.instance, [2, 0], "{parts} parts");
+        assert_eq!(Some(hit), tracer.closest_exhaustive(&ray), "{parts} parts");
+        let statistics = tracer.statistics();
+        assert_eq!(statistics.embree_instances, instances, "{parts} parts");
+        assert!(statistics.skipped.is_empty(), "{:?}", statistics.skipped);
+    }
 }

@@ -33,7 +33,8 @@
 //! **Instances.** Embree takes [`INSTANCE_BYTES`] for each placement that is an instance
 //! of its own (`prototype::instances`), beside the leaf. Which are is not known from counts alone:
 //! those that are far smaller than what they are placed in are not. So the estimate has all
-//! that could be, at most 1.2 MB a prototype.
+//! that could be, with those in prototypes that are opened (`prototype::opened`): at most 2.5 MB
+//! a prototype.
 //!
 //! **While building**, Embree has one reference of 32 bytes to each primitive of
 //! the scene it builds, in an array whose size is the next power of two. That
@@ -42,7 +43,7 @@
 //! other; the peak is taken to come with the largest, when all others are there.
 
 use super::options::Layout;
-use super::prototype::{MOST_INSTANCES, block_bytes};
+use super::prototype::{MOST_INNER, MOST_INSTANCES, MOST_OUTER, block_bytes};
 use crate::embree::MaxIsa;
 use crate::math::LANES;
 use crate::scene::{Contents, Placement, Records};
@@ -154,17 +155,29 @@ impl MemoryEstimate {
     }
 }
 
-/// How many of a prototype's placements may be instances of Embree's.
+/// How many instances of Embree's there may be in a prototype: its innermost placements, and
+/// all that it places with nothing but a few placements.
 fn instances(prototype: &Contents, all: &[Contents]) -> u64 {
-    if prototype.placements() > MOST_INSTANCES as u64 {
+    let placements = prototype.placements();
+    if placements > MOST_INSTANCES as u64 {
         return 0;
     }
+    let of_one = |child: &Contents| {
+        let within = child.placements();
+        let is_bare = child.cylinders == 0 && child.others.count == 0;
+        let may_be_opened = placements <= MOST_OUTER as u64 && within <= MOST_INNER as u64;
+        match within {
+            0 => 1,
+            within if is_bare && may_be_opened => within,
+            _ => 0,
+        }
+    };
     let placed = prototype.placed.iter();
-    let innermost = placed.filter(|placed| {
-        let child = all.get(placed.of.0 as usize);
-        child.is_some_and(|child| child.placed.is_empty())
+    let instances = placed.filter_map(|placed| {
+        let child = all.get(placed.of.0 as usize)?;
+        Some(placed.count * of_one(child))
     });
-    innermost.map(|placed| placed.count).sum()
+    instances.sum()
 }
 
 /// Whether Embree's nodes have 8 children.

@@ -7,10 +7,11 @@ use smallvec::SmallVec;
 
 use super::members::Members;
 use super::numbers::Numbers;
+use super::opened::{OpenedFrames, Through};
 use super::solids::{Filtered, Solids};
 use crate::embree::{Box32, GREATEST_PACKET, RaySet, prefetch};
 use crate::math::{Bounds, ChildFromParent, LANES};
-use crate::scene::{self, PrototypeIndex, Scene};
+use crate::scene::{self, Placement, PrototypeIndex, Scene};
 use crate::tracer::filter::HasFilter;
 use crate::tracer::frame::Frame;
 use crate::tracer::query::{Member, Packet, Query};
@@ -22,14 +23,21 @@ pub(crate) struct Described {
     scene: Arc<Scene>,
     index: PrototypeIndex,
     frame: Frame,
+    opened_frames: OpenedFrames,
 }
 
 impl Described {
-    pub fn new(scene: &Arc<Scene>, index: PrototypeIndex, frame: &Frame) -> Self {
+    pub fn new(
+        scene: &Arc<Scene>,
+        index: PrototypeIndex,
+        frame: &Frame,
+        opened_frames: &OpenedFrames,
+    ) -> Self {
         Self {
             scene: Arc::clone(scene),
             index,
             frame: frame.clone(),
+            opened_frames: opened_frames.clone(),
         }
     }
 
@@ -58,10 +66,29 @@ impl Described {
         &self.frame
     }
 
-    /// The way into the solids' prototype through a placement in another one.
-    pub fn way_from(&self, parent: PrototypeIndex, placement: u32) -> ChildFromParent {
-        let placements = &self.scene.prototypes[parent.0 as usize].placements;
-        ChildFromParent::new(&placements[placement as usize].parent_from_child)
+    /// Takes a step through each placement on the way into the solids' prototype, which an instance
+    /// in another one leads through: the number of the placement, the way through it, and
+    /// the frame of what it places.
+    #[inline(always)]
+    pub fn along_instance(
+        &self,
+        parent: PrototypeIndex,
+        instance: u32,
+        mut step: impl FnMut(u32, &ChildFromParent, &Frame),
+    ) {
+        let prototypes = &self.scene.prototypes;
+        let way = |placement: &Placement| ChildFromParent::new(&placement.parent_from_child);
+        let placements = &prototypes[parent.0 as usize].placements;
+        let (number, placement) = match Through::of(instance, placements.len()) {
+            Through::One(number) => (number, &placements[number as usize]),
+            Through::Two { outer, inner } => {
+                let placement = &placements[outer as usize];
+                step(outer, &way(placement), self.opened_frames.of(placement.of));
+                let opened = &prototypes[placement.of.0 as usize];
+                (inner, &opened.placements[inner as usize])
+            }
+        };
+        step(number, &way(placement), &self.frame);
     }
 
     /// A box in the frame of the Embree scene.

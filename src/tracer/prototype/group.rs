@@ -6,6 +6,7 @@
 //! it is first needed, which may be when a first ray gets there: threads that need
 //! it then build it together, and others continue.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use super::attach::{attach_cylinders, attach_solids, kept_blocks_bytes};
@@ -13,6 +14,7 @@ use super::cylinders::Cylinders;
 use super::described::{Described, SolidList};
 use super::members::{List, Members};
 use super::outline::Outline;
+use super::parts::Parts;
 use super::placements::Placements;
 use super::{Children, Prototype, Workshop, stays_packet};
 use crate::embree::{self, Coherence, GREATEST_PACKET, JointCommit, RaySet, SceneBuilder};
@@ -28,6 +30,8 @@ pub(crate) struct Group {
     /// Contains every point at which a query may place a hit: the box of its members,
     /// and what roundings on the way through placements can add to it.
     pub reach: Bounds,
+    /// Boxes that together contain its members.
+    pub parts: Parts,
     pub frame: Frame,
     prototype: PrototypeIndex,
     /// What it contains of the prototype.
@@ -37,6 +41,8 @@ pub(crate) struct Group {
     placements: Vec<Arc<Placements>>,
     workshop: Workshop,
     scene: OnceLock<Result<JointCommit<Query>, embree::Error>>,
+    /// Whether what it places is in the scene of a parent.
+    is_opened: AtomicBool,
 }
 
 impl Group {
@@ -63,11 +69,10 @@ impl Group {
                         })
                     })
                 });
-                let (instances, called_back) = outline.divide(in_view.as_ref().unwrap_or(all));
+                let reached = outline.divide(in_view.as_ref().unwrap_or(all));
                 Arc::new(Placements {
                     all: all.clone(),
-                    instances,
-                    called_back,
+                    reached,
                     description: Arc::clone(description),
                     prototype: index,
                     frame: outline.frame.clone(),
@@ -77,9 +82,10 @@ impl Group {
             })
         });
         let placements = placements.collect();
-        let described = Described::new(description, index, &outline.frame);
+        let described = Described::new(description, index, &outline.frame, &outline.opened_frames);
         Self {
             reach: outline.reach,
+            parts: outline.parts,
             cylinders: Cylinders::new(&described, &outline.members),
             frame: outline.frame,
             prototype: index,
@@ -87,13 +93,24 @@ impl Group {
             members: outline.members,
             workshop: workshop.clone(),
             scene: OnceLock::new(),
+            is_opened: AtomicBool::new(false),
         }
     }
 
     /// The placements that rays may reach.
     pub fn placements_in_view(&self) -> impl Iterator<Item = u32> {
         let placements = self.placements.iter();
-        placements.flat_map(|one| one.instances.iter().chain(one.called_back.iter()))
+        placements.flat_map(|one| one.reached.iter())
+    }
+
+    /// The placements, for each group of what they place.
+    pub(super) fn placements(&self) -> &[Arc<Placements>] {
+        &self.placements
+    }
+
+    /// Notes that what it places is in the scene of a parent.
+    pub fn open(&self) {
+        self.is_opened.store(true, Ordering::Relaxed);
     }
 
     /// Builds the Embree scene, unless it is built.
@@ -101,8 +118,13 @@ impl Group {
         self.joined().map(|_| ())
     }
 
-    /// Whether the Embree scene is built or being built.
+    /// Whether the Embree scene is built or being built, or that of a parent with what is
+    /// placed here.
     pub fn is_touched(&self) -> bool {
+        self.is_begun() || self.is_opened.load(Ordering::Relaxed)
+    }
+
+    fn is_begun(&self) -> bool {
         self.scene.get().is_some()
     }
 
@@ -131,9 +153,8 @@ impl Group {
     /// built first, by all threads that come here.
     #[cold]
     fn ready(&self) -> &Result<JointCommit<Query>, embree::Error> {
-        for child in self.placements.iter().flat_map(|one| one.instanced()) {
-            // An error is found again when the instances are made.
-            let _ = child.build();
+        for placements in &self.placements {
+            placements.build_instanced();
         }
         self.scene.get_or_init(|| self.begin())
     }
@@ -155,7 +176,7 @@ impl Group {
             &mut builder,
         )?;
         for placements in &self.placements {
-            if placements.called_back.len() > 0 {
+            if placements.reached.called_back.len() > 0 {
                 builder.attach_user(Arc::clone(placements))?;
             }
         }
@@ -167,7 +188,8 @@ impl Group {
     /// relies on the signs of small components of directions, which the frame chooses but
     /// an instance does not.
     fn coherence(&self) -> Coherence {
-        let has_instances = self.placements.iter().any(|one| one.instances.len() > 0);
+        let mut placements = self.placements.iter();
+        let has_instances = placements.any(|one| one.has_instances());
         if has_instances {
             Coherence::Incoherent
         } else {
@@ -177,14 +199,14 @@ impl Group {
 
     /// How many instances of other scenes the Embree scene has.
     pub fn instances(&self) -> u64 {
-        let placements = self.placements.iter().filter(|_| self.is_touched());
-        placements.map(|one| u64::from(one.instances.len())).sum()
+        let placements = self.placements.iter().filter(|_| self.is_begun());
+        placements.map(|one| one.instance_count()).sum()
     }
 
     /// The bytes that are kept for the members beside the description and
     /// Embree's tree.
     pub fn kept_bytes(&self) -> usize {
-        let blocks = if self.is_touched() {
+        let blocks = if self.is_begun() {
             kept_blocks_bytes(&self.members, self.workshop.layout)
         } else {
             0

@@ -71,6 +71,13 @@ impl Members {
         &self.lists[list.position()]
     }
 
+    /// The lists of solids with at least one number.
+    pub fn solids(&self) -> impl Iterator<Item = (List, &Numbers)> {
+        let lists = self.lists[..KINDS.len()].iter().enumerate();
+        let lists = lists.filter(|(_, numbers)| numbers.len() > 0);
+        lists.map(|(position, numbers)| (List::at(position), numbers))
+    }
+
     /// The lists of placements with at least one number, each with the number of the
     /// child's group.
     pub fn placements(&self) -> impl Iterator<Item = (usize, &Numbers)> {

@@ -2,7 +2,8 @@
 //!
 //! Nearly every prototype is one group: a frame, and an Embree scene with a callback for
 //! each primitive (`group`). Innermost placements are instances of Embree's where that is
-//! proven to lose nothing (`instances`), others are primitives (`placements`). Where one solid is so far away or so large that its
+//! proven to lose nothing (`instances`), others are primitives (`placements`). A prototype of nothing
+//! but a few innermost placements is opened into its parent, which then has the instances (`opened`). Where one solid is so far away or so large that its
 //! box alone would set the frame of all others, there are several (`grouping` has the rule,
 //! `members` what they contain). A ray enters them one after another,
 //! each with the range that the hits so far have left. Which groups there are is known
@@ -19,7 +20,9 @@ mod grouping;
 mod instances;
 mod members;
 mod numbers;
+mod opened;
 mod outline;
+mod parts;
 mod placements;
 mod sight;
 mod solids;
@@ -35,6 +38,7 @@ pub(crate) use ends::Ends;
 pub(crate) use group::Group;
 pub(crate) use instances::MOST_INSTANCES;
 pub(crate) use members::{Boxes, List};
+pub(crate) use opened::{MOST_INNER, MOST_OUTER};
 pub(crate) use outline::{Outline, Outlines};
 
 use super::frame::{LocalRay, PacketRays};

@@ -9,9 +9,11 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::instances::{MOST_INSTANCES, needed_growth};
+use super::instances::{Image, MOST_INSTANCES, needed_growth};
 use super::members::{Boxes, Members};
 use super::numbers::Numbers;
+use super::opened::{MOST_OUTER, OpenedFrames, inner_placements};
+use super::parts::Parts;
 use super::sight::Sight;
 use crate::math::Bounds;
 use crate::scene::{Placement, PrototypeIndex, Scene};
@@ -25,9 +27,15 @@ pub(crate) struct Outline {
     pub(super) sight: Sight,
     /// Contains every point at which a query may place a hit.
     pub reach: Bounds,
+    /// Boxes that together contain the members.
+    pub(super) parts: Parts,
     pub frame: Frame,
     /// The placements that are instances of Embree's, in ascending order.
     pub instances: Vec<u32>,
+    /// Those of prototypes that are opened, likewise.
+    pub opened: Vec<u32>,
+    /// The frames of all opened prototypes of the scene.
+    pub opened_frames: OpenedFrames,
 }
 
 /// The outlines of the groups of each prototype; none of one that contains nothing.
@@ -51,8 +59,14 @@ impl Outlines {
             outlines.boxes[index.0 as usize] = boxes.collect();
             outlines.of[index.0 as usize] = of_one;
         }
+        let mut opened = Vec::new();
         for &index in order {
             outlines.choose_instances(scene, index);
+            opened.extend(outlines.choose_opened(scene, index));
+        }
+        let frames = OpenedFrames::new(opened);
+        for outline in outlines.of.iter_mut().flatten() {
+            outline.opened_frames = frames.clone();
         }
         outlines
     }
@@ -68,7 +82,14 @@ impl Outlines {
         let boxes = Boxes::new(prototype, &boxes_of);
         let groups = boxes.groups().into_iter();
         groups
-            .map(|(members, bounds)| self.of_group(&prototype.placements, members, bounds))
+            .map(|(members, bounds)| {
+                let placements = &prototype.placements;
+                let mut outline = self.of_group(placements, members, bounds);
+                if index != PrototypeIndex::ROOT {
+                    outline.parts = self.parts(&boxes, placements, &outline);
+                }
+                outline
+            })
             .collect()
     }
 
@@ -83,30 +104,46 @@ impl Outlines {
         let first = lists.filter(|&(group, _)| group == 0);
         let numbers = first.flat_map(|(_, numbers)| numbers.iter());
         numbers
-            .filter(|&number| {
-                let of = placements[number as usize].of.0 as usize;
-                self.of[of].len() == 1 && scene.prototypes[of].placements.is_empty()
-            })
+            .filter(|&number| self.is_innermost(scene, placements[number as usize].of))
             .collect()
+    }
+
+    /// Whether a prototype has one group, without placements.
+    fn is_innermost(&self, scene: &Scene, index: PrototypeIndex) -> bool {
+        let index = index.0 as usize;
+        self.of[index].len() == 1 && scene.prototypes[index].placements.is_empty()
     }
 
     /// By how much the boxes of what is placed grow if it is an instance.
     fn needed_growth(&self, placement: &Placement, parent: &Outline) -> Option<f64> {
         let child = self.of[placement.of.0 as usize].first()?;
-        needed_growth(&parent.frame, &parent.sight, placement, &child.frame)
+        let image = Image::new(&parent.sight, placement);
+        needed_growth(&parent.frame, &image, &child.frame)
+    }
+
+    /// By how much the boxes of all that an opened prototype places grow.
+    fn opened_growths(
+        &self,
+        scene: &Scene,
+        outer: &Placement,
+        parent: &Outline,
+    ) -> Option<Vec<(PrototypeIndex, f64)>> {
+        let [opened] = &self.of[outer.of.0 as usize][..] else {
+            return None;
+        };
+        let inner = inner_placements(scene, outer.of, |index| self.is_innermost(scene, index))?;
+        let growths = inner.iter().map(|inner| {
+            let child = self.of[inner.of.0 as usize].first()?;
+            let image = Image::new(&parent.sight, outer).through(&opened.sight, inner);
+            let share = needed_growth(&parent.frame, &image, &child.frame)?;
+            Some((inner.of, share))
+        });
+        growths.collect()
     }
 
     fn of_group(&self, placements: &[Placement], members: Members, bounds: Bounds) -> Outline {
         let lists: Vec<_> = members.placements().collect();
-        let placed = || {
-            lists.par_iter().flat_map(|&(group, numbers)| {
-                numbers.par_iter().filter_map(move |number| {
-                    let placement = &placements[number as usize];
-                    let child = self.of[placement.of.0 as usize].get(group)?;
-                    Some((placement, child))
-                })
-            })
-        };
+        let placed = || self.placed(placements, &lists);
         let sight = Sight::new(&bounds, placed().map(|(placement, _)| placement));
         let reach = placed()
             .map(|(placement, child)| sight.placement_reach(placement, &child.reach))
@@ -117,8 +154,42 @@ impl Outlines {
             bounds,
             sight,
             reach,
+            parts: Parts::default(),
             instances: Vec::new(),
+            opened: Vec::new(),
+            opened_frames: OpenedFrames::default(),
         }
+    }
+
+    /// The placements of a group, each with the group it places.
+    fn placed<'a>(
+        &'a self,
+        placements: &'a [Placement],
+        lists: &'a [(usize, &'a Numbers)],
+    ) -> impl ParallelIterator<Item = (&'a Placement, &'a Outline)> {
+        lists.par_iter().flat_map(move |&(group, numbers)| {
+            numbers.par_iter().filter_map(move |number| {
+                let placement = &placements[number as usize];
+                let child = self.of[placement.of.0 as usize].get(group)?;
+                Some((placement, child))
+            })
+        })
+    }
+
+    /// The parts of a group.
+    fn parts(&self, boxes: &Boxes, placements: &[Placement], outline: &Outline) -> Parts {
+        let solids: Vec<_> = outline.members.solids().collect();
+        let solids = solids.par_iter().flat_map(|&(list, numbers)| {
+            numbers
+                .par_iter()
+                .map(move |number| boxes.entry(list, number))
+        });
+        let lists: Vec<_> = outline.members.placements().collect();
+        let placed = self.placed(placements, &lists).map(|(placement, child)| {
+            let (sight, count) = (&outline.sight, placements.len());
+            sight.tight_reach(placement, &child.reach, &child.parts, count)
+        });
+        Parts::new(&outline.bounds, solids.chain(placed))
     }
 
     /// Chooses the placements of a prototype that are instances of Embree's, and grows the
@@ -143,18 +214,77 @@ impl Outlines {
         }
         self.of[index.0 as usize] = outlines;
     }
+
+    /// Chooses the placements of a prototype that are opened, and grows the boxes of what is
+    /// placed in these. Returns the frames of what is opened.
+    fn choose_opened(
+        &mut self,
+        scene: &Scene,
+        index: PrototypeIndex,
+    ) -> Vec<(PrototypeIndex, Frame)> {
+        let placements = &scene.prototypes[index.0 as usize].placements;
+        let mut frames = Vec::new();
+        if placements.len() > MOST_OUTER {
+            return frames;
+        }
+        let mut outlines = self.take(index);
+        for outline in &mut outlines {
+            let lists = outline.members.placements();
+            let first = lists.filter(|&(group, _)| group == 0);
+            let numbers: Vec<u32> = first.flat_map(|(_, numbers)| numbers.iter()).collect();
+            for number in numbers {
+                let placement = &placements[number as usize];
+                let Some(growths) = self.opened_growths(scene, placement, outline) else {
+                    continue;
+                };
+                outline.opened.push(number);
+                for (child, share) in growths {
+                    self.of[child.0 as usize][0].frame.grow_to(share);
+                }
+                let opened = &self.of[placement.of.0 as usize][0];
+                frames.push((placement.of, opened.frame.clone()));
+            }
+        }
+        self.of[index.0 as usize] = outlines;
+        frames
+    }
+}
+
+/// Numbers of placements by what Embree has of them.
+pub(super) struct Divided {
+    /// Those that are instances.
+    pub instances: Numbers,
+    /// Those of opened prototypes, whose placements are instances.
+    pub opened: Numbers,
+    /// Those that are primitives.
+    pub called_back: Numbers,
+}
+
+impl Divided {
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = u32> {
+        let instances = self.instances.iter().chain(self.opened.iter());
+        instances.chain(self.called_back.iter())
+    }
 }
 
 impl Outline {
-    /// Of some of the placements, those that are instances and the others.
-    pub fn divide(&self, numbers: &Numbers) -> (Numbers, Numbers) {
-        if self.instances.is_empty() {
-            return (Numbers::These(Arc::new([])), numbers.clone());
+    /// Divides some of the placements.
+    pub(super) fn divide(&self, numbers: &Numbers) -> Divided {
+        if self.instances.is_empty() && self.opened.is_empty() {
+            let none = Numbers::These(Arc::new([]));
+            return Divided {
+                instances: none.clone(),
+                opened: none,
+                called_back: numbers.clone(),
+            };
         }
         let is_instance = |number: u32| self.instances.binary_search(&number).is_ok();
-        (
-            numbers.filtered(is_instance),
-            numbers.filtered(|number| !is_instance(number)),
-        )
+        let is_opened = |number: u32| self.opened.binary_search(&number).is_ok();
+        Divided {
+            instances: numbers.filtered(is_instance),
+            opened: numbers.filtered(is_opened),
+            called_back: numbers.filtered(|number| !is_instance(number) && !is_opened(number)),
+        }
     }
 }

@@ -3,8 +3,10 @@
 
 use std::sync::Arc;
 
-use super::instances::instance_map;
+use super::instances::{Image, instance_map};
 use super::numbers::Numbers;
+use super::opened::Through;
+use super::outline::Divided;
 use super::sight::Sight;
 use super::{Children, Group};
 use crate::embree::{
@@ -32,20 +34,13 @@ pub(super) struct Placements {
     pub children: Children<Group>,
     /// The numbers of the placements.
     pub all: Numbers,
-    /// The numbers of those that rays may reach: the ones that are Embree's instances,
-    /// and the ones that are primitives.
-    pub instances: Numbers,
-    pub called_back: Numbers,
+    /// The numbers of those that rays may reach.
+    pub reached: Divided,
 }
 
 impl Placements {
     fn placements(&self) -> &[Placement] {
         &self.description.prototypes[self.prototype.0 as usize].placements
-    }
-
-    /// What a placement places.
-    fn of(&self, index: u32) -> PrototypeIndex {
-        self.placements()[index as usize].of
     }
 
     /// A placement and the group it places, if there is anything.
@@ -55,30 +50,76 @@ impl Placements {
         Some((placement, self.children.of(placement.of)?))
     }
 
-    /// The groups that there are instances of. They are built before the scene that the
-    /// instances are in.
-    pub fn instanced(&self) -> Vec<&Arc<Group>> {
-        let mut indices: Vec<_> = self
-            .instances
-            .iter()
-            .map(|number| self.of(number))
-            .collect();
-        indices.sort_unstable();
-        indices.dedup();
-        let groups = indices.into_iter();
-        groups.filter_map(|index| self.children.of(index)).collect()
-    }
-
-    /// Adds the instances, whose numbers are those of the placements.
-    pub fn attach_instances(&self, builder: &mut SceneBuilder<Query>) -> Result<(), embree::Error> {
-        for number in self.instances.iter() {
-            let Some((placement, child)) = self.get(number) else {
+    /// The instances: what each leads through, its map, and the group in it.
+    fn each_instance<E>(
+        &self,
+        mut each: impl FnMut(Through, &Image, &Arc<Group>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        for number in self.reached.instances.iter() {
+            if let Some((placement, child)) = self.get(number) {
+                let image = Image::new(&self.sight, placement);
+                each(Through::One(number), &image, child)?;
+            }
+        }
+        for outer in self.reached.opened.iter() {
+            let Some((placement, opened)) = self.get(outer) else {
                 continue;
             };
-            let map = instance_map(&self.frame, placement, &child.frame);
-            builder.attach_instance_as(GeometryId(number), child.joined()?, &map)?;
+            for within in opened.placements() {
+                for inner in within.all.iter() {
+                    let Some((placed, child)) = within.get(inner) else {
+                        continue;
+                    };
+                    let image = Image::new(&self.sight, placement).through(&within.sight, placed);
+                    each(Through::Two { outer, inner }, &image, child)?;
+                }
+            }
         }
         Ok(())
+    }
+
+    /// Builds the groups that there are instances of, which has to be done before the scene that the
+    /// instances are in.
+    pub fn build_instanced(&self) {
+        let mut last: Option<*const Group> = None;
+        let built = self.each_instance(|_, _, child| {
+            if last.replace(Arc::as_ptr(child)) == Some(Arc::as_ptr(child)) {
+                return Ok(());
+            }
+            child.build()
+        });
+        // An error is found again when the instances are made.
+        let _ = built;
+    }
+
+    /// Whether there are instances.
+    pub fn has_instances(&self) -> bool {
+        self.reached.instances.len() + self.reached.opened.len() > 0
+    }
+
+    /// How many instances there are.
+    pub fn instance_count(&self) -> u64 {
+        let mut count = 0;
+        let counted = self.each_instance(|_, _, _| {
+            count += 1;
+            Ok::<_, std::convert::Infallible>(())
+        });
+        counted.map_or(0, |()| count)
+    }
+
+    /// Adds the instances, under the numbers of what they lead through.
+    pub fn attach_instances(&self, builder: &mut SceneBuilder<Query>) -> Result<(), embree::Error> {
+        for outer in self.reached.opened.iter() {
+            if let Some((_, opened)) = self.get(outer) {
+                opened.open();
+            }
+        }
+        let placements = self.placements().len();
+        self.each_instance(|through, image, child| {
+            let map = instance_map(&self.frame, image, &child.frame);
+            let number = GeometryId(through.number(placements));
+            builder.attach_instance_as(number, child.joined()?, &map)
+        })
     }
 
     /// Hands the query's ray to `trace` in the space of the placed group.
@@ -127,16 +168,19 @@ impl UserGeometry for Arc<Placements> {
     type Query = Query;
 
     fn primitive_count(&self) -> u32 {
-        self.called_back.len()
+        self.reached.called_back.len()
     }
 
     fn bounds(&self, primitive: u32) -> Box32 {
         // Where nothing is placed any box will do; the least is best.
-        let reach = self
-            .get(self.called_back.number(primitive))
-            .map_or(Bounds::at(self.frame.centre()), |(placement, child)| {
-                self.sight.placement_reach(placement, &child.reach)
-            });
+        let reach = self.get(self.reached.called_back.number(primitive)).map_or(
+            Bounds::at(self.frame.centre()),
+            |(placement, child)| {
+                let count = self.placements().len();
+                let (sight, reach) = (&self.sight, &child.reach);
+                sight.tight_reach(placement, reach, &child.parts, count)
+            },
+        );
         self.frame.grown_box(&reach)
     }
 
@@ -144,18 +188,16 @@ impl UserGeometry for Arc<Placements> {
         counters::called_back();
         query.callbacks += 1;
         let before = query.bound();
-        self.visit(self.called_back.number(at.primitive), query, Group::search);
+        let number = self.reached.called_back.number(at.primitive);
+        self.visit(number, query, Group::search);
         (query.bound() < before).then(|| query.t_far())
     }
 
     fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
         counters::called_back();
         query.callbacks += 1;
-        self.visit(
-            self.called_back.number(at.primitive),
-            query,
-            Group::occluded,
-        )
+        let number = self.reached.called_back.number(at.primitive);
+        self.visit(number, query, Group::occluded)
     }
 
     fn intersect_packet(
@@ -168,7 +210,7 @@ impl UserGeometry for Arc<Placements> {
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        let number = self.called_back.number(at.primitive);
+        let number = self.reached.called_back.number(at.primitive);
         let shorter = self.visit_packet(number, rays, packet, |child, packet| {
             child.search_packet(rays, packet)
         });
@@ -187,7 +229,7 @@ impl UserGeometry for Arc<Placements> {
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        let number = self.called_back.number(at.primitive);
+        let number = self.reached.called_back.number(at.primitive);
         self.visit_packet(number, rays, packet, |child, packet| {
             child.occluded_packet(rays, packet)
         })

@@ -4,6 +4,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::parts::Parts;
 use crate::math::{Bounds, ChildFromParent, PlacementErrors, UNIT_ROUNDOFF};
 use crate::scene::Placement;
 use crate::tracer::frame::FAR;
@@ -51,6 +52,22 @@ impl Sight {
     /// grown by the displacement.
     pub fn placement_reach(&self, placement: &Placement, child_reach: &Bounds) -> Bounds {
         let image = child_reach.transformed(&placement.parent_from_child);
+        image.grown(self.slack(placement))
+    }
+
+    /// The same in a tighter box, of the child's parts where these serve a list of this
+    /// many placements.
+    pub fn tight_reach(
+        &self,
+        placement: &Placement,
+        child_reach: &Bounds,
+        parts: &Parts,
+        placements: usize,
+    ) -> Bounds {
+        if !parts.serve(placements) {
+            return self.placement_reach(placement, child_reach);
+        }
+        let image = parts.image(&placement.parent_from_child);
         image.grown(self.slack(placement))
     }
 

@@ -32,15 +32,18 @@ pub(crate) struct Packet {
     nearest: [Option<Nearest>; GREATEST_PACKET],
     /// Whether Embree gets the rays together, or one by one.
     pub is_together: bool,
-    /// The placements on the way, with that of the instance.
+    /// The placements on the way, with those that the instance leads through.
     pub path: InstancePath,
     levels: Levels,
     /// The prototype that is being traced.
     prototype: PrototypeIndex,
-    /// The instance that the last callback was in, by the number of the placement, and
+    /// The instance that the last callback was in, how long the path was outside, and
     /// the rays there.
     instance: Option<GeometryId>,
+    outside: usize,
     in_instance: PacketRays,
+    /// The rays in an opened prototype.
+    between: PacketRays,
     instructions: Instructions,
     /// How often Embree has called back for it, which is what it costs.
     pub callbacks: u32,
@@ -61,7 +64,9 @@ impl Packet {
             levels: Levels::new(),
             prototype: PrototypeIndex::ROOT,
             instance: None,
+            outside: 0,
             in_instance: PacketRays::NOWHERE,
+            between: PacketRays::NOWHERE,
             instructions,
             callbacks: 0,
         }
@@ -136,17 +141,28 @@ impl Packet {
     #[inline(never)]
     fn change_instance(&mut self, instance: Option<GeometryId>, described: &Described) {
         self.leave_instance();
-        let Some(GeometryId(placement)) = instance else {
+        let Some(GeometryId(number)) = instance else {
             return;
         };
         counters::handed_on(1);
-        self.instructions.run(IntoInstance {
-            rays: &self.levels.current().rays,
-            way: &described.way_from(self.prototype, placement),
-            frame: described.frame(),
-            in_child: &mut self.in_instance,
+        self.outside = self.path.len();
+        described.along_instance(self.prototype, number, |placement, way, frame| {
+            let is_first = self.path.len() == self.outside;
+            if !is_first {
+                self.between.clone_from(&self.in_instance);
+            }
+            self.instructions.run(IntoInstance {
+                rays: if is_first {
+                    &self.levels.current().rays
+                } else {
+                    &self.between
+                },
+                way,
+                frame,
+                in_child: &mut self.in_instance,
+            });
+            self.path.push(placement);
         });
-        self.path.push(placement);
         self.instance = instance;
     }
 
@@ -154,7 +170,7 @@ impl Packet {
     #[inline(always)]
     pub fn leave_instance(&mut self) {
         if self.instance.take().is_some() {
-            self.path.pop();
+            self.path.truncate(self.outside);
         }
     }
 

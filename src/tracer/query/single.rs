@@ -25,11 +25,12 @@ pub(crate) struct Query {
     level: Option<Level>,
     /// That prototype.
     prototype: PrototypeIndex,
-    /// The instance that the last callback was in, by the number of the placement, and
+    /// The instance that the last callback was in, how long the path was outside, and
     /// the ray there.
     instance: Option<GeometryId>,
+    outside: usize,
     in_instance: LocalRay,
-    /// The placements on the way, with that of the instance.
+    /// The placements on the way, with those that the instance leads through.
     pub path: InstancePath,
     pub keep: Keep,
     /// How often Embree has called back for it, which is what it costs.
@@ -61,6 +62,7 @@ impl Query {
             level: None,
             prototype: PrototypeIndex::ROOT,
             instance: None,
+            outside: 0,
             in_instance: LocalRay::default(),
             path,
             keep: Keep::First(nearest),
@@ -142,14 +144,16 @@ impl Query {
     #[inline(never)]
     fn change_instance(&mut self, instance: Option<GeometryId>, described: &Described) {
         self.leave_instance();
-        let Some(GeometryId(placement)) = instance else {
+        let Some(GeometryId(number)) = instance else {
             return;
         };
         counters::handed_on(1);
-        let way = described.way_from(self.prototype, placement);
-        let ray = self.level().ray.in_child(&way);
-        self.in_instance = described.frame().approach(&ray);
-        self.path.push(placement);
+        self.outside = self.path.len();
+        self.in_instance = self.level().ray;
+        described.along_instance(self.prototype, number, |placement, way, frame| {
+            self.in_instance = frame.approach(&self.in_instance.in_child(way));
+            self.path.push(placement);
+        });
         self.instance = instance;
     }
 
@@ -157,7 +161,7 @@ impl Query {
     #[inline(always)]
     pub fn leave_instance(&mut self) {
         if self.instance.take().is_some() {
-            self.path.pop();
+            self.path.truncate(self.outside);
         }
     }
 
