@@ -1,5 +1,6 @@
 //! The rounded cone as users state it.
 
+mod quick;
 mod solver;
 mod surface;
 
@@ -9,6 +10,7 @@ use super::cone::Ends;
 use super::cone::wall::{Fit, Measures};
 use super::exact::{self, Expression, Number, difference, dot};
 use super::passing::Line;
+use super::quick::{Quick, Range};
 use super::{Chord, ConeError, ConvexSolid, Location, Part, SolidKind, SurfacePoint, ball};
 use crate::math::Bounds;
 
@@ -123,6 +125,11 @@ impl ConvexSolid for RoundedCone {
         from_p0.passes_ball(radius0)
             & from_p1.passes_ball(radius1)
             & from_p0.passes_wall(&self.ends.taper(Fit::Balls))
+    }
+
+    #[inline(always)]
+    fn quick_first(&self, from_anchor: DVec3, direction: DVec3, range: &Range) -> Quick {
+        quick::first(self, from_anchor, direction, range)
     }
 
     fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {
