@@ -325,7 +325,7 @@ fn quick_solvers_answer_as_the_scalar_solvers_do_or_not_at_all() {
                 .into_par_iter()
                 .map(count)
                 .reduce(Count::default, sum);
-            let is_quick = ["sphere-", "disk-", "cuboid-"]
+            let is_quick = ["sphere-", "disk-", "cuboid-", "cone-", "rounded-cone-"]
                 .iter()
                 .any(|kind| name.starts_with(kind));
             if is_quick && name.ends_with("uniform") {

@@ -96,29 +96,71 @@ pub(super) fn chord(x: impl Way, d: DVec3, radius: f64, part: Part) -> Option<Ch
 /// The first meeting of the line `centre + x + t d`; see [`quick`](super::quick).
 #[inline(always)]
 pub(super) fn quick_first(x: DVec3, d: DVec3, radius: f64, range: &Range) -> Quick {
-    let (dd, b) = (d.dot(d), x.dot(d));
-    let discriminant = RoundedDiscriminant::new(x, d, dd, radius);
-    let (c, is_good) = rounded_constant_term(x, radius);
-    let roots = Roots::new(dd, b, discriminant.value);
-    let [enter, leave] = roots.both(|| c);
-    // Where `C` cancels, `|x|` is nearly the radius: its products round by 5 u of that square,
-    // and the quotient by less than as much.
-    let displaced = 8.0 * UNIT_ROUNDOFF * (radius * radius) / (b.abs() + roots.s);
-    let [of_enter, of_leave] = roots.sums().map(|sum| {
-        let is_poor = roots.cancels(sum) & !is_good;
-        if is_poor { displaced } else { 0.0 }
-    });
-    // An exit that may come out before the entry is taken there.
-    let is_in_order = leave - enter > 2.0 * of_enter;
-    let enter = End {
-        t: enter,
-        slack: of_enter,
-    };
+    let quick = QuickBall::new(x, d, radius, 0.0);
+    let [enter, leave] = quick.ends;
+    // From afar no terms of the roots cancel, but they may be in the wrong order.
+    let is_good_from_afar = quick.is_good & (enter.slack == 0.0) & (leave.slack == 0.0);
     let leave = End {
-        t: leave,
-        slack: of_leave + if is_in_order { 0.0 } else { of_enter },
+        t: leave.t.max(enter.t),
+        ..leave
     };
-    Quick::of_ends(!discriminant.is_good(b), [enter, leave], range)
+    let is_open = !(quick.is_plain | is_good_from_afar);
+    Quick::of_ends(is_open, [enter, leave], range)
+}
+
+/// A ball and a line without exact numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct QuickBall {
+    /// Whether the line's discriminant will do for all that follows; the rest has no
+    /// meaning if not.
+    pub is_plain: bool,
+    /// Whether it will do for the roots.
+    is_good: bool,
+    /// Whether the line meets the ball.
+    pub is_met: bool,
+    /// Where it does; no numbers if it does not.
+    pub ends: [End; 2],
+}
+
+impl QuickBall {
+    /// The components of `x` are off by u of their own sizes and of numbers that are at most
+    /// `anchors` in length.
+    ///
+    /// That displaces the line by at most `δ = 2 u (|x| + anchors)`, and `D` by `2 √Q δ |d| + δ²
+    /// |d|²`. With `S = (|x|² + 4 anchors²) |d|²` in (3) that is below `2^-37 |D|`, for `δ² |d|² <=
+    /// 8 u² S`.
+    ///
+    /// The roots are in order where `D` is plain: by (3) `s >= 2^-32 |x·d|`, so that two sums that
+    /// don't cancel differ by 2^-31 of themselves. Where one cancels, its root is little more
+    /// than half of `|x·d| / |d|²` at most, and the other is more than all of it.
+    #[inline(always)]
+    pub fn new(x: DVec3, d: DVec3, radius: f64, anchors: f64) -> Self {
+        let (dd, b) = (d.dot(d), x.dot(d));
+        let mut discriminant = RoundedDiscriminant::new(x, d, dd, radius);
+        discriminant.spread += 4.0 * (anchors * anchors) * dd;
+        let (c, is_good) = rounded_constant_term(x, radius);
+        let roots = Roots::new(dd, b, discriminant.value);
+        // Where `C` cancels, `|x|` is nearly the radius: its products round by 5 u of that square
+        // and are displaced by `2 |x| δ`, at most 4 u (2 r² + anchors²); and the quotient
+        // rounds by less than as much.
+        let sizes = radius * radius + anchors * anchors;
+        let displaced = 16.0 * UNIT_ROUNDOFF * sizes / (b.abs() + roots.s);
+        let [first, second] = roots.sums();
+        let end = |sum, other| End {
+            t: roots.root(sum, other, || c),
+            slack: if roots.cancels(sum) & !is_good {
+                displaced
+            } else {
+                0.0
+            },
+        };
+        Self {
+            is_plain: discriminant.is_plain(),
+            is_good: discriminant.is_good(b),
+            is_met: discriminant.value >= 0.0,
+            ends: [end(first, second), end(second, first)],
+        }
+    }
 }
 
 /// The roots of (1).
@@ -154,21 +196,24 @@ impl Roots {
         sum.abs() < 0.5 * self.b.abs()
     }
 
-    /// The roots in order. `constant_term` is called where terms cancel.
+    /// The root of one of them; `constant_term` is called where its terms cancel.
+    #[inline(always)]
+    fn root(&self, sum: f64, other: f64, constant_term: impl Fn() -> f64) -> f64 {
+        let (numerator, denominator) = if self.cancels(sum) {
+            (constant_term(), other)
+        } else {
+            (sum, self.dd)
+        };
+        numerator / denominator
+    }
+
+    /// The roots in order.
     #[inline(always)]
     fn both(&self, constant_term: impl Fn() -> f64) -> [f64; 2] {
         let [first, second] = self.sums();
-        let root = |sum: f64, other: f64| {
-            let (numerator, denominator) = if self.cancels(sum) {
-                (constant_term(), other)
-            } else {
-                (sum, self.dd)
-            };
-            numerator / denominator
-        };
-        let enter = root(first, second);
+        let enter = self.root(first, second, &constant_term);
         // Next to a tangent the two may come out in the wrong order by a rounding.
-        [enter, root(second, first).max(enter)]
+        [enter, self.root(second, first, constant_term).max(enter)]
     }
 }
 

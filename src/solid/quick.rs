@@ -67,6 +67,18 @@ impl Quick {
         t: 0.0,
     };
 
+    /// As [`Quick::of_ends`] of the ends that a line has if it `is_inside` somewhere. They are
+    /// of no matter otherwise.
+    #[inline(always)]
+    pub(super) fn of_chord(is_open: bool, is_inside: bool, ends: [End; 2], range: &Range) -> Self {
+        let quick = Self::of_ends(false, ends, range);
+        Self {
+            is_open: is_open | (quick.is_open & is_inside),
+            is_met: quick.is_met & is_inside,
+            ..quick
+        }
+    }
+
     /// The first of the two ends of a chord that is in the range.
     #[inline(always)]
     pub(super) fn of_ends(is_open: bool, [enter, leave]: [End; 2], range: &Range) -> Self {
@@ -96,6 +108,30 @@ pub(super) struct End {
 }
 
 impl End {
+    /// The end of a surface that has it or not: what is not there is in no range.
+    #[inline(always)]
+    pub fn if_there(self, is_there: bool) -> Self {
+        Self {
+            t: if is_there { self.t } else { f64::NAN },
+            slack: if is_there { self.slack } else { 0.0 },
+        }
+    }
+
+    /// Whether it is certainly after another end.
+    #[inline(always)]
+    pub fn is_after(&self, other: &Self) -> bool {
+        self.t - other.t > 2.0 * (self.slack + other.slack)
+    }
+
+    /// This end or another.
+    #[inline(always)]
+    pub fn or(self, other: Self, is_this: bool) -> Self {
+        Self {
+            t: if is_this { self.t } else { other.t },
+            slack: if is_this { self.slack } else { other.slack },
+        }
+    }
+
     /// Whether the order of two ends is certain: they differ by more than a part `margin`
     /// of them and what they may be displaced.
     #[inline(always)]

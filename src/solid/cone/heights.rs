@@ -26,10 +26,10 @@ use crate::solid::exact::{Expression, Number, dot, quotient, sign, vector};
 use crate::solid::way::Way;
 
 /// How near to an end rounded heights do not tell, relative to their terms.
-const NEAR: f64 = power_of_two(-28);
+pub(super) const NEAR: f64 = power_of_two(-28);
 
 /// Below this share of its terms a sum is computed exactly.
-const CANCELS: f64 = power_of_two(-20);
+pub(super) const CANCELS: f64 = power_of_two(-20);
 
 /// Which end of the wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +49,42 @@ pub(in crate::solid) enum Root {
     Leave,
 }
 
+/// What rounded products make of a line as seen along the axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rounded {
+    pub slope: f64,
+    pub above: [f64; 2],
+}
+
+impl Rounded {
+    #[inline(always)]
+    pub fn new(taper: &Taper<impl Way>, x: DVec3, d: DVec3) -> Self {
+        let (a, delta) = (taper.axis(), taper.radius1 - taper.radius0);
+        let (from_p0, from_p1) = (x.dot(a), (x - a).dot(a));
+        let [seam0, seam1] = match taper.fit {
+            Fit::Discs => [0.0, 0.0],
+            Fit::Balls => [taper.radius0 * delta, taper.radius1 * delta],
+        };
+        Self {
+            slope: d.dot(a),
+            above: [from_p0 + seam0, from_p1 + seam1],
+        }
+    }
+}
+
+/// The size of the terms of heights at `t = 0`, of a line that starts at a distance.
+#[inline(always)]
+pub(super) fn terms(taper: &Taper<impl Way>, distance: f64) -> f64 {
+    let (length, delta) = (taper.axis().length(), taper.radius1 - taper.radius0);
+    length * (distance + length) + taper.radius0.max(taper.radius1) * delta.abs()
+}
+
+/// Where a line comes through the plane that it is so far above of at `t = 0`.
+#[inline(always)]
+pub(super) fn plane_at(above: f64, slope: f64) -> f64 {
+    -above / slope
+}
+
 /// A line as seen along the axis.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solid) struct Heights<'a, A, X> {
@@ -64,34 +100,26 @@ pub(in crate::solid) struct Heights<'a, A, X> {
 }
 
 impl<'a, A: Way, X: Way> Heights<'a, A, X> {
-    pub fn new(taper: &'a Taper<A>, way: X, d: DVec3) -> Self {
-        let (a, x) = (taper.axis(), way.rounded());
-        let (length, delta) = (a.length(), taper.radius1 - taper.radius0);
-        let terms = length * (x.length() + length) + taper.radius0.max(taper.radius1) * delta.abs();
-        let exactly = |which| {
-            let x = way;
-            quotient(&At { taper, x, d, which }, 1.0)
-        };
+    pub fn new(taper: &'a Taper<A>, x: X, d: DVec3) -> Self {
+        let terms = terms(taper, x.rounded().length());
         let checked = |rounded: f64, terms: f64, which| {
             if rounded.abs() < CANCELS * terms {
-                exactly(which)
+                quotient(&At { taper, x, d, which }, 1.0)
             } else {
                 rounded
             }
         };
-        let (from_p0, from_p1) = (x.dot(a), (x - a).dot(a));
-        let [seam0, seam1] = match taper.fit {
-            Fit::Discs => [0.0, 0.0],
-            Fit::Balls => [taper.radius0 * delta, taper.radius1 * delta],
-        };
+        let rounded = Rounded::new(taper, x.rounded(), d);
+        let [above0, above1] = rounded.above;
+        let steepest = d.length() * taper.axis().length();
         Self {
             taper,
-            x: way,
+            x,
             d,
-            slope: checked(d.dot(a), d.length() * length, Which::Slope),
+            slope: checked(rounded.slope, steepest, Which::Slope),
             above: [
-                checked(from_p0 + seam0, terms, Which::Above(End::First)),
-                checked(from_p1 + seam1, terms, Which::Above(End::Second)),
+                checked(above0, terms, Which::Above(End::First)),
+                checked(above1, terms, Which::Above(End::Second)),
             ],
             terms,
         }
@@ -106,7 +134,7 @@ impl<'a, A: Way, X: Way> Heights<'a, A, X> {
 
     /// Where the line comes through the plane across the axis at an end.
     pub fn at(&self, end: End) -> f64 {
-        -self.above(end) / self.slope
+        plane_at(self.above(end), self.slope)
     }
 
     /// How the height of a root, which is about at `t`, compares with an end.

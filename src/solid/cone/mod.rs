@@ -2,6 +2,7 @@
 
 mod ends;
 pub(super) mod heights;
+pub(super) mod quick;
 mod rounded;
 pub(super) mod solver;
 mod surface;
@@ -12,6 +13,7 @@ use glam::DVec3;
 use super::cylinder::disc_reach;
 use super::exact::{self, Expression, Number, difference, dot};
 use super::passing::Line;
+use super::quick::{Quick, Range};
 use super::way::Way;
 use super::{
     Caps, Chord, ConvexSolid, Cylinder, Location, Part, RayOrigin, SolidKind, SurfacePoint,
@@ -172,6 +174,11 @@ impl ConvexSolid for Cone {
     #[inline(always)]
     fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
         Line::new(from_anchor, direction).passes_wall(&self.ends.taper(Fit::Discs))
+    }
+
+    #[inline(always)]
+    fn quick_first(&self, from_anchor: DVec3, direction: DVec3, range: &Range) -> Quick {
+        quick::first(self, from_anchor, direction, range)
     }
 
     fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {

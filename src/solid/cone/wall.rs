@@ -49,7 +49,7 @@
 
 use glam::DVec3;
 
-use super::rounded::Rounded;
+use super::rounded::{Bounds, Rounded};
 use crate::solid::exact::{Expression, Number, cross, dot, quotient, vector};
 use crate::solid::way::Way;
 
@@ -91,6 +91,73 @@ pub(in crate::solid) enum Meets {
     Along,
 }
 
+/// What the roots of (2) are made of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Roots {
+    /// `A`.
+    pub a: f64,
+    /// `B`.
+    pub b: f64,
+    /// `|a|² √(E/β)`.
+    pub s: f64,
+}
+
+impl Roots {
+    /// Of `A`, `B` and `E`, and of `|a|²` and `β`.
+    #[inline(always)]
+    pub fn new([a, b, e]: [f64; 3], aa: f64, beta: f64) -> Self {
+        let s = aa * (e / beta).sqrt();
+        Self { a, b, s }
+    }
+
+    /// The numerators of (4).
+    #[inline(always)]
+    pub fn sums(&self) -> [f64; 2] {
+        [-self.b - self.s, self.s - self.b]
+    }
+
+    /// `q`, the numerator whose terms do not cancel.
+    #[inline(always)]
+    pub fn noncancelling(&self) -> f64 {
+        let [minus, plus] = self.sums();
+        if self.b < 0.0 { plus } else { minus }
+    }
+
+    /// Whether the terms of a numerator cancel.
+    #[inline(always)]
+    pub fn cancels(&self, sum: f64) -> bool {
+        sum.abs() < 0.5 * self.b.abs()
+    }
+
+    /// The interval that they bound, on the nappe that `rises` in the line's direction if the
+    /// line is less steep than the wall. `constant_term` is called where terms cancel.
+    #[inline(always)]
+    pub fn inside(&self, rises: bool, constant_term: impl Fn() -> f64) -> Inside {
+        let root = |sum: f64| {
+            let (numerator, denominator) = if self.cancels(sum) {
+                (constant_term(), self.noncancelling())
+            } else {
+                (sum, self.a)
+            };
+            numerator / denominator
+        };
+        let [minus, plus] = self.sums();
+        let is_half = !(self.a > 0.0);
+        Inside {
+            enter: if is_half & !rises {
+                f64::NEG_INFINITY
+            } else {
+                root(minus)
+            },
+            leave: if is_half & rises {
+                f64::INFINITY
+            } else {
+                root(plus)
+            },
+        }
+    }
+}
+
 impl<A: Way> Taper<A> {
     /// `a`, rounded.
     #[inline(always)]
@@ -100,16 +167,21 @@ impl<A: Way> Taper<A> {
 
     /// `β`.
     pub fn beta(&self) -> f64 {
+        let (rounded, is_good) = self.rounded_beta();
+        if is_good {
+            rounded
+        } else {
+            quotient(&Beta(self), 1.0)
+        }
+    }
+
+    /// `β` from rounded products, and whether it is [`Taper::beta`].
+    #[inline(always)]
+    pub fn rounded_beta(&self) -> (f64, bool) {
+        let (aa, delta) = (self.axis().length_squared(), self.radius1 - self.radius0);
         match self.fit {
-            Fit::Discs => self.axis().length_squared(),
-            Fit::Balls => {
-                let (aa, delta) = (self.axis().length_squared(), self.radius1 - self.radius0);
-                if delta * delta < 0.5 * aa {
-                    aa - delta * delta
-                } else {
-                    quotient(&Beta(self), 1.0)
-                }
-            }
+            Fit::Discs => (aa, true),
+            Fit::Balls => (aa - delta * delta, delta * delta < 0.5 * aa),
         }
     }
 
@@ -119,59 +191,52 @@ impl<A: Way> Taper<A> {
         if !(x.rounded().is_finite() && d.is_finite()) {
             return None;
         }
-        let rounded = Rounded::new(self, x.rounded(), d);
-        if rounded.passes_by() {
-            return None;
-        }
-        let (a, b, e, h) = if rounded.is_good() {
-            let Rounded { a, b, e, h, .. } = rounded;
-            (a.value, b.value, e.value, h)
+        let rounded = Rounded::new(self, x.rounded(), d, self.beta());
+        let (roots, h) = if rounded.is_plain() {
+            (rounded.roots, rounded.h)
         } else {
-            let exactly = |term| self.exactly(term, x, d, rounded.beta);
-            let [a, b, e, h] = [Term::A, Term::B, Term::E, Term::H].map(exactly);
-            (a, b, e, h)
+            self.roots_of_hard_line(&rounded, x, d)?
         };
-        if !(e >= 0.0) {
-            return None;
-        }
-        let s = rounded.aa * (e / rounded.beta).sqrt();
-        let (minus, plus) = (-b - s, s - b);
-        let q = if b < 0.0 { plus } else { minus };
-        if q == 0.0 && a == 0.0 {
-            // In a plane that touches the wall, along a line of it or beside.
-            let is_along = self.constant_term(&rounded, x, d) == 0.0;
-            return is_along.then_some(Meets::Along);
-        }
-        let root = |sum: f64| {
-            if sum.abs() < 0.5 * b.abs() {
-                self.constant_term(&rounded, x, d) / q
-            } else {
-                sum / a
-            }
-        };
-        let is_half = !(a > 0.0);
         let rises = h > 0.0;
-        if a == 0.0 && (b < 0.0) != rises {
-            // Parallel to the wall it is inside of one nappe only: the other.
+        if roots.a == 0.0 {
+            if roots.noncancelling() == 0.0 {
+                // In a plane that touches the wall, along a line of it or beside.
+                let is_along = self.constant_term(&rounded, x, d) == 0.0;
+                return is_along.then_some(Meets::Along);
+            }
+            if (roots.b < 0.0) != rises {
+                // Parallel to the wall it is inside of one nappe only: the other.
+                return None;
+            }
+        }
+        Some(Meets::Inside(
+            roots.inside(rises, || self.constant_term(&rounded, x, d)),
+        ))
+    }
+
+    /// The roots and `h` of a line that is not plain; `None` if it does not reach the wall.
+    #[inline(never)]
+    fn roots_of_hard_line<X: Way>(
+        &self,
+        rounded: &Rounded,
+        x: X,
+        d: DVec3,
+    ) -> Option<(Roots, f64)> {
+        let bounds = Bounds::new(rounded);
+        if bounds.passes_by() {
             return None;
         }
-        Some(Meets::Inside(Inside {
-            enter: if is_half && !rises {
-                f64::NEG_INFINITY
-            } else {
-                root(minus)
-            },
-            leave: if is_half && rises {
-                f64::INFINITY
-            } else {
-                root(plus)
-            },
-        }))
+        if bounds.is_good() {
+            return (rounded.e >= 0.0).then_some((rounded.roots, rounded.h));
+        }
+        let exactly = |term| self.exactly(term, x, d, rounded.beta);
+        let [a, b, e, h] = [Term::A, Term::B, Term::E, Term::H].map(exactly);
+        (e >= 0.0).then(|| (Roots::new([a, b, e], rounded.aa, rounded.beta), h))
     }
 
     /// `C` of (2).
     fn constant_term(&self, rounded: &Rounded, x: impl Way, d: DVec3) -> f64 {
-        let c = rounded.constant_term(self, x.rounded());
+        let c = rounded.good_constant_term();
         c.unwrap_or_else(|| self.exactly(Term::C, x, d, rounded.beta))
     }
 

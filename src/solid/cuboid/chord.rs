@@ -125,13 +125,7 @@ pub(super) fn quick_first(cuboid: &Cuboid, x: DVec3, d: DVec3, range: &Range) ->
         leave = if far.t < leave.t { far } else { leave };
     }
     is_open |= !enter.is_apart(&leave, MARGIN);
-    let quick = Quick::of_ends(is_open, [enter, leave], range);
-    let is_inside = enter.t < leave.t;
-    Quick {
-        is_open: is_open | (quick.is_open & is_inside),
-        is_met: quick.is_met & is_inside,
-        ..quick
-    }
+    Quick::of_chord(is_open, enter.t < leave.t, [enter, leave], range)
 }
 
 /// Whether two parameters differ by more than their errors.

@@ -1,5 +1,6 @@
 //! The rounded cone as users state it.
 
+mod quick;
 mod solver;
 mod surface;
 
@@ -9,6 +10,7 @@ use super::cone::Ends;
 use super::cone::wall::{Fit, Measures, Taper};
 use super::exact::{self, Expression, Number, difference, dot};
 use super::passing::Line;
+use super::quick::{Quick, Range};
 use super::way::{Between, Way};
 use super::{
     Chord, ConeError, ConvexSolid, Location, Part, RayOrigin, SolidKind, SurfacePoint, ball,
@@ -83,6 +85,9 @@ impl RoundedCone {
         solver::chord(taper, from_p0, from_p1, direction)
     }
 
+    /// Whether a line as seen from both ends certainly misses. The way from the second may be
+    /// the difference of rounded ones: the hull is within the infinite wall, whose test
+    /// has bounds for it, or one ball contains it and is as large as the axis is long.
     #[inline(always)]
     fn is_passed(&self, [from_p0, from_p1]: [DVec3; 2], direction: DVec3) -> bool {
         let Ends {
@@ -153,6 +158,11 @@ impl ConvexSolid for RoundedCone {
     fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
         let from_p1 = from_anchor - self.ends.axis();
         self.is_passed([from_anchor, from_p1], direction)
+    }
+
+    #[inline(always)]
+    fn quick_first(&self, from_anchor: DVec3, direction: DVec3, range: &Range) -> Quick {
+        quick::first(self, from_anchor, direction, range)
     }
 
     fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {
