@@ -42,26 +42,29 @@ pub(super) fn first_of_cylinder<E: Ends>(
     active: LaneMask,
     (decisions, instructions): (Decisions, Instructions),
 ) -> (LaneMask, Lanes) {
-    let lanes = CylinderLanes {
+    if decisions == Decisions::Exact {
+        return exactly::<E>(cylinder, row, active, instructions);
+    }
+    lanes::first(
+        &lanes_of::<E>(cylinder),
+        &row.seen_from(cylinder.p0()),
+        &active,
+    )
+}
+
+/// A cylinder eight times.
+#[inline(always)]
+fn lanes_of<E: Ends>(cylinder: &Cylinder) -> CylinderLanes<E::Lanes> {
+    CylinderLanes {
         axis: LaneVectors::splat(cylinder.p1() - cylinder.p0()),
         radius: Lanes::splat(cylinder.radius()),
         caps: E::of_one(cylinder.caps()),
-    };
-    let rays = row.seen_from(cylinder.p0());
-    if decisions == Decisions::Exact {
-        let settled = SettledRow {
-            lanes: &lanes,
-            rays: &rays,
-            active,
-        };
-        return exactly(cylinder, row, settled, instructions);
     }
-    lanes::first(&lanes, &rays, &active)
 }
 
 /// [`settled::first_in_lanes`] with the instructions of the packet.
 struct SettledRow<'a, C> {
-    lanes: &'a CylinderLanes<C>,
+    cylinders: &'a CylinderLanes<C>,
     rays: &'a RayLanes,
     active: LaneMask,
 }
@@ -71,23 +74,28 @@ impl<C: LaneCaps> Kernel for SettledRow<'_, C> {
 
     #[inline(always)]
     fn run(self) -> QuickLanes {
-        settled::first_in_lanes(self.lanes, self.rays, &self.active)
+        settled::first_in_lanes(self.cylinders, self.rays, &self.active)
     }
 }
 
-/// The same, and what it leaves open. A call, as [`exact_first`] is.
+/// The same decided exactly: what is settled in lanes, and the rest ray by ray. A call, as
+/// [`exact_first`] is, which gets nothing that the caller would otherwise have in registers.
 #[cold]
 #[inline(never)]
-fn exactly<C: LaneCaps>(
+fn exactly<E: Ends>(
     cylinder: &Cylinder,
     row: &RowOfPacket,
-    settled: SettledRow<C>,
+    active: LaneMask,
     instructions: Instructions,
 ) -> (LaneMask, Lanes) {
     let QuickLanes { open, met, t } = if row.is_plain() {
-        instructions.run(settled)
+        instructions.run(SettledRow {
+            cylinders: &lanes_of::<E>(cylinder),
+            rays: &row.seen_from(cylinder.p0()),
+            active,
+        })
     } else {
-        QuickLanes::all_open(settled.active)
+        QuickLanes::all_open(active)
     };
     if !open.any() {
         return (met, t);
