@@ -243,15 +243,15 @@ impl Query {
         counters::solved(1);
         let solid = list.solid(record);
         let member = Member::new(solid.kind(), record);
-        let (ray, bound, t_min) = (*self.ray(), self.bound(), self.t_min);
-        let decisions = self.decisions;
+        let (decisions, bound, t_min) = (self.decisions, self.bound(), self.t_min);
         match self.keep {
             Keep::First(_) => {
-                if let Some(met) = solid.first(&ray, decisions, t_min, bound) {
+                if let Some(met) = solid.first(self.ray(), decisions, t_min, bound) {
                     self.offer(met.meeting.t, list.described(), member);
                 }
             }
             Keep::Next(_) => {
+                let ray = *self.ray();
                 let offer = self.next_of(list.described(), member);
                 solid.each_meeting(&ray, decisions, t_min, bound, offer);
             }
