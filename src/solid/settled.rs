@@ -26,8 +26,8 @@
 //! ```
 //!
 //! and certainly comes into it where the same inequality is true with `w²` and `r² N²`
-//! exchanged. That needs `ρ >= 162 u² (1 + 1/η)`, 2^-80.6 for the `η` of [`WIDER`]. What
-//! follows needs more: [`ROUNDINGS`] has 2^-54. Then a line that certainly comes in has
+//! exchanged. That needs `ρ >= 162 u² (1 + 1/η)`, 2^-80.6 for the `η` of `WIDER`. What
+//! follows needs more: `ROUNDINGS` has 2^-54. Then a line that certainly comes in has
 //! `r² N² > 2^-54 X² K²`, so that
 //!
 //! ```text
@@ -156,7 +156,7 @@ fn decide<T>(
     }
 }
 
-/// [`lanes::first`] of rays whose origins f64 has, with decisions as those of [`chord`]; and
+/// [`lanes::first`] of rays whose origins f64 has, with exact decisions; and
 /// the rays for which these take exact products or exact numbers, which have no answer.
 #[inline(always)]
 #[must_use]
