@@ -17,7 +17,9 @@ use cyltrace::solid::formulations::Problem;
 use cyltrace::solid::lanes::{
     self, AllCapped, AllOpen, CylinderLanes, LaneCaps, MixedCaps, RayLanes,
 };
-use cyltrace::solid::{AnySolid, Caps, ConvexSolid, Cylinder, quick, triple_product};
+use cyltrace::solid::{
+    AnySolid, Caps, ConvexSolid, Cylinder, Meeting, RayOrigin, quick, triple_product,
+};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -259,15 +261,51 @@ fn in_lanes(rays: &Shifted) -> RayLanes {
     }
 }
 
-/// Fails where a lane that is not open has another answer than the scalar solver.
-fn verify_quick(solid: &impl ConvexSolid, rays: &RayLanes, active: u8, name: &str) -> Count {
+/// Fails where a lane that is not open has another answer than the scalar solver, and, of a
+/// kind that says so, another than the solver with exact decisions.
+fn verify_quick<S: ConvexSolid>(solid: &S, rays: &RayLanes, active: u8, name: &str) -> Count {
+    let count = verify_lanes(solid, rays, active, name, |lane| {
+        let (x, d, shift, [t_min, t_max]) = lane_of(rays, lane);
+        solid.first(x, d, shift, t_min, t_max)
+    });
+    if S::QUICK_IS_EXACT {
+        // Rays whose origins are points in f64, and what is seen of them from the anchor.
+        let anchor = LaneVectors::splat(solid.anchor());
+        let mut origins = rays.from_p0;
+        for lane in 0..LANES {
+            origins.set(lane, solid.anchor() + rays.from_p0.lane(lane));
+        }
+        let seen = RayLanes {
+            from_p0: origins - anchor,
+            ..*rays
+        };
+        verify_lanes(solid, &seen, active, name, |lane| {
+            let (_, d, shift, range) = lane_of(rays, lane);
+            solid.exact_first(&RayOrigin::at(origins.lane(lane)), d, shift, range)
+        });
+    }
+    count
+}
+
+/// The way to the origin, the direction, the shift and the range of a ray.
+fn lane_of(rays: &RayLanes, lane: usize) -> (DVec3, DVec3, f64, [f64; 2]) {
+    let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
+    let range = [rays.t_min, rays.t_max].map(|lanes| lanes.0[lane]);
+    (x, d, rays.shift.0[lane], range)
+}
+
+fn verify_lanes(
+    solid: &impl ConvexSolid,
+    rays: &RayLanes,
+    active: u8,
+    name: &str,
+    first: impl Fn(usize) -> Option<Meeting>,
+) -> Count {
     let mut count = Count::default();
     let answer = quick::first(solid, rays, &LaneMask::from_bits(active));
     for lane in 0..LANES {
-        let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
-        let [shift, t_min, t_max] = [rays.shift, rays.t_min, rays.t_max].map(|lanes| lanes.0[lane]);
         let is_active = active >> lane & 1 == 1;
-        let expected = solid.first(x, d, shift, t_min, t_max).filter(|_| is_active);
+        let expected = first(lane).filter(|_| is_active);
         let is_met = answer.met.0[lane];
         if answer.open.0[lane] {
             assert!(is_active && !is_met, "{name}: lane {lane}");
@@ -278,7 +316,8 @@ fn verify_quick(solid: &impl ConvexSolid, rays: &RayLanes, active: u8, name: &st
         assert_eq!(
             found,
             expected.map(|meeting| meeting.t.to_bits()),
-            "seed {SEED}, {name}, lane {lane}: {solid:?} {x:?} {d:?} {shift:e} {t_min:e} {t_max:e}",
+            "seed {SEED}, {name}, lane {lane}: {solid:?} {:?}",
+            lane_of(rays, lane),
         );
         count.met += u64::from(is_met);
         count.missed += u64::from(!is_met);

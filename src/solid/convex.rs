@@ -26,6 +26,10 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// What it is called.
     const KIND: SolidKind;
 
+    /// Whether [`ConvexSolid::quick_first`], where it is not open, has the bits of
+    /// [`ConvexSolid::exact_first`] too, for a ray whose origin f64 has.
+    const QUICK_IS_EXACT: bool = true;
+
     /// A box that holds it, rounded outward.
     fn bounds(&self) -> Bounds;
 

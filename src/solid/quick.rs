@@ -157,6 +157,18 @@ impl Range {
     }
 }
 
+/// The rays, of those that are `active`, that do not certainly miss the solid.
+#[inline(always)]
+#[must_use]
+pub fn near(solid: &impl ConvexSolid, rays: &RayLanes, active: &LaneMask) -> LaneMask {
+    let mut near = LaneMask::splat(false);
+    for lane in 0..LANES {
+        let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
+        near.0[lane] = active.0[lane] & !solid.passes_by(x, d);
+    }
+    near
+}
+
 /// [`ConvexSolid::first`] of the rays that are `active`, which are seen from the
 /// solid's anchor.
 #[inline(always)]
@@ -164,11 +176,7 @@ impl Range {
 pub fn first(solid: &impl ConvexSolid, rays: &RayLanes, active: &LaneMask) -> QuickLanes {
     let (mut open, mut met) = (LaneMask::splat(false), LaneMask::splat(false));
     let mut t = Lanes::splat(0.0);
-    let mut near = LaneMask::splat(false);
-    for lane in 0..LANES {
-        let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
-        near.0[lane] = active.0[lane] & !solid.passes_by(x, d);
-    }
+    let near = near(solid, rays, active);
     if near.any() {
         for lane in 0..LANES {
             let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));

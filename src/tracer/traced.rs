@@ -88,7 +88,7 @@ pub(crate) trait TracedSolid: Listed + Send + Sync {
     /// The first meetings of the `active` rays of a row, without those that
     /// [`TracedSolid::first`] has to find.
     #[inline(always)]
-    fn quick_first(&self, _rays: &RowOfPacket, active: LaneMask) -> QuickLanes {
+    fn quick_first(&self, _: &RowOfPacket, active: LaneMask, _: Decisions) -> QuickLanes {
         QuickLanes::all_open(active)
     }
 
@@ -129,8 +129,15 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
     }
 
     #[inline(always)]
-    fn quick_first(&self, row: &RowOfPacket, active: LaneMask) -> QuickLanes {
-        quick::first(self, &row.seen_from(self.anchor()), &active)
+    fn quick_first(&self, row: &RowOfPacket, active: LaneMask, decisions: Decisions) -> QuickLanes {
+        if decisions == Decisions::Exact && !row.is_plain() {
+            return QuickLanes::all_open(active);
+        }
+        let rays = row.seen_from(self.anchor());
+        if decisions == Decisions::Exact && !S::QUICK_IS_EXACT {
+            return QuickLanes::all_open(quick::near(self, &rays, &active));
+        }
+        quick::first(self, &rays, &active)
     }
 
     #[inline]

@@ -121,12 +121,12 @@ fn first_uncertified(cylinder: Cylinder, ray: Ray) -> (Option<ExactHit>, Stage) 
 
 /// The interval in which the line `p0 + x + t direction` is inside the closed solid, or
 /// `None` where it is not: which parts its ends are on is exact, and its `t` are the
-/// nearest numbers. A non-finite argument is a miss.
+/// nearest numbers. A non-finite argument is a miss, and so is a direction of zero.
 ///
 /// It is for the rare line about which rounded numbers do not suffice: it takes some
 /// hundred times as long as the triple-product solver.
 pub(super) fn chord(cylinder: &Cylinder, x: &impl Way, direction: DVec3) -> Option<Chord> {
-    if !(x.rounded().is_finite() && direction.is_finite()) {
+    if !(x.rounded().is_finite() && direction.is_finite()) || direction == DVec3::ZERO {
         return None;
     }
     let bounded = Terms::<Bounded>::new(cylinder, x, direction).ends();

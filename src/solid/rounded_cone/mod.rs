@@ -121,6 +121,9 @@ impl RoundedCone {
 impl ConvexSolid for RoundedCone {
     const KIND: SolidKind = SolidKind::RoundedCone;
 
+    /// Lanes have the way from the second ball as a difference of rounded ones.
+    const QUICK_IS_EXACT: bool = false;
+
     fn bounds(&self) -> Bounds {
         let Ends {
             p0,

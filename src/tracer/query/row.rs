@@ -21,11 +21,7 @@ pub(super) fn first_of_solid(
     active: LaneMask,
     decisions: Decisions,
 ) -> (LaneMask, Lanes) {
-    let QuickLanes { open, met, t } = match decisions {
-        Decisions::Exact if !row.is_plain() => QuickLanes::all_open(active),
-        // Its slack covers the roundings of a plain ray's origin.
-        _ => solid.quick_first(row, active),
-    };
+    let QuickLanes { open, met, t } = solid.quick_first(row, active, decisions);
     if open.any() {
         return one_by_one(row, open, (met, t), |ray, t_min, t_max| {
             Some(solid.first(ray, decisions, t_min, t_max)?.meeting.t)
