@@ -154,6 +154,14 @@ impl ConvexSolid for RoundedCone {
     fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
         let taper = self.ends.exact_taper(Fit::Balls);
         let [from_p0, from_p1] = [self.p0(), self.p1()].map(|end| origin.way_from(end));
+        if self.taper().is_none() {
+            // By the rounded axis one ball contains the other, and the surface has no wall.
+            return if self.radius0() >= self.radius1() {
+                ball::chord(from_p0, direction, self.radius0(), Part::Cap0)
+            } else {
+                ball::chord(from_p1, direction, self.radius1(), Part::Cap1)
+            };
+        }
         self.chord_of(&taper, from_p0, from_p1, direction)
     }
 
