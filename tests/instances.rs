@@ -302,7 +302,7 @@ fn instances_answer_as_everything_tried_does() {
     assert!(instances > 40, "{instances}");
 }
 
-/// A root with three assemblies in a row, each of so many parts along y.
+/// A root with three assemblies in a row, each with this number of parts along y.
 fn assemblies(parts: u32) -> Arc<Scene> {
     let along = |axis: DVec3, count: u32, of: u32| {
         let each = (0..count)

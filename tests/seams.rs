@@ -113,7 +113,7 @@ fn rays_at_the_circle_that_two_tubes_share_do_not_pass_between_them() {
             both
         })
         .sum();
-    // The plane itself is met by chance only.
+    // Few rays hit the plane itself.
     assert!(both <= 2, "{both} rays have both tubes");
 }
 

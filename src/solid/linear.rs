@@ -1,4 +1,4 @@
-//! Heights over planes: linear forms `f·x + c`, of which `x` may be a rounded [`Way`].
+//! Heights over planes: linear forms `f·x + c`. Their `x` may be a rounded [`Way`].
 //!
 //! Three products and three sums round by at most `4 u S` together, u = 2^-53,
 //! with `S = Σ |f_i x_i| + |c|`, and a rounded `x` adds `u S`. A value of at least `2^-10 S` is

@@ -104,7 +104,7 @@ const WIDER: f64 = 1.0 + power_of_two(-18);
 const ROUNDINGS: f64 = power_of_two(-54);
 
 /// The factor of (3). It trades long numbers for lines that come within 2^-34 of the size
-/// of a rim for room in the bound, of which less than a half is used.
+/// of a rim for room in the bound: less than a half of it is used.
 const HEIGHT: f64 = power_of_two(-36);
 
 /// The greatest `k` of lines whose `n` has rounded products, see `triple_product.rs`.

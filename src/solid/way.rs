@@ -46,8 +46,7 @@ impl Way for DVec3 {
     }
 }
 
-/// The way from one point to another, of which a rounded component is computed where it is
-/// needed.
+/// The way from one point to another, rounded only where that is needed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Between {
     pub from: DVec3,

@@ -20,7 +20,8 @@ pub struct Options {
     /// Whether hits, misses and parts are decided as exact arithmetic on the numbers of a
     /// prototype's space does, for any f64 numbers, and not only where f32 holds them.
     /// Then open cylinders that share their ends leave no seam between them. Tracing takes longer
-    /// (`docs/performance.md`). Set operations decide by rounded numbers always.
+    /// (`docs/performance.md`). Set operations decide by rounded numbers always, and
+    /// so does whether one ball of a rounded cone contains the other.
     pub exact: bool,
     /// The part of space that all rays will be in, if it is known: placements in
     /// the root that are outside are not built. Other rays then miss them.

@@ -71,7 +71,8 @@ impl RoundedCone {
         self.ends.radius1
     }
 
-    /// The chord of a line as seen from both ends.
+    /// The chord of a line as seen from both ends. Whether one ball contains the other is
+    /// decided by the rounded axis first, for the surface has a wall by that.
     fn chord_of<A: Way>(
         &self,
         taper: &Taper<A>,
@@ -82,7 +83,15 @@ impl RoundedCone {
         if self.is_passed([from_p0.rounded(), from_p1.rounded()], direction) {
             return None;
         }
-        solver::chord(taper, from_p0, from_p1, direction)
+        if self.taper().is_some() && taper.beta() > 0.0 {
+            return solver::chord(taper, from_p0, from_p1, direction);
+        }
+        let (radius0, radius1) = (self.ends.radius0, self.ends.radius1);
+        if radius0 >= radius1 {
+            ball::chord(from_p0, direction, radius0, Part::Cap0)
+        } else {
+            ball::chord(from_p1, direction, radius1, Part::Cap1)
+        }
     }
 
     /// Whether a line as seen from both ends certainly misses. The way from the second may be
@@ -154,14 +163,6 @@ impl ConvexSolid for RoundedCone {
     fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
         let taper = self.ends.exact_taper(Fit::Balls);
         let [from_p0, from_p1] = [self.p0(), self.p1()].map(|end| origin.way_from(end));
-        if self.taper().is_none() {
-            // By the rounded axis one ball contains the other, and the surface has no wall.
-            return if self.radius0() >= self.radius1() {
-                ball::chord(from_p0, direction, self.radius0(), Part::Cap0)
-            } else {
-                ball::chord(from_p1, direction, self.radius1(), Part::Cap1)
-            };
-        }
         self.chord_of(&taper, from_p0, from_p1, direction)
     }
 

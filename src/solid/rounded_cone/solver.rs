@@ -26,8 +26,8 @@ use crate::solid::cone::wall::{Fit, Meets, Taper};
 use crate::solid::way::Way;
 use crate::solid::{Part, ball};
 
-/// The interval in which the line `p0 + x + t d` is inside the hull; `from_p1` is its origin as
-/// seen from the other end.
+/// The interval in which the line `p0 + x + t d` is inside the hull of balls of which neither
+/// contains the other; `from_p1` is its origin as seen from the other end.
 pub(super) fn chord<A: Way>(
     taper: &Taper<A>,
     x: impl Way,
@@ -37,9 +37,6 @@ pub(super) fn chord<A: Way>(
     let (radius0, radius1) = (taper.radius0, taper.radius1);
     let ball0 = || ball::chord(x, d, radius0, Part::Cap0);
     let ball1 = || ball::chord(from_p1, d, radius1, Part::Cap1);
-    if !(taper.beta() > 0.0) {
-        return if radius0 >= radius1 { ball0() } else { ball1() };
-    }
     let [mut enter, mut leave] = [None, None];
     if let Some(meets) = taper.meets(x, d) {
         let heights = Heights::new(taper, x, d);

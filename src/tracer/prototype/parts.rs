@@ -73,7 +73,7 @@ impl Parts {
         !self.eights.is_empty() && placements <= MOST_PLACEMENTS
     }
 
-    /// A box that contains the image of every point of the parts, of which there is at least one.
+    /// A box that contains the image of every point of the parts. There is at least one part.
     pub fn image(&self, map: &DAffine3) -> Bounds {
         let mut image = Bounds::EMPTY;
         for axis in 0..3 {
