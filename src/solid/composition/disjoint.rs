@@ -14,9 +14,13 @@ impl Composition {
     /// Removes the chords of intersections whose boxes have no common point. `leaves`
     /// begin with those of this composition; returns how many these are.
     pub(super) fn forget_disjoint(&self, leaves: &mut [Leaf]) -> usize {
-        let (Self::Union(parts) | Self::Intersection(parts) | Self::Difference(parts)) = self
-        else {
-            return 1;
+        let parts = match self {
+            Self::Solid(_) => return 1,
+            Self::Intersection(parts) => parts,
+            Self::Union(parts) | Self::Difference(parts) => {
+                let rest = |count, part: &Self| count + part.forget_disjoint(&mut leaves[count..]);
+                return parts.iter().fold(0, rest);
+            }
         };
         let mut count = 0;
         let mut are_all_hit = true;
@@ -26,7 +30,7 @@ impl Composition {
             are_all_hit &= leaves[start..count].iter().any(|leaf| leaf.chord.is_some());
         }
         // Boxes take longer than to see that an operand is not hit, which is the usual case.
-        if matches!(self, Self::Intersection(_)) && are_all_hit && common_box(parts).is_empty() {
+        if are_all_hit && common_box(parts).is_empty() {
             for leaf in &mut leaves[..count] {
                 leaf.chord = None;
             }
