@@ -8,7 +8,7 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use cyltrace::check::{Finding, Intersector, Settings, compare};
+use cyltrace::check::{Intersector, ReportedHit, Settings, compare};
 use cyltrace::math::Ray;
 use cyltrace::scene;
 use cyltrace::solid::Cylinder;
@@ -52,13 +52,13 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
 struct Own(Vec<Cylinder>);
 
 impl Intersector for Own {
-    fn closest(&self, ray: &Ray) -> Option<Finding> {
+    fn closest(&self, ray: &Ray) -> Option<ReportedHit> {
         let hits = self.0.iter().flat_map(|cylinder| meetings(cylinder, ray));
         let t = hits
             .map(f64::from)
             .filter(|t| (ray.t_min..=ray.t_max).contains(t))
             .min_by(f64::total_cmp)?;
-        Some(Finding {
+        Some(ReportedHit {
             t,
             normal: None,
             place: None,
@@ -66,7 +66,7 @@ impl Intersector for Own {
     }
 }
 
-/// Where a line meets a cylinder's wall and discs.
+/// Where a line meets a cylinder's wall and disks.
 fn meetings(cylinder: &Cylinder, ray: &Ray) -> Vec<f32> {
     let (p0, a) = (cylinder.p0(), cylinder.p1() - cylinder.p0());
     let from_p0 = (ray.origin - p0).as_vec3();
@@ -83,13 +83,13 @@ fn meetings(cylinder: &Cylinder, ray: &Ray) -> Vec<f32> {
         .into_iter()
         .filter(|t| (0.0..=length).contains(&(height + t * rate)));
     let caps = cylinder.caps();
-    let discs = [
+    let disks = [
         (caps.at_p0(), -height / rate),
         (caps.at_p1(), (length - height) / rate),
     ];
-    let discs = discs
+    let disks = disks
         .into_iter()
         .filter(|&(is_there, t)| is_there && (start + way * t).length() <= radius)
         .map(|(_, t)| t);
-    wall.chain(discs).collect()
+    wall.chain(disks).collect()
 }

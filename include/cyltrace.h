@@ -81,8 +81,8 @@ struct cyltrace_ray {
 
 /* cyltrace_hit.part */
 #define CYLTRACE_SIDE 0u  /* the curved wall; all of a sphere or a disk */
-#define CYLTRACE_CAP0 1u  /* the disc at p0, its rim included; a rounded cone's sphere */
-#define CYLTRACE_CAP1 2u  /* the disc at p1, its rim included; a rounded cone's sphere */
+#define CYLTRACE_CAP0 1u  /* the disk at p0, its rim included; a rounded cone's sphere */
+#define CYLTRACE_CAP1 2u  /* the disk at p1, its rim included; a rounded cone's sphere */
 #define CYLTRACE_X_MIN 3u /* the face of a cuboid where its own x is least */
 #define CYLTRACE_X_MAX 4u /* where x is greatest */
 #define CYLTRACE_Y_MIN 5u /* where y is least */

@@ -219,7 +219,7 @@ fn ranges_tangents_and_coincident_ends_follow_the_rule() {
             .map(|hit| (hit.t, hit.primitive, hit.part, hit.crossing))
             .collect()
     };
-    // Along the axis, through the shared disc: out of one and into the other.
+    // Along the axis, through the shared disk: out of one and into the other.
     let axial = Ray::new(DVec3::new(0.5, 0.0, -1.0), DVec3::Z);
     let expected = [
         (1.0, 0, Part::Cap0, Crossing::Enter),
@@ -269,10 +269,10 @@ fn thousands_of_ties_are_all_found() {
     }
 }
 
-/// A ray within a disc meets it where it gets onto it, or where its range
+/// A ray within a disk meets it where it gets onto it, or where its range
 /// begins, and where it leaves it: not where a batch begins.
 #[test]
-fn ray_within_coinciding_discs_meets_each_twice_in_any_batch() {
+fn ray_within_coinciding_disks_meets_each_twice_in_any_batch() {
     let one = Cylinder::new(DVec3::ZERO, DVec3::Z, 1.0, Caps::Both).unwrap();
     let aside = Cylinder::new(DVec3::X * 0.5, DVec3::new(0.5, 0.0, 1.0), 1.0, Caps::Both);
     let tracer = tracer_of(vec![root_of(&[one, aside.unwrap(), one, one])]);

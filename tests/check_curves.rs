@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use cyltrace::check::{self, Class, Finding, Intersector, Outcome, Settings, Witness};
+use cyltrace::check::{self, Class, Intersector, Outcome, ReportedHit, Settings, Witness};
 use cyltrace::math::Ray;
 use cyltrace::scene;
 use cyltrace::tracer::{Options, Tracer};
@@ -16,9 +16,9 @@ struct Late {
 }
 
 impl Intersector for Late {
-    fn closest(&self, ray: &Ray) -> Option<Finding> {
+    fn closest(&self, ray: &Ray) -> Option<ReportedHit> {
         let finding = Intersector::closest(&self.tracer, ray)?;
-        Some(Finding {
+        Some(ReportedHit {
             t: finding.t + self.by,
             ..finding
         })

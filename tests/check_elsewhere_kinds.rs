@@ -51,8 +51,8 @@ fn kinds() -> [[AnySolid; 2]; 6] {
 /// A drilled block, a lens, and two balls in one with a bite.
 fn composed() -> Vec<Composition> {
     let sphere = |x, radius| {
-        let centre = DVec3::new(x, 0.0, 0.0);
-        Composition::Solid(Sphere::new(centre, radius).unwrap().into())
+        let center = DVec3::new(x, 0.0, 0.0);
+        Composition::Solid(Sphere::new(center, radius).unwrap().into())
     };
     let block = Cuboid::new(DVec3::ZERO, DVec3::splat(0.8), Orientation::IDENTITY).unwrap();
     let drill = Cylinder::new(DVec3::Z * -2.0, DVec3::Z * 2.0, 0.5, Caps::Both).unwrap();

@@ -35,9 +35,9 @@ fn folder(count: u64) -> tempfile::TempDir {
     let mut rays = String::from("ox,oy,oz,dx,dy,dz\n");
     for index in 0..count {
         let mut random = Random::new(3, index);
-        let centre = DVec3::new(1.0, 0.3, 1.0);
-        let o = centre + random.direction() * 6.0;
-        let d = centre + random.direction() * random.uniform(0.0, 1.5) - o;
+        let center = DVec3::new(1.0, 0.3, 1.0);
+        let o = center + random.direction() * 6.0;
+        let d = center + random.direction() * random.uniform(0.0, 1.5) - o;
         let cells = [o.x, o.y, o.z, d.x, d.y, d.z].map(|x| format!("{x:?}"));
         writeln!(rays, "{}", cells.join(",")).unwrap();
     }

@@ -7,7 +7,7 @@
 //! `g = |radius² |n|² - w²| / (radius² |n|²)` of `docs/derivations.md`,
 //! section 2, the promises that are tested here are:
 //!
-//! | inputs | hit and part | `t` on the wall | `t` on a disc |
+//! | inputs | hit and part | `t` on the wall | `t` on a disk |
 //! |---|---|---|---|
 //! | f32 | right | `8 u (t + (r + |x|) |a| / (|n| √g))` | `8 u (t s + (|x| + |a|) |a| / |a·d|)` |
 //! | f64 | right for `g > 20 u (1 + |x|/r + k)`, with `--exact` always | `10 u (t k + (r + |x| + t |d|) |a| / (|n| √g))` | the same |

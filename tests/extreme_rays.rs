@@ -164,8 +164,8 @@ fn extreme_rays_hit_what_trying_every_solid_hits() {
 }
 
 #[test]
-fn a_line_almost_in_the_plane_of_a_disc_ends_at_the_wall() {
-    // The ray meets the disc's plane 1e-123 behind the origin or before it, far outside of the
+fn a_line_almost_in_the_plane_of_a_disk_ends_at_the_wall() {
+    // The ray meets the disk's plane 1e-123 behind the origin or before it, far outside of the
     // wall; the wall is left behind the origin. By hand: no point of the cylinder has
     // an x below 4 - 1e-6, and the ray only goes to negative x.
     let scale = power_of_two(140);

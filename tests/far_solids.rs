@@ -58,14 +58,14 @@ fn moved(solid: &AnySolid, by: DVec3) -> AnySolid {
                 .unwrap()
                 .into()
         }
-        AnySolid::Sphere(one) => Sphere::new(one.centre() + by, one.radius()).unwrap().into(),
+        AnySolid::Sphere(one) => Sphere::new(one.center() + by, one.radius()).unwrap().into(),
         AnySolid::Cuboid(one) => {
             let (half_widths, orientation) = (one.half_widths(), one.orientation());
-            Cuboid::new(one.centre() + by, half_widths, orientation)
+            Cuboid::new(one.center() + by, half_widths, orientation)
                 .unwrap()
                 .into()
         }
-        AnySolid::Disk(one) => Disk::new(one.centre() + by, one.normal(), one.radius())
+        AnySolid::Disk(one) => Disk::new(one.center() + by, one.normal(), one.radius())
             .unwrap()
             .into(),
     }
@@ -80,8 +80,8 @@ fn outliers() -> Vec<(String, Vec<AnySolid>)> {
     };
     let plate = |z: f64| {
         let half_widths = DVec3::new(5e5, 5e5, 0.5);
-        let centre = DVec3::new(0.5, 0.5, z);
-        AnySolid::from(Cuboid::new(centre, half_widths, Orientation::IDENTITY).unwrap())
+        let center = DVec3::new(0.5, 0.5, z);
+        AnySolid::from(Cuboid::new(center, half_widths, Orientation::IDENTITY).unwrap())
     };
     let shell = Sphere::new(DVec3::splat(0.5), 1e6).unwrap().into();
     let rod = Cylinder::new(DVec3::X * -1e6, DVec3::X * 1e6, 1e-3, Caps::Both)
@@ -312,7 +312,7 @@ fn scenes_of_all_scales_lose_no_hit() {
             let solid = &leaf[random.below(leaf.len() as u64) as usize];
             let pose = poses[random.below(8) as usize];
             let bounds = solid.bounds();
-            let target = pose.transform_point3(bounds.centre());
+            let target = pose.transform_point3(bounds.center());
             let size = pose.transform_vector3(bounds.extent()).length();
             let origin = target + random.direction() * size * random.log_uniform(0.1, 1e8);
             let ray = Ray::new(origin, target - origin);

@@ -76,17 +76,17 @@ fn neighbour(of: &AnySolid, random: &mut Random) -> Option<AnySolid> {
             near.ok().map(AnySolid::from)
         }
         AnySolid::Sphere(one) => {
-            let near = Sphere::new(one.centre() + moved, one.radius() * larger);
+            let near = Sphere::new(one.center() + moved, one.radius() * larger);
             near.ok().map(AnySolid::from)
         }
         AnySolid::Cuboid(one) => {
             let turned = one.orientation().rotated(random.direction(), 180.0 * share);
-            let near = Cuboid::new(one.centre() + moved, one.half_widths() * larger, turned);
+            let near = Cuboid::new(one.center() + moved, one.half_widths() * larger, turned);
             near.ok().map(AnySolid::from)
         }
         AnySolid::Disk(one) => {
             let normal = one.normal() + within(random, one.normal().length() * share);
-            let near = Disk::new(one.centre() + moved, normal, one.radius() * larger);
+            let near = Disk::new(one.center() + moved, normal, one.radius() * larger);
             near.ok().map(AnySolid::from)
         }
     }
@@ -108,7 +108,7 @@ impl Block {
             0 => 1.0,
             _ => random.log_uniform(1.0, 1e4),
         };
-        let middle = around.centre() + within(random, around.extent().length() * (larger - 1.0));
+        let middle = around.center() + within(random, around.extent().length() * (larger - 1.0));
         Self {
             solids,
             whole: around.union(&Bounds::at(middle)),
@@ -132,7 +132,7 @@ impl Block {
         };
         let direction = direction.normalize();
         let across = direction.cross(random.direction()).normalize();
-        let through = |shift: f64| solid.centre() + across * shift;
+        let through = |shift: f64| solid.center() + across * shift;
         let [mut inside, mut outside] = [0.0, 2.0 * solid.size()];
         for _ in 0..random.below(50) {
             let between = 0.5 * (inside + outside);

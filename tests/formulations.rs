@@ -7,11 +7,11 @@
 //! coefficient, and the unit axis rounded to u. Its slope at the root is
 //! `2 |d| sin r √g`, with the angle to the axis and the gap g
 //! (`docs/derivations.md`, section 2); the discriminant's own roundings add as
-//! much again. A disc's plane is met with an error of `u size` along the axis.
+//! much again. A disk's plane is met with an error of `u size` along the axis.
 //! Hence, with a factor for counts of roundings,
 //!
 //! ```text
-//! |t - t*| |d| <= 32 u size² / (r sin √g)   on the wall,   16 u size / cos   on a disc
+//! |t - t*| |d| <= 32 u size² / (r sin √g)   on the wall,   16 u size / cos   on a disk
 //! ```
 
 use cyltrace::math::{Random, Ray};

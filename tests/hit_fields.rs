@@ -27,12 +27,12 @@ fn all_sets() -> impl Iterator<Item = HitFields> + Clone {
 /// Solids of all kinds in the unit cube, each set operation among them.
 fn all_kinds(seed: u64) -> Prototype {
     let mut prototype = prototype_of(&crowd(seed, 60));
-    let operands = |centre: DVec3| {
+    let operands = |center: DVec3| {
         let half_widths = DVec3::splat(0.15);
-        let cuboid = Cuboid::new(centre, half_widths, Orientation::IDENTITY).unwrap();
-        let sphere = Sphere::new(centre, 0.2).unwrap();
-        let end = centre + DVec3::Z * 0.3;
-        let cylinder = Cylinder::new(centre, end, 0.1, Caps::Both).unwrap();
+        let cuboid = Cuboid::new(center, half_widths, Orientation::IDENTITY).unwrap();
+        let sphere = Sphere::new(center, 0.2).unwrap();
+        let end = center + DVec3::Z * 0.3;
+        let cylinder = Cylinder::new(center, end, 0.1, Caps::Both).unwrap();
         let solids: [AnySolid; 3] = [cuboid.into(), sphere.into(), cylinder.into()];
         solids.map(Composition::Solid).to_vec()
     };

@@ -11,7 +11,7 @@ use cyltrace::embree::with_flushed_denormals;
 use cyltrace::math::{Random, Ray, power_of_two};
 use cyltrace::solid::exact::{self, ExactHit};
 use cyltrace::solid::formulations::{Answer, Precision, Problem, by_name};
-use cyltrace::solid::{Caps, Crossing, Cylinder, Meeting, Part, triple_product};
+use cyltrace::solid::{Caps, Crossing, Cylinder, Intersection, Part, triple_product};
 use cyltrace::stress::{TrueAnswer, Witness, to_bits};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -99,7 +99,7 @@ impl Sayings {
     }
 }
 
-fn meetings(problem: &Problem) -> Vec<Meeting> {
+fn meetings(problem: &Problem) -> Vec<Intersection> {
     let Problem { cylinder, ray } = problem;
     let chord = triple_product::chord(cylinder, ray.origin - cylinder.p0(), ray.direction);
     let meetings = chord.map(|chord| chord.meetings(cylinder.caps(), 0.0, ray.t_min, ray.t_max));
@@ -243,7 +243,7 @@ fn other_end(part: Part) -> Part {
     }
 }
 
-/// One disc or the other, or none or both.
+/// One disk or the other, or none or both.
 fn with_any_caps(problem: &Problem, random: &mut Random) -> Problem {
     let one = &problem.cylinder;
     let caps = [one.caps(), Caps::P0, Caps::P1, Caps::None][random.below(4) as usize];
@@ -283,7 +283,7 @@ fn exact_answers_ignore_the_order_of_axes_and_of_ends() {
 /// A case as the oracle and the solver see it.
 struct Judged {
     witness: Witness,
-    found: Vec<Meeting>,
+    found: Vec<Intersection>,
 }
 
 impl Judged {

@@ -18,7 +18,7 @@ use cyltrace::solid::lanes::{
     self, AllCapped, AllOpen, CylinderLanes, LaneCaps, MixedCaps, RayLanes,
 };
 use cyltrace::solid::{
-    AnySolid, Caps, ConvexSolid, Cylinder, Meeting, RayOrigin, quick, triple_product,
+    AnySolid, Caps, ConvexSolid, Cylinder, Intersection, RayOrigin, quick, triple_product,
 };
 use glam::DVec3;
 use rayon::prelude::*;
@@ -299,7 +299,7 @@ fn verify_lanes(
     rays: &RayLanes,
     active: u8,
     name: &str,
-    first: impl Fn(usize) -> Option<Meeting>,
+    first: impl Fn(usize) -> Option<Intersection>,
 ) -> Count {
     let mut count = Count::default();
     let answer = quick::first(solid, rays, &LaneMask::from_bits(active));

@@ -54,14 +54,17 @@ fn scene(cylinders: u32, placements: u32) -> Scene {
 #[test]
 fn census_and_estimate_of_a_nested_scene_agree_with_the_tracer() {
     let scene = Arc::new(scene(50_000, 20_000));
-    let census = scene.census();
-    assert_eq!(census.depth, 1);
+    let scene_stats = scene.scene_stats();
+    assert_eq!(scene_stats.depth, 1);
     for layout in [Layout::Single, Layout::Block] {
         let tracer = built(&scene, layout);
         let statistics = tracer.statistics();
-        assert_eq!(census.cylinders_unique, statistics.cylinders_unique);
-        assert_eq!(census.cylinders_instanced, statistics.cylinders_instanced);
-        assert_eq!(census.instances, statistics.instances);
+        assert_eq!(scene_stats.cylinders_unique, statistics.cylinders_unique);
+        assert_eq!(
+            scene_stats.cylinders_instanced,
+            statistics.cylinders_instanced
+        );
+        assert_eq!(scene_stats.instances, statistics.instances);
 
         let estimate = MemoryEstimate::of(&scene.contents(), layout, None);
         assert_eq!(estimate.records_bytes, 50_000 * 64 + 20_000 * 104);
@@ -73,7 +76,7 @@ fn census_and_estimate_of_a_nested_scene_agree_with_the_tracer() {
     }
     let tracer = built(&scene, Layout::Single);
 
-    let (counted, traced) = (census.bounds, tracer.bounds());
+    let (counted, traced) = (scene_stats.bounds, tracer.bounds());
     let apart = (counted.lower - traced.lower).abs() + (counted.upper - traced.upper).abs();
     assert!(apart.max_element() < 1e-6, "{counted:?} {traced:?}");
 }

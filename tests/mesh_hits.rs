@@ -34,10 +34,10 @@ fn with_radii(scene: &Scene, factor: f64) -> Tracer {
 }
 
 /// A ray with numbers that f32 holds, from around the scene into it.
-fn ray_into(random: &mut Random, centre: DVec3, extent: f64) -> Ray {
-    let from = centre + random.direction() * (extent * random.uniform(0.8, 2.0));
+fn ray_into(random: &mut Random, center: DVec3, extent: f64) -> Ray {
+    let from = center + random.direction() * (extent * random.uniform(0.8, 2.0));
     let mut coordinate = || random.uniform(-0.5, 0.5);
-    let to = centre + DVec3::new(coordinate(), coordinate(), coordinate()) * extent;
+    let to = center + DVec3::new(coordinate(), coordinate(), coordinate()) * extent;
     let direction = (to - from).normalize();
     Ray::new(from.as_vec3().as_dvec3(), direction.as_vec3().as_dvec3())
 }
@@ -53,7 +53,7 @@ fn hits_of_the_minimal_scene_lie_between_the_mesh_s_cylinders() {
         .collect();
     let outer = with_radii(&scene, 1.0);
     let bounds = outer.bounds();
-    let (centre, extent) = (bounds.centre(), bounds.extent().length());
+    let (center, extent) = (bounds.center(), bounds.extent().length());
     let device = Device::new(&DeviceOptions::default()).unwrap();
 
     for (segments, most_in_band) in [(64, 0.01), (256, 0.003)] {
@@ -76,7 +76,7 @@ fn hits_of_the_minimal_scene_lie_between_the_mesh_s_cylinders() {
         let (mut hits, mut in_band) = (0_u64, 0_u64);
         for number in 0..RAYS {
             let mut random = Random::new(SEED, number);
-            let ray = ray_into(&mut random, centre, extent);
+            let ray = ray_into(&mut random, center, extent);
             let ray32 = Ray32 {
                 origin: ray.origin.as_vec3().to_array(),
                 direction: ray.direction.as_vec3().to_array(),

@@ -152,18 +152,18 @@ struct Equations {
 
 /// The equations of the part of a solid at the point.
 fn equations(solid: &AnySolid, part: Part, point: &ExactVector) -> Equations {
-    let from = |centre: DVec3| point - &ExactVector::new(centre);
+    let from = |center: DVec3| point - &ExactVector::new(center);
     let square = |x: &Exact| x * x;
     let within = |way: &ExactVector, radius: f64| square(&exact(radius)) - way.dot(way);
     let (ends, radii, is_rounded) = match solid {
         AnySolid::Sphere(one) => {
             return Equations {
-                zero: within(&from(one.centre()), one.radius()),
+                zero: within(&from(one.center()), one.radius()),
                 not_negative: Vec::new(),
             };
         }
         AnySolid::Disk(one) => {
-            let way = from(one.centre());
+            let way = from(one.center());
             return Equations {
                 zero: way.dot(&ExactVector::new(one.normal())),
                 not_negative: vec![within(&way, one.radius())],
@@ -173,7 +173,7 @@ fn equations(solid: &AnySolid, part: Part, point: &ExactVector) -> Equations {
             let frame = one.orientation().world_from_object();
             let mut below = Vec::new();
             for axis in 0..3 {
-                let own = ExactVector::new(frame.col(axis)).dot(&from(one.centre()));
+                let own = ExactVector::new(frame.col(axis)).dot(&from(one.center()));
                 let half_width = exact(one.half_widths()[axis]);
                 below.extend([&half_width + &own, half_width - own]);
             }
@@ -201,7 +201,7 @@ fn equations(solid: &AnySolid, part: Part, point: &ExactVector) -> Equations {
             ([one.p0(), one.p1()], radii, true)
         }
     };
-    // With q = point - p0: the heights along the axis of the two discs, or of the
+    // With q = point - p0: the heights along the axis of the two disks, or of the
     // circles in which the wall touches the balls.
     let axis = &ExactVector::new(ends[1]) - &ExactVector::new(ends[0]);
     let q = from(ends[0]);

@@ -25,7 +25,7 @@ fn lines_that_pass_by_have_no_hit_and_most_of_those_without_are_told() {
                     t_max: f64::INFINITY,
                     ..ray
                 };
-                let passes = solid.passes_by(ray.origin - solid.anchor(), ray.direction);
+                let passes = solid.rejects(ray.origin - solid.anchor(), ray.direction);
                 let is_hit = !hits_of_any(&solid, &line).is_empty();
                 assert!(
                     !(passes && is_hit),
@@ -41,7 +41,7 @@ fn lines_that_pass_by_have_no_hit_and_most_of_those_without_are_told() {
     }
     assert_eq!(told.len(), 5, "a family of each kind: {told:?}");
     for (kind, [misses, told]) in told {
-        // A cone's wall goes on beyond its discs.
+        // A cone's wall goes on beyond its disks.
         assert!(4 * told > 3 * misses, "{kind:?}: {told} of {misses}");
     }
 }

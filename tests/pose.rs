@@ -129,18 +129,18 @@ fn pose_takes_points_and_directions_both_ways() {
     let mut random = Random::new(64, 0);
     for case in 0..2_000 {
         let mut vector = || random.direction() * random.log_uniform(1e-6, 1e6);
-        let (centre, by, point) = (vector(), vector(), vector());
+        let (center, by, point) = (vector(), vector(), vector());
         let turn = Turn::draw(&mut random);
         let pose = Pose {
             orientation: turn.after(Orientation::IDENTITY),
-            ..Pose::at(centre)
+            ..Pose::at(center)
         }
         .rotated_x(turn.degrees)
         .translated(by);
         assert_eq!(
-            pose.centre,
-            centre + by,
-            "case {case}: turns leave the centre"
+            pose.center,
+            center + by,
+            "case {case}: turns leave the center"
         );
 
         let map = ExactAffine::new(&pose.world_from_object());
@@ -148,19 +148,19 @@ fn pose_takes_points_and_directions_both_ways() {
         let off = |found: DVec3, truth: &ExactVector| (&ExactVector::new(found) - truth).length();
         let u = UNIT_ROUNDOFF;
         let world = off(pose.point_to_world(point), &map.point(&exact_point));
-        assert!(world <= u * (8.0 * point.length() + 2.0 * pose.centre.length()));
+        assert!(world <= u * (8.0 * point.length() + 2.0 * pose.center.length()));
         let direction = off(
             pose.direction_to_world(point),
             &map.matrix().times(&exact_point),
         );
         assert!(direction <= 6.0 * u * point.length());
 
-        let from_centre = &exact_point - map.translation();
+        let from_center = &exact_point - map.translation();
         let object = off(
             pose.point_to_object(point),
-            &map.matrix().times_from_left(&from_centre),
+            &map.matrix().times_from_left(&from_center),
         );
-        assert!(object <= 8.0 * u * from_centre.length());
+        assert!(object <= 8.0 * u * from_center.length());
         let direction = off(
             pose.direction_to_object(point),
             &map.matrix().times_from_left(&exact_point),

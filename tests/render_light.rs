@@ -49,7 +49,7 @@ fn scene(cylinders: &[(DVec3, DVec3, f64, Caps)]) -> Scene {
     }
 }
 
-/// A disc of radius 100 whose top is at z = 0: a plane, from near.
+/// A disk of radius 100 whose top is at z = 0: a plane, from near.
 const GROUND: (DVec3, DVec3, f64, Caps) =
     (DVec3::new(0.0, 0.0, -1.0), DVec3::ZERO, 100.0, Caps::Both);
 
@@ -113,7 +113,7 @@ fn ground_under_a_slanting_sun_follows_lambert() {
 }
 
 #[test]
-fn ground_in_the_shadow_of_a_disc_is_black() {
+fn ground_in_the_shadow_of_a_disk_is_black() {
     let roof = (
         DVec3::new(40.0, 0.0, 40.0),
         DVec3::new(40.0, 0.0, 41.0),
@@ -130,8 +130,8 @@ fn ground_in_the_shadow_of_a_disc_is_black() {
 }
 
 #[test]
-fn ground_below_a_wide_disc_sees_the_sky_beside_it() {
-    // A disc of radius R at height h covers R²/(R² + h²) of the sky as a
+fn ground_below_a_wide_disk_sees_the_sky_beside_it() {
+    // A disk of radius R at height h covers R²/(R² + h²) of the sky as a
     // diffuse surface below its middle sees it. Seen from a camera under it.
     let (radius, height) = (60.0, 60.0);
     let roof = (

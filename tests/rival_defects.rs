@@ -12,7 +12,7 @@
 //! instance that scales, meets another shape. Its terms are of the eighth degree
 //! in lengths, and cancel in f32. The `u` of a second hit is chosen by what the
 //! first one was. A ray whose discriminant rounds to a negative number is a miss
-//! before the discs are looked at, as rays along the axis may be. A round curve
+//! before the disks are looked at, as rays along the axis may be. A round curve
 //! takes a ray along its axis for a miss of the cone and forgets about the spheres.
 
 use std::sync::Arc;

@@ -41,11 +41,11 @@ fn forest_counted_holds_ten_thousand_trees() {
 fn forest_huge_loaded_holds_ten_thousand_million_cylinders() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/forest_huge.toml");
     let scene = cyltrace::scene::load(&path).unwrap_or_else(|error| panic!("{error}"));
-    let census = scene.census();
+    let scene_stats = scene.scene_stats();
     assert_eq!(scene.prototypes[1].cylinders.len(), 10_000);
-    assert_eq!(census.placements, 1_000_000);
-    assert_eq!(census.cylinders_unique, 10_005);
-    assert_eq!(census.cylinders_instanced, 10_000_000_005);
+    assert_eq!(scene_stats.placements, 1_000_000);
+    assert_eq!(scene_stats.cylinders_unique, 10_005);
+    assert_eq!(scene_stats.cylinders_instanced, 10_000_000_005);
 }
 
 #[test]

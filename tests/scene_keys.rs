@@ -394,7 +394,7 @@ fn nesting_of_64_levels_is_accepted() {
         inner = level.to_string();
     }
     let scene = scene(&format!("{text}[[instance]]\nof = \"{inner}\"\n"));
-    assert_eq!(scene.census().depth, 64);
+    assert_eq!(scene.scene_stats().depth, 64);
 }
 
 #[test]

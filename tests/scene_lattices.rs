@@ -55,14 +55,14 @@ fn cylinders(prototype: &Prototype) -> Vec<(u32, DVec3, DVec3, f64)> {
         .collect()
 }
 
-/// Number, centre and radius of the spheres.
+/// Number, center and radius of the spheres.
 fn spheres(prototype: &Prototype) -> Vec<(u32, DVec3, f64)> {
     let records = prototype.solids.spheres.iter();
     records
         .map(|record| {
             (
                 record.primitive,
-                record.solid.centre(),
+                record.solid.center(),
                 record.solid.radius(),
             )
         })

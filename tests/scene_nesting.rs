@@ -111,10 +111,10 @@ fn counts_beyond_u128_stay_at_its_greatest_number() {
     let file = tempfile::NamedTempFile::new().expect("a temporary file");
     fs::write(file.path(), text).expect("writing the scene");
     let scene = load(file.path()).unwrap_or_else(|error| panic!("{error}"));
-    let census = scene.census();
-    assert_eq!(census.cylinders_instanced, u128::MAX);
+    let scene_stats = scene.scene_stats();
+    assert_eq!(scene_stats.cylinders_instanced, u128::MAX);
     let tracer = Tracer::new(Arc::new(scene), &Options::default()).expect("a tracer");
     let built = tracer.statistics();
-    assert_eq!(built.cylinders_instanced, census.cylinders_instanced);
-    assert_eq!(built.instances, census.instances);
+    assert_eq!(built.cylinders_instanced, scene_stats.cylinders_instanced);
+    assert_eq!(built.instances, scene_stats.instances);
 }

@@ -30,12 +30,12 @@ fn cylinder(p0: DVec3, p1: DVec3, radius: f64) -> Cylinder {
     Cylinder::new(p0, p1, radius, Caps::Both).expect("a cylinder")
 }
 
-fn sphere(centre: DVec3, radius: f64) -> Sphere {
-    Sphere::new(centre, radius).expect("a sphere")
+fn sphere(center: DVec3, radius: f64) -> Sphere {
+    Sphere::new(center, radius).expect("a sphere")
 }
 
-fn cuboid(centre: DVec3, half_widths: DVec3, orientation: Orientation) -> Cuboid {
-    Cuboid::new(centre, half_widths, orientation).expect("a cuboid")
+fn cuboid(center: DVec3, half_widths: DVec3, orientation: Orientation) -> Cuboid {
+    Cuboid::new(center, half_widths, orientation).expect("a cuboid")
 }
 
 fn leaf(solid: impl Into<AnySolid>) -> Composition {
@@ -117,7 +117,7 @@ fn poses_apply_x_then_y_then_z_then_the_list_then_the_translation() {
         "[[cuboid]]\ncenter = [1, 2, 3]\nhalf_widths = [4, 5, 6]\n{all}"
     ));
     let found = cuboids.solids.cuboids[0].solid;
-    assert_eq!(found.centre(), at(11.0, 22.0, 33.0));
+    assert_eq!(found.center(), at(11.0, 22.0, 33.0));
     assert_eq!(found.half_widths(), at(4.0, 5.0, 6.0));
     assert_eq!(found.orientation().world_from_object(), turn);
 
@@ -134,13 +134,13 @@ fn poses_apply_x_then_y_then_z_then_the_list_then_the_translation() {
     let cone = RoundedCone::new(p0, p1, 1.0, 2.0).expect("a rounded cone");
     assert_eq!(turned.solids.rounded_cones[0].solid, cone);
 
-    let centre = "center = [1, 2, 3]\nradius = 1\n";
-    let moved = root(&format!("[[sphere]]\n{centre}{all}"));
+    let center = "center = [1, 2, 3]\nradius = 1\n";
+    let moved = root(&format!("[[sphere]]\n{center}{all}"));
     assert_eq!(
         moved.solids.spheres[0].solid,
         sphere(at(11.0, 22.0, 33.0), 1.0)
     );
-    let turned = root(&format!("[[disk]]\n{centre}normal = [0, 0, 5]\n{all}"));
+    let turned = root(&format!("[[disk]]\n{center}normal = [0, 0, 5]\n{all}"));
     let disk = Disk::new(at(11.0, 22.0, 33.0), at(0.0, 5.0, 0.0), 1.0).expect("a disk");
     assert_eq!(turned.solids.disks[0].solid, disk);
 }
@@ -266,13 +266,16 @@ fn census_counts_other_solids_and_their_box_holds_them() {
     let text = "[[prototype]]\nname = \"a\"\n[[prototype.sphere]]\ncenter = [0, 0, 0]\nradius = 1\n\
          [[prototype.difference]]\nof = [{ cuboid = { center = [5, 0, 0], half_widths = [1, 2, 1] } }, { sphere = { center = [9, 0, 0], radius = 4 } }]\n\
          [[instance]]\nof = \"a\"\n[[instance]]\nof = \"a\"\ntranslate = [100, 0, 0]\n";
-    let census = scene(text).census();
+    let scene_stats = scene(text).scene_stats();
     assert_eq!(
-        (census.other_solids_unique, census.other_solids_instanced),
+        (
+            scene_stats.other_solids_unique,
+            scene_stats.other_solids_instanced
+        ),
         (2, 4)
     );
-    assert_eq!(census.cylinders_unique, 0);
-    let (lower, upper) = (census.bounds.lower, census.bounds.upper);
+    assert_eq!(scene_stats.cylinders_unique, 0);
+    let (lower, upper) = (scene_stats.bounds.lower, scene_stats.bounds.upper);
     // Boxes are rounded outward, by next to nothing.
     assert!(
         lower.abs_diff_eq(at(-1.0, -2.0, -1.0), 1e-12) && lower.cmple(at(-1.0, -2.0, -1.0)).all()

@@ -33,8 +33,8 @@ fn crowd(seed: u64) -> Solids {
         let mut random = Random::new(seed, u64::from(primitive));
         let (is_coarse, turn) = (primitive % 2 == 0, Orientation::IDENTITY);
         if primitive % 6 == 5 {
-            let centre = random.direction() * random.uniform(0.0, 3.0);
-            let sphere = Sphere::new(centre, random.uniform(0.2, 1.0)).expect("a sphere");
+            let center = random.direction() * random.uniform(0.0, 3.0);
+            let sphere = Sphere::new(center, random.uniform(0.2, 1.0)).expect("a sphere");
             let record = SolidRecord::new(sphere, primitive, MaterialIndex(0));
             solids.spheres.push(record);
             continue;

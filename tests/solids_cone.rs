@@ -12,7 +12,7 @@ use cyltrace::oracle::{
     rounded_cone_holds, to_f64,
 };
 use cyltrace::solid::{
-    AnySolid, Caps, Chord, Cone, ConvexSolid, Cylinder, Meeting, surface_point, triple_product,
+    AnySolid, Caps, Chord, Cone, ConvexSolid, Cylinder, Intersection, surface_point, triple_product,
 };
 use glam::DVec3;
 
@@ -24,7 +24,7 @@ fn cases() -> u64 {
 
 /// What a solid and its oracle say of a case.
 struct Answer {
-    found: Vec<Meeting>,
+    found: Vec<Intersection>,
     truth: Vec<TrueHit>,
     chord: Option<Chord>,
     reversed: Option<Chord>,
@@ -219,7 +219,7 @@ fn rounded_cones_of_f64_numbers_are_hit_rightly_outside_the_rounding() {
 
 /// Points in, on and around a solid: those where its ray meets it, rounded, and, on
 /// the grids, points of the line in whole numbers.
-fn points(case: &TaperCase, found: &[Meeting]) -> Vec<DVec3> {
+fn points(case: &TaperCase, found: &[Intersection]) -> Vec<DVec3> {
     let ray = &case.ray;
     let mut points = vec![ray.origin, case.p0, case.p1, case.p0.midpoint(case.p1)];
     points.extend((0..40).map(|t| ray.origin + ray.direction * f64::from(t)));
@@ -381,7 +381,7 @@ fn lines_that_touch_the_rim_of_an_open_end_enter_and_leave_there() {
                 let found = solid.chord(x, direction).map_or(Vec::new(), |chord| {
                     chord.meetings(caps, 0.0, 0.0, f64::INFINITY).collect()
                 });
-                let keys = |met: &Meeting| (met.part, met.crossing, met.t);
+                let keys = |met: &Intersection| (met.part, met.crossing, met.t);
                 let found: Vec<_> = found.iter().map(keys).collect();
                 let expected = truth
                     .iter()

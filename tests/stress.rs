@@ -88,7 +88,7 @@ fn known_failures_of_the_textbook_form_are_found() {
     let families = families.map(|one| AnyFamily::Cylinder(one).into());
     let cells = stressed(1_000, &families, false);
     let textbook = cells.iter().filter(|cell| {
-        cell.formulation == "centre-dot"
+        cell.formulation == "center-dot"
             && cell.precision == Precision::F32
             && cell.inputs == Inputs::F32
     });

@@ -324,11 +324,11 @@ fn somata_are_balls_and_cylinders_and_keep_the_numbers_of_segments() {
     ]);
     let ball = found.expect("a scene").prototypes[0].solids.spheres[0].solid;
     assert_eq!(
-        (ball.centre(), ball.radius()),
+        (ball.center(), ball.radius()),
         (DVec3::new(5.0, 6.0, 7.0), 2.0)
     );
 
-    // The ends are the children's points, the radius that of the centre.
+    // The ends are the children's points, the radius that of the center.
     let three = "1 1 5 6 7 2 -1\n2 1 5 4 7 2 1\n3 1 5 8 7 2 1\n4 3 15 6 7 1 1\n";
     let found = scene(&[
         ("scene.toml", "[[swc]]\nfile = \"n.swc\"\n"),

@@ -115,10 +115,10 @@ fn judge((solid, map): &(AnySolid, DAffine3), mesh: &Mesh, plan: &Plan, what: &s
     if matches!(solid, AnySolid::Disk(_)) {
         return;
     }
-    let (centre, inverse) = (solid.centre(), map.inverse());
+    let (center, inverse) = (solid.center(), map.inverse());
     for vertex in &mesh.vertices {
-        let from_centre = inverse.transform_point3(*vertex) - centre;
-        let scaled = |factor: f64| solid.locate(centre + from_centre * factor);
+        let from_center = inverse.transform_point3(*vertex) - center;
+        let scaled = |factor: f64| solid.locate(center + from_center * factor);
         match plan.fit() {
             Fit::Inscribed => assert!(scaled(1.0 - 1e-9).is_held(), "{what}: {vertex}"),
             Fit::Circumscribed => {
@@ -126,7 +126,7 @@ fn judge((solid, map): &(AnySolid, DAffine3), mesh: &Mesh, plan: &Plan, what: &s
             }
         }
     }
-    let inside = map.transform_point3(centre);
+    let inside = map.transform_point3(center);
     for [a, b, c] in triangles {
         let outward = (b - a).cross(c - a).dot(a - inside);
         assert!(outward > 0.0, "{what}: a triangle faces inward");

@@ -64,7 +64,7 @@ static int inside(const struct cylinder *c, real factor, const real *origin,
         return 0;
     }
 
-    /* The discs. */
+    /* The disks. */
     if (rate != 0) {
         const real at0 = -height / rate, at1 = (length - height) / rate;
         const real first = at0 < at1 ? at0 : at1, last = at0 < at1 ? at1 : at0;

@@ -73,7 +73,7 @@ impl<'a> Compositions<'a> {
             let off = (hit.t - t).abs() <= power_of_two(-34) * t.abs().max(1.0);
             assert!(off, "another t than {t}: {}", case());
             let mut faces = expected.faces.iter();
-            // An apex may be of the wall or of a disc of radius zero.
+            // An apex may be of the wall or of a disk of radius zero.
             let is_face = faces.any(|face| face.part == hit.part || face.normal.is_none());
             assert!(is_face, "not a face: {}", case());
         }

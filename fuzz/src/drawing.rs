@@ -4,7 +4,7 @@
 //! and products of them are exact, so that faces coincide and rays touch to the last
 //! bit. *Fine* numbers are any f64 of a few units. *Mixed* ones are either, scaled by
 //! powers of two. Points and lengths that were drawn before come again, so that solids
-//! share faces, axes and centres.
+//! share faces, axes and centers.
 
 use arbitrary::{Result, Unstructured};
 use cyltrace::math::{Orientation, power_of_two};
@@ -281,16 +281,16 @@ fn changed(solid: &AnySolid, at: impl Fn(DVec3) -> DVec3, factor: f64) -> Option
             changed.ok()?.into()
         }
         AnySolid::Sphere(one) => {
-            let changed = Sphere::new(at(one.centre()), one.radius() * factor);
+            let changed = Sphere::new(at(one.center()), one.radius() * factor);
             changed.ok()?.into()
         }
         AnySolid::Cuboid(one) => {
             let half_widths = one.half_widths() * factor;
-            let changed = Cuboid::new(at(one.centre()), half_widths, one.orientation());
+            let changed = Cuboid::new(at(one.center()), half_widths, one.orientation());
             changed.ok()?.into()
         }
         AnySolid::Disk(one) => {
-            let changed = Disk::new(at(one.centre()), one.normal(), one.radius() * factor);
+            let changed = Disk::new(at(one.center()), one.normal(), one.radius() * factor);
             changed.ok()?.into()
         }
     })

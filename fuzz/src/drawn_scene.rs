@@ -65,7 +65,7 @@ impl DrawnScene {
         let scene = Arc::new(Scene::new(prototypes));
         for placed in placed_solids(&scene) {
             let map = placed.world_from_object.rounded();
-            drawing.remember(map.transform_point3(placed.solid.centre()));
+            drawing.remember(map.transform_point3(placed.solid.center()));
         }
         let mut rays = Vec::new();
         for _ in 0..=drawing.below(3)? {

@@ -11,7 +11,7 @@ use std::path::{Component, Path};
 use std::sync::Arc;
 
 use cyltrace::math::Ray;
-use cyltrace::scene::{Contents, Scene, SceneFile};
+use cyltrace::scene::{ExpectedCounts, Scene, SceneFile};
 use cyltrace::tracer::{Options, Tracer};
 use glam::DVec3;
 use tempfile::TempDir;
@@ -184,7 +184,7 @@ fn load(folder: &TempDir) {
     for (counted, held) in counted.iter().zip(&scene.contents()) {
         // A neuron's segments and somata are counted together: which are balls is not
         // known by its lines.
-        let solids = |contents: &Contents| contents.cylinders + contents.others.count;
+        let solids = |contents: &ExpectedCounts| contents.cylinders + contents.others.count;
         let is_enough =
             solids(counted) >= solids(held) && counted.placements() >= held.placements();
         assert!(is_enough, "counted {counted:?}, loaded {held:?}");
@@ -228,7 +228,7 @@ fn trace(scene: &Arc<Scene>) {
     }
     for direction in [DVec3::X, DVec3::new(-0.5, 0.25, 1.0)] {
         let back = direction * (bounds.upper - bounds.lower).length();
-        let ray = Ray::new(bounds.centre() - back, direction);
+        let ray = Ray::new(bounds.center() - back, direction);
         let (found, expected) = (tracer.closest(&ray), tracer.closest_exhaustive(&ray));
         assert_eq!(found, expected, "{ray:?}");
     }

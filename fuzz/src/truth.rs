@@ -94,12 +94,12 @@ pub fn is_whole(solid: &AnySolid) -> bool {
             let radii = DVec3::new(one.radius0(), one.radius1(), 0.0);
             [one.p0(), one.p1(), radii]
         }
-        AnySolid::Sphere(one) => [one.centre(), DVec3::splat(one.radius()), DVec3::ZERO],
+        AnySolid::Sphere(one) => [one.center(), DVec3::splat(one.radius()), DVec3::ZERO],
         AnySolid::Cuboid(one) if one.orientation() == Orientation::IDENTITY => {
-            [one.centre(), one.half_widths(), DVec3::ZERO]
+            [one.center(), one.half_widths(), DVec3::ZERO]
         }
         AnySolid::Cuboid(_) => return false,
-        AnySolid::Disk(one) => [one.centre(), one.normal(), DVec3::splat(one.radius())],
+        AnySolid::Disk(one) => [one.center(), one.normal(), DVec3::splat(one.radius())],
     };
     are_whole(&numbers)
 }
@@ -112,7 +112,7 @@ pub fn are_whole(points: &[DVec3]) -> bool {
 }
 
 /// Parts and crossings, as far as roundings leave them. No displacement of a ray makes it
-/// go through the apex of a cone, a disc of radius zero. Wall and balls of a rounded cone
+/// go through the apex of a cone, a disk of radius zero. Wall and balls of a rounded cone
 /// have the same tangent planes where they meet, and which is which there, also for a ball
 /// that touches the other from within, is decided by the last bit of its numbers.
 fn comparable(keys: impl Iterator<Item = (Part, Crossing)>, solid: &AnySolid) -> Keys {
@@ -160,10 +160,10 @@ impl PlacedSolid {
         frobenius_norm(&self.world_from_object.rounded().matrix3) * self.solid.size()
     }
 
-    /// The parameter at which a ray is nearest to the solid's centre, about.
+    /// The parameter at which a ray is nearest to the solid's center, about.
     fn nearest_parameter(&self, ray: &Ray) -> f64 {
         let map = self.world_from_object.rounded();
-        let way = map.transform_point3(self.solid.centre()) - ray.origin;
+        let way = map.transform_point3(self.solid.center()) - ray.origin;
         (way.length() + self.size_in_world()) / ray.direction.length()
     }
 
@@ -216,8 +216,8 @@ impl PlacedSolid {
         let inverse = matrix.inverse();
         let way = displacement * frobenius_norm(&inverse);
         let up = disk.normal().normalize_or_zero() * way;
-        let (centre, radius) = (disk.centre(), disk.radius() + way);
-        let thick = Cylinder::new(centre - up, centre + up, radius, Caps::Both);
+        let (center, radius) = (disk.center(), disk.radius() + way);
+        let thick = Cylinder::new(center - up, center + up, radius, Caps::Both);
         thick.is_ok_and(|thick| {
             let thick = AnySolid::from(thick);
             let hits = placed_hits_of_any(&thick, &self.world_from_object, ray);

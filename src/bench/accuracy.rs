@@ -120,7 +120,7 @@ pub const USUAL_ROUNDS: Rounds = Rounds {
 };
 
 /// How many rays are timed. A processor learns the branches of a batch that is
-/// run again and again: with 1000 rays literal `centre-dot` in f32 took 20 ns,
+/// run again and again: with 1000 rays literal `center-dot` in f32 took 20 ns,
 /// with 4000 and with 16 000 twice as long, as it does in a callback that
 /// never sees a ray twice. More would only leave the second-level cache.
 pub const USUAL_TIMED: u64 = 8192;
@@ -259,9 +259,9 @@ mod tests {
     use crate::solid::formulations::Answer;
 
     /// A clock that goes one second further each time it is asked.
-    struct Slowing(f64);
+    struct SlowingClock(f64);
 
-    impl Timer for Slowing {
+    impl Timer for SlowingClock {
         fn seconds(&mut self, work: &mut dyn FnMut()) -> f64 {
             work();
             self.0 += 1.0;
@@ -321,7 +321,7 @@ mod tests {
             &samples::problems(3, 100),
             &contenders,
             ROUNDS,
-            &mut Slowing(0.0),
+            &mut SlowingClock(0.0),
             &mut after,
         );
         assert_eq!(steps, Accuracy::steps(2, 3, ROUNDS));
@@ -359,7 +359,7 @@ mod tests {
             &samples::problems(3, 100),
             &contenders,
             ROUNDS,
-            &mut Slowing(0.0),
+            &mut SlowingClock(0.0),
             &mut || {},
         );
         let row = &mut found.rows[0];

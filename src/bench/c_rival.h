@@ -5,7 +5,7 @@
 #include "../embree/shim.h"
 
 /* A cylinder in one cache line, as the tracer's own record is. `caps` has bit 0
- * for the disc at p0 and bit 1 for that at p1. */
+ * for the disk at p0 and bit 1 for that at p1. */
 struct cyltrace_c_cylinder {
   _Alignas(64) double p0[3];
   double p1[3];

@@ -6,7 +6,7 @@ use crate::embree::{Device, DeviceOptions, MaxIsa};
 
 /// What a run's figures depend on.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Circumstances {
+pub struct Environment {
     /// The processor's model name where the system says it (Linux), its architecture
     /// elsewhere.
     pub processor: String,
@@ -30,7 +30,7 @@ pub struct Circumstances {
     pub rounds: usize,
 }
 
-impl Circumstances {
+impl Environment {
     /// Those of this program on this machine.
     #[must_use]
     pub fn here(max_isa: Option<MaxIsa>, cases: u64, seed: u64, rounds: usize) -> Self {
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn sentence_names_target_and_seed() {
-        let mut here = Circumstances::here(Some(MaxIsa::Sse2), 10, 3, 5);
+        let mut here = Environment::here(Some(MaxIsa::Sse2), 10, 3, 5);
         here.target_features = vec!["avx", "avx2"];
         here.commit = Some("abc");
         here.embree = String::from("3.13.5");

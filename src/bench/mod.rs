@@ -21,7 +21,7 @@ mod truth;
 pub use accuracy::{
     Accuracy, Contender, Row, Times, USUAL_ROUNDS, USUAL_TIMED, contenders, rival_names,
 };
-pub use machine::Circumstances;
+pub use machine::Environment;
 pub use outputs::{SUMMARY_HEADINGS, figure, page, summary, table};
 pub use rivals::{Native, SIDES, Shape, Spaced, Traced};
 pub use statistics::{Spread, p99};

@@ -1,7 +1,7 @@
 //! A comparison as a figure, as a table for programs and as a page.
 
 use super::accuracy::{Accuracy, Row, Times};
-use super::machine::Circumstances;
+use super::machine::Environment;
 use crate::report::{self, Figure, Mark, Page, Series, Symbol, csv};
 use crate::solid::formulations::Precision;
 
@@ -141,9 +141,9 @@ pub fn table(accuracy: &Accuracy) -> String {
 
 /// The page: the figure, how to read it, and the tables.
 #[must_use]
-pub fn page(accuracy: &Accuracy, circumstances: &Circumstances) -> String {
+pub fn page(accuracy: &Accuracy, environment: &Environment) -> String {
     let mut page = Page::new("Run time against error: rays and cylinders");
-    page.note(&circumstances.sentence());
+    page.note(&environment.sentence());
     page.figure(&figure(accuracy));
     for paragraph in READING {
         page.paragraph(paragraph);
@@ -323,7 +323,7 @@ mod tests {
 
     #[test]
     fn page_shows_every_contender_in_every_table() {
-        let text = page(&sample(), &Circumstances::here(None, 200, 7, 31));
+        let text = page(&sample(), &Environment::here(None, 200, 7, 31));
         for row in &sample().rows {
             let cell = format!("<td>{}</td>", full_name(row));
             assert_eq!(text.matches(&cell).count(), 3, "{cell}");

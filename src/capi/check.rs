@@ -12,7 +12,7 @@ use super::types::{
     CYLTRACE_AXIAL, CYLTRACE_CAMERA, CYLTRACE_GRAZING, CYLTRACE_INSIDE, CYLTRACE_SPHERE,
     CyltraceCheckOutcome, CyltraceCheckSettings, CyltraceHit, CyltraceRay,
 };
-use crate::check::{Class, Finding, Intersector, Settings, compare};
+use crate::check::{Class, Intersector, ReportedHit, Settings, compare};
 use crate::math::Ray;
 use crate::scene::{GREATEST_RAYS, GREATEST_THREADS, MOST_LISTED_VIOLATIONS, MOST_SEGMENT_NUMBERS};
 use crate::tracer::workers;
@@ -179,7 +179,7 @@ struct Caller {
 unsafe impl Sync for Caller {}
 
 impl Intersector for Caller {
-    fn closest(&self, ray: &Ray) -> Option<Finding> {
+    fn closest(&self, ray: &Ray) -> Option<ReportedHit> {
         let ray = CyltraceRay::from(ray);
         let mut hit = CyltraceHit::MISS;
         // SAFETY: invariants 1 and 3: one ray and one hit that live through the

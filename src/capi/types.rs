@@ -5,7 +5,7 @@ use std::ptr;
 
 use glam::DVec3;
 
-use crate::check::{Finding, Place};
+use crate::check::{Place, ReportedHit};
 use crate::math::Ray;
 use crate::scene::GREATEST_DEPTH;
 use crate::solid::{Crossing, Part, SolidKind};
@@ -60,9 +60,9 @@ pub(super) fn fields_of(codes: u32) -> Result<HitFields, String> {
 
 /// [`CyltraceHit::part`]: the curved wall.
 pub const CYLTRACE_SIDE: u32 = 0;
-/// [`CyltraceHit::part`]: the disc at `p0`.
+/// [`CyltraceHit::part`]: the disk at `p0`.
 pub const CYLTRACE_CAP0: u32 = 1;
-/// [`CyltraceHit::part`]: the disc at `p1`.
+/// [`CyltraceHit::part`]: the disk at `p1`.
 pub const CYLTRACE_CAP1: u32 = 2;
 /// [`CyltraceHit::part`]: the face of a cuboid where its own x is least.
 pub const CYLTRACE_X_MIN: u32 = 3;
@@ -211,13 +211,13 @@ impl CyltraceHit {
 
     /// What a caller's intersector tells; `None` for a miss. The error is a
     /// message: a place is told that cannot be.
-    pub(super) fn finding(&self) -> Result<Option<Finding>, String> {
+    pub(super) fn finding(&self) -> Result<Option<ReportedHit>, String> {
         if self.is_hit == 0 {
             return Ok(None);
         }
         let tells = |what| self.tells & what != 0;
         let place = tells(CYLTRACE_TELLS_PLACE).then(|| self.place());
-        Ok(Some(Finding {
+        Ok(Some(ReportedHit {
             t: self.t,
             normal: tells(CYLTRACE_TELLS_NORMAL).then(|| DVec3::from(self.normal)),
             place: place.transpose()?,

@@ -102,7 +102,7 @@ impl Target {
         }
     }
 
-    /// A line in any direction that passes the edge of a disc at `gap` radii.
+    /// A line in any direction that passes the edge of a disk at `gap` radii.
     pub fn rim(&self, random: &mut Random, gap: [f64; 2]) -> Aim {
         let outward = self.across(random);
         let share = if random.below(2) == 0 { 0.0 } else { 1.0 };
@@ -113,7 +113,7 @@ impl Target {
         }
     }
 
-    /// A line at `angle` to the plane of a disc, through or beside the disc.
+    /// A line at `angle` to the plane of a disk, through or beside the disk.
     pub fn cap_plane(&self, random: &mut Random, angle: f64) -> Aim {
         let share = if random.below(2) == 0 { 0.0 } else { 1.0 };
         let off = self.across(random) * (self.radius * 1.3 * random.unit().sqrt());

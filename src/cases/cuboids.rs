@@ -82,9 +82,9 @@ impl CuboidFamily {
         let half_widths = DVec3::from_array([(); 3].map(|()| random.log_uniform(least, 1.0)));
         let half_widths = inputs.vector(half_widths * scale);
         let size = half_widths.length();
-        let centre = inputs.vector(random.direction() * (size * random.log_uniform(0.1, 10.0)));
-        let cuboid = Cuboid::new(centre, half_widths, orientation).ok()?;
-        let to_world = |own: DVec3| centre + orientation.to_world(own * half_widths);
+        let center = inputs.vector(random.direction() * (size * random.log_uniform(0.1, 10.0)));
+        let cuboid = Cuboid::new(center, half_widths, orientation).ok()?;
+        let to_world = |own: DVec3| center + orientation.to_world(own * half_widths);
         let axis = random.below(3) as usize;
         let own = self.target(random, axis);
         let target = to_world(own);
@@ -139,8 +139,8 @@ impl CuboidFamily {
     /// A case in whole numbers small enough for every sum and product to be one.
     fn whole_case(self, random: &mut Random, orientation: Orientation) -> Option<(Cuboid, Ray)> {
         let half_widths = DVec3::from_array([(); 3].map(|()| 1.0 + random.below(6) as f64));
-        let centre = whole(random, 20);
-        let cuboid = Cuboid::new(centre, half_widths, orientation).ok()?;
+        let center = whole(random, 20);
+        let cuboid = Cuboid::new(center, half_widths, orientation).ok()?;
         let axis = random.below(3) as usize;
         let mut own = corner(random) * half_widths;
         let mut heading = whole(random, 4);
@@ -170,7 +170,7 @@ impl CuboidFamily {
             _ => random.below(8) as f64,
         };
         let ray = Ray::new(
-            centre + orientation.to_world(own - heading * steps),
+            center + orientation.to_world(own - heading * steps),
             orientation.to_world(heading),
         );
         ray.is_valid().then_some((cuboid, ray))

@@ -57,9 +57,9 @@ impl DiskFamily {
 
     fn rounded_case(self, random: &mut Random, inputs: Inputs) -> Option<(Disk, Ray)> {
         let (scale, speed) = scale_and_speed(random, self == Self::Scale);
-        let Round { centre, radius } = Round::draw(random, inputs, scale, self == Self::Offset);
+        let Round { center, radius } = Round::draw(random, inputs, scale, self == Self::Offset);
         let normal = inputs.vector(random.direction() * speed);
-        let disk = Disk::new(centre, normal, radius).ok()?;
+        let disk = Disk::new(center, normal, radius).ok()?;
         let across = normal.cross(random.direction()).try_normalize()?;
         let share = match self {
             Self::Rim => 1.0 + random.uniform(-1.0, 1.0) * random.log_uniform(1e-16, 1e-3),
@@ -80,7 +80,7 @@ impl DiskFamily {
                 Self::Surface => 0.0,
                 _ => random.uniform(1.0, 20.0),
             };
-        let aim = Aim::new(centre + across * (radius * share), heading);
+        let aim = Aim::new(center + across * (radius * share), heading);
         let ray = if self == Self::Surface {
             aim.unaimed_ray(distance, speed, inputs)
         } else {
@@ -98,9 +98,9 @@ impl DiskFamily {
             [[0.0, 5.0, 0.0], [4.0, 0.0, 3.0]],
         ];
         let [x, y] = FRAMES[random.below(4) as usize].map(DVec3::from_array);
-        let centre = whole(random, 20);
+        let center = whole(random, 20);
         let times = 1.0 + random.below(3) as f64;
-        let disk = Disk::new(centre, x.cross(y), x.length() * 5.0 * times).ok()?;
+        let disk = Disk::new(center, x.cross(y), x.length() * 5.0 * times).ok()?;
         // On the rim, by the triple 3, 4, 5.
         let rim = (x * 3.0 + y * (4.0 * sign(random))) * times;
         let steps = random.below(32) as f64 - 8.0;
@@ -113,7 +113,7 @@ impl DiskFamily {
                 (x * (a * times) + y * b, x * c + y)
             }
         };
-        let ray = Ray::new(centre + point - heading * steps, heading);
+        let ray = Ray::new(center + point - heading * steps, heading);
         ray.is_valid().then_some((disk, ray))
     }
 }

@@ -19,7 +19,7 @@ use glam::DVec3;
 pub enum Family {
     /// Ordinary cylinders seen from 1 to 20 of their sizes away.
     Nominal,
-    /// The same without discs.
+    /// The same without disks.
     Open,
     /// Seen from 1e2 to 1e7 radii away.
     Far,
@@ -43,9 +43,9 @@ pub enum Family {
     Scale,
     /// Directions of length 1e-10 to 1e10.
     DirectionScale,
-    /// Rays that pass the edge of a disc at 1e-7 to 1e-2 radii.
+    /// Rays that pass the edge of a disk at 1e-7 to 1e-2 radii.
     Rim,
-    /// Rays at 1e-7 to 1e-2 to the plane of a disc, through or beside the disc.
+    /// Rays at 1e-7 to 1e-2 to the plane of a disk, through or beside the disk.
     CapGraze,
     /// Cylinders 1e-6 to 1e-3 radii long.
     Coin,

@@ -19,7 +19,7 @@ pub(super) struct Shape {
     pub length: [f64; 2],
     /// How far the middle is from the scene's origin.
     pub offset: Offset,
-    /// The discs.
+    /// The disks.
     pub caps: Caps,
 }
 
@@ -90,10 +90,10 @@ pub(super) fn scale_and_speed(random: &mut Random, is_any: bool) -> (f64, f64) {
     (scale, random.log_uniform(1e-10, 1e10))
 }
 
-/// A centre and a radius, of spheres and disks.
+/// A center and a radius, of spheres and disks.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Round {
-    pub centre: DVec3,
+    pub center: DVec3,
     pub radius: f64,
 }
 
@@ -107,7 +107,7 @@ impl Round {
             random.log_uniform(0.1, 10.0)
         };
         Self {
-            centre: inputs.vector(random.direction() * (radius * offset)),
+            center: inputs.vector(random.direction() * (radius * offset)),
             radius,
         }
     }

@@ -11,9 +11,9 @@ use crate::solid::Sphere;
 /// A family of spheres and rays that are hard in one way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SphereFamily {
-    /// Seen from 1 to 20 radii away, at up to 1.3 radii from the centre.
+    /// Seen from 1 to 20 radii away, at up to 1.3 radii from the center.
     Uniform,
-    /// At `1 ∓ 1e-16..1e-3` radii from the centre.
+    /// At `1 ∓ 1e-16..1e-3` radii from the center.
     Graze,
     /// Tangents to the last bit, in whole numbers.
     Tangent,
@@ -50,9 +50,9 @@ impl SphereFamily {
             return tangent(&mut random);
         }
         let (scale, speed) = scale_and_speed(&mut random, self == Self::Scale);
-        let Round { centre, radius } =
+        let Round { center, radius } =
             Round::draw(&mut random, inputs, scale, self == Self::Offset);
-        let sphere = Sphere::new(centre, radius).ok()?;
+        let sphere = Sphere::new(center, radius).ok()?;
         let heading = random.direction();
         let across = heading.cross(random.direction()).try_normalize()?;
         let share = match self {
@@ -62,11 +62,11 @@ impl SphereFamily {
         let ray = match self {
             Self::Inside => {
                 let off = random.direction() * (radius * 0.98 * libm::cbrt(random.unit()));
-                Aim::new(centre + off, heading).unaimed_ray(0.0, speed, inputs)
+                Aim::new(center + off, heading).unaimed_ray(0.0, speed, inputs)
             }
             Self::Surface => {
                 let off = random.direction() * radius;
-                Aim::new(centre + off, heading).unaimed_ray(0.0, speed, inputs)
+                Aim::new(center + off, heading).unaimed_ray(0.0, speed, inputs)
             }
             _ => {
                 let distance = radius
@@ -74,7 +74,7 @@ impl SphereFamily {
                         Self::Far => random.log_uniform(1e2, 1e7),
                         _ => random.uniform(1.0, 20.0),
                     };
-                let aim = Aim::new(centre + across * (radius * share), heading);
+                let aim = Aim::new(center + across * (radius * share), heading);
                 aim.ray(distance, speed, inputs)
             }
         };
@@ -82,7 +82,7 @@ impl SphereFamily {
     }
 }
 
-/// A line past the centre at a right angle to a Pythagorean triple's hypotenuse, in
+/// A line past the center at a right angle to a Pythagorean triple's hypotenuse, in
 /// any of the coordinate planes.
 fn tangent(random: &mut Random) -> Option<(Sphere, Ray)> {
     const TRIPLES: [[f64; 3]; 4] = [
@@ -99,8 +99,8 @@ fn tangent(random: &mut Random) -> Option<(Sphere, Ray)> {
     let mut along = DVec3::ZERO;
     // Across the way to the point of contact, with any part along the third axis.
     (along[i], along[j], along[k]) = (-b, a, random.below(9) as f64 - 4.0);
-    let centre = whole(random, 50);
+    let center = whole(random, 50);
     let steps = random.below(64) as f64 - 16.0;
-    let sphere = Sphere::new(centre, hypotenuse * times).ok()?;
-    Some((sphere, Ray::new(centre + touch - along * steps, along)))
+    let sphere = Sphere::new(center, hypotenuse * times).ok()?;
+    Some((sphere, Ray::new(center + touch - along * steps, along)))
 }

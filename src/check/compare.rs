@@ -15,23 +15,23 @@ use crate::embree::Device;
 use crate::math::Ray;
 use crate::scene::Scene;
 
+use super::bounding_meshes::hull_list::{bytes_needed, triangles_within};
+use super::bounding_meshes::mesh_frame::MeshFrame;
+use super::bounding_meshes::meshes::{Meshes, Scratch, Seen};
+use super::bounding_meshes::placed::{Budget, windows};
+use super::bounding_meshes::window::Window;
 use super::curves::ConeCurves;
 use super::curves::blocks::curve_block;
-use super::finding::{Finding, Intersector};
-use super::hulls::hull_list::{bytes_needed, triangles_within};
-use super::hulls::mesh_frame::MeshFrame;
-use super::hulls::meshes::{Meshes, Scratch, Seen};
-use super::hulls::placed::{Budget, windows};
-use super::hulls::window::Window;
-use super::judging::judge::solid_of;
-use super::judging::surface::LocalRay;
-use super::judging::truth;
-use super::judging::verdict::{Subject, Verdict, verdict};
+use super::finding::{Intersector, ReportedHit};
 use super::outcome::{Outcome, Violation, Witness};
 use super::rays::RaySource;
+use super::report::plan::{self, Missing};
 use super::settings::{CheckError, Class, Settings};
 use super::tally::Tally;
-use super::telling::plan::{self, Missing};
+use super::verdict::judge::solid_of;
+use super::verdict::surface::LocalRay;
+use super::verdict::truth;
+use super::verdict::verdict::{Subject, Verdict, verdict};
 
 /// Rays that a thread takes at a time: long enough to share the work evenly
 /// without a word about it, short enough to stop at once when told to.
@@ -110,8 +110,8 @@ pub(super) fn chosen_windows(
             return Err(CheckError::Segments { segments });
         }
     }
-    let census = scene.census();
-    if census.cylinders_instanced == 0 && census.other_solids_unique == 0 {
+    let scene_stats = scene.scene_stats();
+    if scene_stats.cylinders_instanced == 0 && scene_stats.other_solids_unique == 0 {
         return Err(CheckError::Empty);
     }
     let segments = settings.segments.iter().copied().max().unwrap_or(3);
@@ -312,7 +312,7 @@ fn measure(
     about: &Subject,
     meshes: &Meshes,
     ray: &Ray,
-    finding: &Finding,
+    finding: &ReportedHit,
     seen: &[Seen],
     is_sphere: bool,
     tally: &mut Tally,

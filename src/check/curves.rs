@@ -27,7 +27,7 @@
 //!   solid is within L of its own middle. Sixteen roundings in each of A, B and C
 //!   make `16u (|t| + L)² <= 64u L²`, and the root some `8u L²` more: the wall is
 //!   met where the squared radius differs by 72u L², the radius by `36u L²/r`.
-//!   This is the one that grows with L/r and loses long thin cylinders. On a disc
+//!   This is the one that grows with L/r and loses long thin cylinders. On a disk
 //!   it is `16u L`, which is less.
 //!
 //! ```text
@@ -48,10 +48,10 @@ use crate::embree::{Device, Error, GREATEST_COORDINATE, NativeHit, Ray32, Scene,
 use crate::math::{frobenius_norm, power_of_two};
 use crate::solid::{AnySolid, Caps, Cylinder};
 
-use super::hulls::mesh_frame::MeshFrame;
-use super::hulls::mesh_map::{MeshAnchor, MeshMap};
-use super::hulls::meshes::point;
-use super::hulls::window::{PlacedSolid, Window};
+use super::bounding_meshes::mesh_frame::MeshFrame;
+use super::bounding_meshes::mesh_map::{MeshAnchor, MeshMap};
+use super::bounding_meshes::meshes::point;
+use super::bounding_meshes::window::{PlacedSolid, Window};
 
 /// Half an ulp of 1 in f32.
 const U: f64 = power_of_two(-24);
@@ -114,14 +114,14 @@ impl Segment {
     }
 }
 
-/// Embree's flags: an end without a disc is one that a neighbour continues.
+/// Embree's flags: an end without a disk is one that a neighbour continues.
 fn neighbours(caps: Caps) -> u8 {
     u8::from(!caps.at_p0()) | u8::from(!caps.at_p1()) << 1
 }
 
 /// A hit that an intersector tells of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Told {
+pub(crate) struct CurveHit {
     /// In lengths of the ray's direction.
     pub t: f64,
     /// The solid's number in the window, if it is told.
@@ -194,8 +194,8 @@ impl ConeCurves {
     }
 
     /// Holds an answer for a ray of the meshes' space against the curves.
-    pub fn compare(&self, ray: &Ray32, answer: Option<Told>) -> Verdict {
-        if let Some(Told {
+    pub fn compare(&self, ray: &Ray32, answer: Option<CurveHit>) -> Verdict {
+        if let Some(CurveHit {
             solid: Some(solid), ..
         }) = answer
             && !self.has_curve[solid as usize]
@@ -216,7 +216,7 @@ impl ConeCurves {
         match answer {
             _ if is_one => Verdict::Agrees,
             // Of a solid without curve, for all that is known.
-            Some(Told { t, solid: None })
+            Some(CurveHit { t, solid: None })
                 if !all_have_curves && seen.is_none_or(|seen| t < seen) =>
             {
                 Verdict::Unwitnessed

@@ -10,12 +10,12 @@ use crate::tracer::{HitFields, Tracer};
 /// any number of threads.
 pub trait Intersector: Sync {
     /// The hit with the least `t` in the ray's range; `None` for a miss.
-    fn closest(&self, ray: &Ray) -> Option<Finding>;
+    fn closest(&self, ray: &Ray) -> Option<ReportedHit>;
 }
 
 /// A hit as an intersector tells it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
+pub struct ReportedHit {
     /// The ray's parameter, in lengths of its direction.
     pub t: f64,
     /// The outward unit normal, if it is told.
@@ -36,10 +36,10 @@ pub struct Place {
 }
 
 impl Intersector for Tracer {
-    fn closest(&self, ray: &Ray) -> Option<Finding> {
+    fn closest(&self, ray: &Ray) -> Option<ReportedHit> {
         let first = self.first_hit(ray)?;
         let hit = self.hit_with(ray, &first, HitFields::NORMAL);
-        Some(Finding {
+        Some(ReportedHit {
             t: hit.t(),
             normal: hit.normal(),
             place: Some(Place {

@@ -21,35 +21,35 @@
 //! - `elsewhere`: hits of another program or of a mesh from a file;
 //! - `telling`: what it will take, tables and the page.
 
+mod bounding_meshes;
 mod compare;
 mod curves;
-mod elsewhere;
+mod external;
 mod finding;
-mod hulls;
-mod judging;
 mod outcome;
 mod rays;
 mod replay;
+mod report;
 mod settings;
 mod tally;
 mod target;
-mod telling;
+mod verdict;
 
 pub use compare::{Progress, compare, compare_with};
-pub use elsewhere::agreement::{Agreement, Disagreement};
-pub use elsewhere::deviation::Deviation;
-pub use elsewhere::rays_around::rays_around;
-pub use elsewhere::tolerance::F32_TOLERANCE;
-pub use elsewhere::user_hits::compare_hits;
-pub use elsewhere::user_mesh::{TracedMesh, TriangleHit, compare_mesh};
-pub use finding::{Finding, Intersector, Place};
+pub use external::agreement::{Agreement, Disagreement};
+pub use external::deviation::Deviation;
+pub use external::rays_around::rays_around;
+pub use external::tolerance::F32_TOLERANCE;
+pub use external::user_hits::compare_hits;
+pub use external::user_mesh::{TracedMesh, TriangleHit, compare_mesh};
+pub use finding::{Intersector, Place, ReportedHit};
 pub use outcome::{ClassRow, Convergence, Outcome, Violation, Witness};
 pub use replay::{Replay, Replayed, replay};
-pub use settings::{CheckError, Class, Settings};
-pub use telling::figures::{class_figures, convergence_figures, violation_figures};
-pub use telling::pictures::{Pictures, PicturesError, pictures};
-pub use telling::plan::{Plan, plan};
-pub use telling::report::{
+pub use report::figures::{class_figures, convergence_figures, violation_figures};
+pub use report::pictures::{Pictures, PicturesError, pictures};
+pub use report::plan::{Plan, plan};
+pub use report::report::{
     PageContent, TABLE_HEADINGS, TABLE_NAMES, disagreement_text, page, percent, table_rows,
     tolerance_text, verdict, violation_text,
 };
+pub use settings::{CheckError, Class, Settings};

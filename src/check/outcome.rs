@@ -2,7 +2,7 @@
 
 use crate::math::Ray;
 
-use super::{Class, Finding};
+use super::{Class, ReportedHit};
 
 /// What an answer is held against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -104,7 +104,7 @@ pub struct Violation {
     /// The ray.
     pub ray: Ray,
     /// The answer.
-    pub answer: Option<Finding>,
+    pub answer: Option<ReportedHit>,
     /// The bounds that it breaks: a hit's `t` is at least and at most this;
     /// infinite where a miss is right.
     pub allowed: (f64, f64),

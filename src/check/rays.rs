@@ -14,8 +14,8 @@ use crate::math::{Bounds, Random, Ray};
 use crate::scene::{AimedCamera, Scene};
 
 use super::Class;
-use super::hulls::mesh_frame::MeshFrame;
-use super::hulls::window::Window;
+use super::bounding_meshes::mesh_frame::MeshFrame;
+use super::bounding_meshes::window::Window;
 use super::target::Target;
 
 /// Draws of a ray before the window's box is aimed at itself.
@@ -33,7 +33,7 @@ pub(crate) struct RaySource<'a> {
     seed: u64,
     view: AimedCamera,
     film: DVec2,
-    centre: DVec3,
+    center: DVec3,
     /// Half the diagonal of the extent.
     reach: f64,
 }
@@ -53,9 +53,9 @@ impl<'a> RaySource<'a> {
             frame,
             number,
             seed,
-            view: AimedCamera::new(&scene.camera, &scene.census().bounds, scene.film),
+            view: AimedCamera::new(&scene.camera, &scene.scene_stats().bounds, scene.film),
             film: DVec2::new(f64::from(scene.film.width), f64::from(scene.film.height)),
-            centre: extent.centre(),
+            center: extent.center(),
             reach: 0.5 * extent.extent().length(),
         }
     }
@@ -74,15 +74,15 @@ impl<'a> RaySource<'a> {
                 };
             }
         }
-        let origin = self.centre + random.direction() * (1.5 * self.reach);
-        let rays = self.exact_ray(origin, self.centre - origin);
+        let origin = self.center + random.direction() * (1.5 * self.reach);
+        let rays = self.exact_ray(origin, self.center - origin);
         rays.unwrap_or_else(|| self.point())
     }
 
     /// A ray of no length, about which nothing can be wrong: for a window that the roundings
     /// of rays do not hit.
     fn point(&self) -> (Ray32, Ray) {
-        self.frame.ray(self.centre, DVec3::Z, 0.0, 0.0)
+        self.frame.ray(self.center, DVec3::Z, 0.0, 0.0)
     }
 
     /// The exact ray near a wished-for one, clipped to the window.
@@ -123,7 +123,7 @@ impl<'a> RaySource<'a> {
     /// middle: there f32 is finer, and nothing has been passed.
     fn nearer(&self, origin: DVec3, direction: DVec3) -> DVec3 {
         let unit = (direction / direction.abs().max_element()).normalize();
-        let before_middle = (self.centre - origin).dot(unit);
+        let before_middle = (self.center - origin).dot(unit);
         if before_middle > 5.0 * self.reach {
             origin + unit * (before_middle - 4.0 * self.reach)
         } else {
@@ -159,7 +159,7 @@ impl<'a> RaySource<'a> {
     }
 
     fn sphere_ray(&self, random: &mut Random) -> (DVec3, DVec3) {
-        let origin = self.centre + random.direction() * (1.5 * self.reach);
+        let origin = self.center + random.direction() * (1.5 * self.reach);
         let point = self.target(random).point_around(random);
         (origin, point - origin)
     }

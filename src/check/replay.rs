@@ -9,17 +9,17 @@ use crate::embree::{Device, Ray32};
 use crate::math::Ray;
 use crate::scene::Scene;
 
+use super::bounding_meshes::mesh_frame::MeshFrame;
+use super::bounding_meshes::meshes::{Meshes, Scratch};
 use super::compare::chosen_windows;
-use super::finding::{Finding, Intersector};
-use super::hulls::mesh_frame::MeshFrame;
-use super::hulls::meshes::{Meshes, Scratch};
-use super::judging::judge::first;
-use super::judging::truth;
-use super::judging::verdict::{Subject, Verdict, verdict};
+use super::finding::{Intersector, ReportedHit};
 use super::outcome::{Violation, Witness};
 use super::rays::RaySource;
+use super::report::words::{answer_text, instance_text, interval_text, ray_text};
 use super::settings::{CheckError, Class, Settings};
-use super::telling::words::{answer_text, instance_text, interval_text, ray_text};
+use super::verdict::judge::first;
+use super::verdict::truth;
+use super::verdict::verdict::{Subject, Verdict, verdict};
 
 /// A ray to look at again.
 ///
@@ -177,7 +177,13 @@ fn within((mut ray32, mut ray): (Ray32, Ray), given: &Ray) -> Option<(Ray32, Ray
 }
 
 impl Replayed {
-    fn describe(&mut self, which: &Replay, about: &Subject, ray: &Ray, answer: Option<&Finding>) {
+    fn describe(
+        &mut self,
+        which: &Replay,
+        about: &Subject,
+        ray: &Ray,
+        answer: Option<&ReportedHit>,
+    ) {
         let lines = &mut self.lines;
         lines.push(format!("ray {}", Replay::Given(*ray)));
         lines.push(format!("    {}", ray_text(ray)));
@@ -199,7 +205,7 @@ impl Replayed {
         which: &Replay,
         about: &Subject,
         ray: &Ray,
-        answer: Option<&Finding>,
+        answer: Option<&ReportedHit>,
     ) {
         let Some(bounds) = truth::bounds(about.window, ray) else {
             return;
@@ -229,7 +235,7 @@ impl Replayed {
         about: &Subject,
         meshes: &Meshes,
         (ray32, ray): (&Ray32, &Ray),
-        answer: Option<&Finding>,
+        answer: Option<&ReportedHit>,
     ) {
         let mut scratch = Scratch::default();
         let verdict = verdict(about, meshes, ray32, ray, answer, &mut scratch);

@@ -1,7 +1,7 @@
 //! Counts over many rays, added up in the order of the rays.
 
 use super::outcome::{ClassRow, Convergence, Violation, Witness};
-use super::{Class, Finding};
+use super::{Class, ReportedHit};
 
 /// What some rays of one row came to.
 #[derive(Clone, Debug, Default)]
@@ -23,7 +23,7 @@ pub(crate) struct Tally {
 
 impl Tally {
     /// Counts a ray and its answer.
-    pub fn count(&mut self, answer: Option<&Finding>) {
+    pub fn count(&mut self, answer: Option<&ReportedHit>) {
         self.rays += 1;
         self.hits += u64::from(answer.is_some());
     }

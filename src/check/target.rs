@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::hulls::window::PlacedSolid;
+use super::bounding_meshes::window::PlacedSolid;
 use crate::math::Random;
 use crate::solid::{AnySolid, Cuboid, RoundedCone};
 
@@ -53,11 +53,11 @@ impl Outline {
             AnySolid::Disk(one) => {
                 let radii = [one.radius(); 2];
                 let axis = one.normal().normalize();
-                Self::about(one.centre(), axis, 0.0, radii, Wall::Cone(radii))
+                Self::about(one.center(), axis, 0.0, radii, Wall::Cone(radii))
             }
             AnySolid::Sphere(one) => {
                 let radius = one.radius();
-                let bottom = one.centre() - DVec3::Z * radius;
+                let bottom = one.center() - DVec3::Z * radius;
                 Self::about(bottom, DVec3::Z, 2.0 * radius, [radius; 2], Wall::Sphere)
             }
             AnySolid::RoundedCone(one) => Self::of_rounded_cone(one),
@@ -92,7 +92,7 @@ impl Outline {
         let frame = cuboid.orientation().world_from_object();
         let half = cuboid.half_widths();
         Self {
-            bottom: cuboid.centre() - frame.z_axis * half.z,
+            bottom: cuboid.center() - frame.z_axis * half.z,
             axis: frame.z_axis,
             across: [frame.x_axis, frame.y_axis],
             length: 2.0 * half.z,
@@ -125,7 +125,7 @@ impl Outline {
         }
     }
 
-    /// A sphere's, at a height from its centre.
+    /// A sphere's, at a height from its center.
     fn sphere(&self, height: f64, radius: f64, outward: DVec3) -> (f64, DVec3) {
         let across = ((radius - height) * (radius + height)).max(0.0).sqrt();
         (across, (outward * across + self.axis * height) / radius)

@@ -21,7 +21,7 @@ use numbers::{count_up_to, parse_length, parse_seed, parse_segments, parse_size}
 
 use super::limit::MemoryArguments;
 use super::memory;
-use super::target::is_standard_stream;
+use super::output_sink::is_standard_stream;
 
 /// Traces analytic cylinders through Embree: exact hits, no meshes.
 #[derive(Debug, Parser)]

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use anyhow::bail;
 use cyltrace::bench::{
-    Accuracy, Circumstances, Contender, JudgedCases, Rounds, Row, SUMMARY_HEADINGS, USUAL_ROUNDS,
+    Accuracy, Contender, Environment, JudgedCases, Rounds, Row, SUMMARY_HEADINGS, USUAL_ROUNDS,
     USUAL_TIMED, WallClock, contenders, draw, figure, page, rival_names, summary, table,
 };
 use cyltrace::cases::Family;
@@ -18,8 +18,8 @@ use cyltrace::tracer::Options;
 use serde_json::{Value, json};
 
 use super::arguments::{AccuracyArguments, Bench, BenchArguments, Common};
+use super::output_sink::{make_directory, write_text};
 use super::print::print;
-use super::target::{make_directory, write_text};
 use super::{GOOD, interrupt, json, progress, scene};
 
 /// Runs a benchmark. The answer is the exit code of one that could run.
@@ -72,7 +72,7 @@ fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
     });
     bar.finish_and_clear();
 
-    let circumstances = Circumstances::here(
+    let environment = Environment::here(
         common.max_isa,
         arguments.cases.get(),
         arguments.seed,
@@ -82,10 +82,10 @@ fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
     if let Some(directory) = &arguments.report {
         write_text(&directory.join("accuracy.svg"), &figure(&found))?;
         write_text(&directory.join("accuracy.csv"), &table(&found))?;
-        write_text(&directory.join("index.html"), &page(&found, &circumstances))?;
+        write_text(&directory.join("index.html"), &page(&found, &environment))?;
     }
-    json::write(common, &figures(&found, &circumstances))?;
-    let text = summary_text(&found, &circumstances);
+    json::write(common, &figures(&found, &environment))?;
+    let text = summary_text(&found, &environment);
     tell(common, text, arguments.report.as_deref())
 }
 
@@ -118,17 +118,17 @@ fn check_names(names: &[String]) -> anyhow::Result<()> {
 }
 
 /// The table for people.
-fn summary_text(found: &Accuracy, circumstances: &Circumstances) -> String {
+fn summary_text(found: &Accuracy, environment: &Environment) -> String {
     let mut table = Table::new(&SUMMARY_HEADINGS, 2);
     for row in &found.rows {
         table.push(summary(found, row));
     }
-    format!("{}\n{table}", circumstances.sentence())
+    format!("{}\n{table}", environment.sentence())
 }
 
 /// All figures. A percentile that is not finite, or that no hit gives, is
 /// null.
-fn figures(found: &Accuracy, circumstances: &Circumstances) -> Value {
+fn figures(found: &Accuracy, environment: &Environment) -> Value {
     let formulation = |row: &Row| {
         let worst = row.worst();
         json!({
@@ -159,30 +159,30 @@ fn figures(found: &Accuracy, circumstances: &Circumstances) -> Value {
         "samples": found.rows.iter().map(sample).collect::<Vec<_>>(),
         "spread": "median absolute deviation",
     });
-    with_circumstances(figures, circumstances, "cases")
+    with_circumstances(figures, environment, "cases")
 }
 
 /// The figures with what they depend on behind them; `count` is what there are
-/// [`Circumstances::cases`] of.
-fn with_circumstances(mut figures: Value, circumstances: &Circumstances, count: &str) -> Value {
-    figures["machine"] = json!(circumstances.machine);
-    figures["isa"] = json!(circumstances.isa);
-    figures["target_features"] = json!(circumstances.target_features);
-    figures["commit"] = json!(circumstances.commit);
-    figures[count] = json!(circumstances.cases);
-    figures["seed"] = json!(circumstances.seed);
-    figures["rounds"] = json!(circumstances.rounds);
+/// [`Environment::cases`] of.
+fn with_circumstances(mut figures: Value, environment: &Environment, count: &str) -> Value {
+    figures["machine"] = json!(environment.machine);
+    figures["isa"] = json!(environment.isa);
+    figures["target_features"] = json!(environment.target_features);
+    figures["commit"] = json!(environment.commit);
+    figures[count] = json!(environment.cases);
+    figures["seed"] = json!(environment.seed);
+    figures["rounds"] = json!(environment.rounds);
     figures
 }
 
 /// What rays through whole scenes depend on, as a sentence.
-fn rays_sentence(circumstances: &Circumstances) -> String {
+fn rays_sentence(environment: &Environment) -> String {
     format!(
         "{} rays of each kind, seed {}, {} rounds. {}",
-        circumstances.cases,
-        circumstances.seed,
-        circumstances.rounds,
-        circumstances.place()
+        environment.cases,
+        environment.seed,
+        environment.rounds,
+        environment.place()
     )
 }
 

@@ -6,7 +6,7 @@ use cyltrace::tracer::{self, MemoryEstimate};
 use serde_json::json;
 
 use super::arguments::InfoArguments;
-use super::limit::{Limit, Need};
+use super::limit::{MemoryLimit, Need};
 use super::outputs::Files;
 use super::{json, memory, outliers, print, scene, text};
 
@@ -17,19 +17,19 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
     files.check()?;
     json::check(common)?;
     let start = Instant::now();
-    let limit = Limit::of(&arguments.memory);
+    let limit = MemoryLimit::of(&arguments.memory);
     let file = scene::read(&arguments.scene, limit)?;
     files.check_with(&file)?;
     let scene = scene::load(common, file, Need::Records, limit)?;
     let load = start.elapsed().as_secs_f64();
     let workers = scene::workers(common)?;
-    let (census, found) = workers.install(|| (scene.census(), tracer::outliers(&scene)));
+    let (scene_stats, found) = workers.install(|| (scene.scene_stats(), tracer::outliers(&scene)));
     let estimate = MemoryEstimate::of(
         &scene.contents(),
         arguments.memory.layout.into(),
         common.max_isa,
     );
-    let (lower, upper) = (census.bounds.lower, census.bounds.upper);
+    let (lower, upper) = (scene_stats.bounds.lower, scene_stats.bounds.upper);
 
     let materials: Vec<_> = scene
         .materials
@@ -47,17 +47,17 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
         &json!({
             "scene": arguments.scene,
             "load_s": load,
-            "prototypes": { "all": census.prototypes, "placed": census.prototypes_used },
-            "placements": census.placements,
-            "instances": json::count(census.instances),
-            "depth": census.depth,
+            "prototypes": { "all": scene_stats.prototypes, "placed": scene_stats.prototypes_used },
+            "placements": scene_stats.placements,
+            "instances": json::count(scene_stats.instances),
+            "depth": scene_stats.depth,
             "cylinders": {
-                "unique": census.cylinders_unique,
-                "instanced": json::count(census.cylinders_instanced),
+                "unique": scene_stats.cylinders_unique,
+                "instanced": json::count(scene_stats.cylinders_instanced),
             },
             "other_solids": {
-                "unique": census.other_solids_unique,
-                "instanced": json::count(census.other_solids_instanced),
+                "unique": scene_stats.other_solids_unique,
+                "instanced": json::count(scene_stats.other_solids_instanced),
             },
             "skipped_rows": scene.skipped_rows,
             "notes": scene.notes,
@@ -80,24 +80,24 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
     let mut text = format!("{}\n", arguments.scene.display());
     text += &format!(
         "prototypes: {}, of which {} are placed\n",
-        census.prototypes, census.prototypes_used
+        scene_stats.prototypes, scene_stats.prototypes_used
     );
     text += &format!(
         "placements: {} stored, {} instances, {} levels deep\n",
-        census.placements,
-        text::count(census.instances),
-        census.depth
+        scene_stats.placements,
+        text::count(scene_stats.instances),
+        scene_stats.depth
     );
     text += &format!(
         "cylinders: {} unique, {} instanced\n",
-        census.cylinders_unique,
-        text::count(census.cylinders_instanced)
+        scene_stats.cylinders_unique,
+        text::count(scene_stats.cylinders_instanced)
     );
-    if census.other_solids_unique > 0 {
+    if scene_stats.other_solids_unique > 0 {
         text += &format!(
             "other solids: {} unique, {} instanced\n",
-            census.other_solids_unique,
-            text::count(census.other_solids_instanced)
+            scene_stats.other_solids_unique,
+            text::count(scene_stats.other_solids_instanced)
         );
     }
     text += &text::skipped_rows(scene.skipped_rows);

@@ -8,12 +8,12 @@ use serde_json::{Value, json};
 
 use super::arguments::Common;
 use super::memory::peak_resident_bytes;
-use super::target::Target;
+use super::output_sink::OutputSink;
 
 /// Says before any work whether the figures can be written.
 pub fn check(common: &Common) -> anyhow::Result<()> {
     match &common.json {
-        Some(path) => Ok(Target::check(path)?),
+        Some(path) => Ok(OutputSink::check(path)?),
         None => Ok(()),
     }
 }
@@ -23,7 +23,7 @@ pub fn write(common: &Common, figures: &Value) -> anyhow::Result<()> {
     let Some(path) = &common.json else {
         return Ok(());
     };
-    let mut target = Target::create(path)?;
+    let mut target = OutputSink::create(path)?;
     serde_json::to_writer_pretty(&mut target, figures)?;
     writeln!(target)?;
     target.finish()

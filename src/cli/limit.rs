@@ -9,7 +9,7 @@ use std::path::Path;
 use anyhow::anyhow;
 use clap::{Args, ValueEnum};
 use cyltrace::embree::MaxIsa;
-use cyltrace::scene::{Contents, OtherSolids, PlacedCount};
+use cyltrace::scene::{ExpectedCounts, OtherSolids, PlacedCount};
 use cyltrace::tracer::{Layout, MemoryEstimate};
 
 use super::allocator::AllocationLimit;
@@ -63,7 +63,7 @@ pub enum Need {
 
 /// How much memory may be taken.
 #[derive(Clone, Copy, Debug)]
-pub struct Limit {
+pub struct MemoryLimit {
     /// None where the system does not say.
     bytes: Option<u64>,
     is_stated: bool,
@@ -71,7 +71,7 @@ pub struct Limit {
     layout: Layout,
 }
 
-impl Limit {
+impl MemoryLimit {
     /// The one that `--max-memory` states, else what the system has available.
     pub fn of(arguments: &MemoryArguments) -> Self {
         match arguments.max_memory {
@@ -114,7 +114,7 @@ impl Limit {
     pub fn check(
         self,
         path: &Path,
-        contents: &[Contents],
+        contents: &[ExpectedCounts],
         reading_bytes: u64,
         need: Need,
         max_isa: Option<MaxIsa>,
@@ -160,7 +160,12 @@ fn address_space_left() -> Option<u64> {
 }
 
 /// What takes at least a hundredth of the memory, the most first.
-fn takers(contents: &[Contents], estimate: &MemoryEstimate, need: Need, needed: u64) -> String {
+fn takers(
+    contents: &[ExpectedCounts],
+    estimate: &MemoryEstimate,
+    need: Need,
+    needed: u64,
+) -> String {
     let quoted = |name: &str| match name {
         "" => "the scene itself".to_owned(),
         name => format!("\"{name}\""),

@@ -7,7 +7,7 @@ use anyhow::bail;
 use cyltrace::render::followed;
 use cyltrace::scene::SceneFile;
 
-use super::target::is_standard_stream;
+use super::output_sink::is_standard_stream;
 
 /// The files of a command, each with what it is to the user.
 pub struct Files<'a> {

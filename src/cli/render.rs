@@ -8,7 +8,7 @@ use cyltrace::tracer::{Options, Tracer};
 use serde_json::json;
 
 use super::arguments::{RenderArguments, integrator_name};
-use super::limit::{Limit, Need};
+use super::limit::{MemoryLimit, Need};
 use super::outputs::Files;
 use super::{interrupt, json, memory, print, progress, scene, text};
 
@@ -29,7 +29,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     json::check(common)?;
 
     let start = Instant::now();
-    let limit = Limit::of(&arguments.memory);
+    let limit = MemoryLimit::of(&arguments.memory);
     let file = scene::read(&arguments.scene, limit)?;
     files.check_with(&file)?;
     let scene = Arc::new(scene::load(common, file, Need::Build, limit)?);

@@ -10,12 +10,12 @@ use cyltrace::tracer::{Options, Tracer};
 use rayon::ThreadPool;
 
 use super::arguments::Common;
-use super::limit::{Limit, Need};
+use super::limit::{MemoryLimit, Need};
 use super::progress;
 
 /// Reads a scene file, but not yet the files that it names, within the memory that
 /// `limit` allows.
-pub fn read(path: &Path, limit: Limit) -> anyhow::Result<SceneFile> {
+pub fn read(path: &Path, limit: MemoryLimit) -> anyhow::Result<SceneFile> {
     let _limit = limit.while_reading(path);
     // The error's text is the whole message; its source would repeat a part.
     SceneFile::read(path).map_err(|error| anyhow!("{error}"))
@@ -23,7 +23,12 @@ pub fn read(path: &Path, limit: Limit) -> anyhow::Result<SceneFile> {
 
 /// Loads what a scene file names, and checks everything; refuses a scene for
 /// whose need the memory is not there.
-pub fn load(common: &Common, file: SceneFile, need: Need, limit: Limit) -> anyhow::Result<Scene> {
+pub fn load(
+    common: &Common,
+    file: SceneFile,
+    need: Need,
+    limit: MemoryLimit,
+) -> anyhow::Result<Scene> {
     let workers = workers(common)?;
     let spinner = progress::spinner(common, "loading the scene");
     let reading = limit.while_reading(file.path());
@@ -39,7 +44,7 @@ fn within(
     file: SceneFile,
     workers: &ThreadPool,
     need: Need,
-    limit: Limit,
+    limit: MemoryLimit,
     max_isa: Option<MaxIsa>,
 ) -> anyhow::Result<Scene> {
     let path = file.path().to_owned();

@@ -10,9 +10,9 @@ use cyltrace::solid::tessellation::Fit;
 use serde_json::json;
 
 use super::arguments::TessellateArguments;
-use super::limit::{Limit, Need};
+use super::limit::{MemoryLimit, Need};
+use super::output_sink::OutputSink;
 use super::outputs::Files;
-use super::target::Target;
 use super::{interrupt, json, memory, print, progress, scene, text};
 
 /// Writes the scene as a mesh.
@@ -22,13 +22,13 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
         Files::new(&arguments.scene, common.json.as_deref()).output("-o", &arguments.output);
     files.check()?;
     let format = Format::of(&arguments.output)?;
-    Target::check(&arguments.output)?;
+    OutputSink::check(&arguments.output)?;
     json::check(common)?;
 
     let start = Instant::now();
-    let file = scene::read(&arguments.scene, Limit::available())?;
+    let file = scene::read(&arguments.scene, MemoryLimit::available())?;
     files.check_with(&file)?;
-    let scene = scene::load(common, file, Need::Records, Limit::available())?;
+    let scene = scene::load(common, file, Need::Records, MemoryLimit::available())?;
     let load = start.elapsed().as_secs_f64();
 
     let fit = if arguments.circumscribed {
@@ -46,7 +46,7 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
     }
 
     interrupt::end_in_order();
-    let mut target = Target::create(&arguments.output)?;
+    let mut target = OutputSink::create(&arguments.output)?;
     let items = plan.vertices() + plan.triangles();
     let bar = progress::bar(
         common,

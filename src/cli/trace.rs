@@ -18,10 +18,10 @@ use serde_json::{Value, json};
 
 use super::arguments::{FormatArguments, TraceArguments};
 use super::interrupt::Interrupted;
-use super::limit::{Limit, Need};
+use super::limit::{MemoryLimit, Need};
+use super::output_sink::{OutputSink, is_standard_stream};
 use super::outputs::Files;
 use super::print::{self, print};
-use super::target::{Target, is_standard_stream};
 use super::{hit_table, interrupt, json, progress, scene, text};
 
 /// Blocks that a thread gets of each batch: enough to even out slow ones.
@@ -167,13 +167,13 @@ impl<R: NumberRow + Sync> Task<'_, R> {
             .input(self.what, self.path)
             .output("-o", &arguments.output);
         files.check()?;
-        Target::check(&arguments.output)?;
+        OutputSink::check(&arguments.output)?;
         json::check(common)?;
         let workers = scene::workers(common)?;
         let threads = workers.current_num_threads();
 
         let start = Instant::now();
-        let limit = Limit::of(&arguments.memory);
+        let limit = MemoryLimit::of(&arguments.memory);
         let file = scene::read(&arguments.scene, limit)?;
         files.check_with(&file)?;
         let read = start.elapsed();
@@ -206,7 +206,7 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         let build = start.elapsed().as_secs_f64();
 
         interrupt::end_in_order();
-        let mut target = Target::create(&arguments.output)?;
+        let mut target = OutputSink::create(&arguments.output)?;
         let bar = progress::bar(common, rows.unwrap_or(0), self.items);
         let start = Instant::now();
         // Only when the table can be read: an empty list of hits would look like an answer.
@@ -265,7 +265,7 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         tracer: &Tracer,
         blocks: &[Vec<R>],
         totals: &mut Totals,
-        target: &mut Target,
+        target: &mut OutputSink,
     ) -> anyhow::Result<()> {
         let numbered: Vec<_> = blocks
             .iter()

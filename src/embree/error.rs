@@ -107,13 +107,13 @@ pub enum Error {
         /// How many segments.
         segments: usize,
     },
-    /// Normals that don't belong to the discs.
-    #[error("{normals} normals were given for {discs} discs")]
+    /// Normals that don't belong to the disks.
+    #[error("{normals} normals were given for {disks} disks")]
     NormalCount {
         /// How many normals.
         normals: usize,
-        /// How many discs.
-        discs: usize,
+        /// How many disks.
+        disks: usize,
     },
 }
 

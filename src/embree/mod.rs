@@ -1,5 +1,5 @@
 //! Embree behind a safe surface: devices, scenes, user geometry, triangle
-//! meshes, straight curves, spheres, discs and instances, queries of single rays and of packets of
+//! meshes, straight curves, spheres, disks and instances, queries of single rays and of packets of
 //! up to sixteen, and all hits of a ray with triangles or curves.
 //!
 //! This layer knows neither cylinders nor scene files, but for the layout that
@@ -59,7 +59,7 @@
 //! | instances of more than one level, instance arrays | further levels are user geometry: f64 transforms, any depth |
 //! | ray streams | gone in Embree 4 |
 //! | filter functions but the one that collects, ray masks | a user geometry itself accepts or refuses; all masks are ones |
-//! | motion blur, subdivision, grids, ray-facing discs, other curves | nothing here moves or is made of them |
+//! | motion blur, subdivision, grids, ray-facing disks, other curves | nothing here moves or is made of them |
 //! | point queries, collision | other questions than rays ask |
 //! | updates of a committed scene | a committed scene is read-only, which is what makes it shareable |
 

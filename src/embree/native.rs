@@ -1,5 +1,5 @@
 //! Geometry that Embree intersects by itself: triangle meshes, straight curves,
-//! spheres and discs.
+//! spheres and disks.
 
 use super::error::Error;
 use super::query::Query;
@@ -107,25 +107,25 @@ impl<Q: Query> SceneBuilder<Q> {
         self.attach(&points)
     }
 
-    /// Adds flat discs of Embree's own (`ORIENTED_DISC_POINT`): points and radii, and
+    /// Adds flat disks of Embree's own (`ORIENTED_DISC_POINT`): points and radii, and
     /// for each a normal of any length. A ray meets them from either side.
     ///
     /// # Errors
     /// As for [`attach_spheres`](Self::attach_spheres), and when a normal is not finite
-    /// or too long, or there are not as many as discs.
-    pub fn attach_discs(
+    /// or too long, or there are not as many as disks.
+    pub fn attach_disks(
         &mut self,
-        discs: &[[f32; 4]],
+        disks: &[[f32; 4]],
         normals: &[[f32; 3]],
     ) -> Result<GeometryId, Error> {
         check_vertices(normals, |_| true)?;
-        if normals.len() != discs.len() {
+        if normals.len() != disks.len() {
             return Err(Error::NormalCount {
                 normals: normals.len(),
-                discs: discs.len(),
+                disks: disks.len(),
             });
         }
-        let points = self.new_points(sys::RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT, discs)?;
+        let points = self.new_points(sys::RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT, disks)?;
         // Read with 16 bytes each, too, but Embree does not pad this buffer.
         let padded: Vec<[f32; 4]> = normals.iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
         self.fill(

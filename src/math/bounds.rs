@@ -43,7 +43,7 @@ impl Bounds {
 
     /// The middle of a box that is not empty, rounded.
     #[must_use]
-    pub fn centre(&self) -> DVec3 {
+    pub fn center(&self) -> DVec3 {
         self.lower * 0.5 + self.upper * 0.5
     }
 
@@ -91,14 +91,14 @@ impl Bounds {
         if self.is_empty() {
             return Self::EMPTY;
         }
-        let centre = self.centre();
-        let half = (self.upper - centre).max(centre - self.lower) * (1.0 + 2.0 * UNIT_ROUNDOFF);
+        let center = self.center();
+        let half = (self.upper - center).max(center - self.lower) * (1.0 + 2.0 * UNIT_ROUNDOFF);
         let matrix = to_from_here.matrix3;
         let absolute = matrix.abs();
-        let size = absolute * centre.abs() + to_from_here.translation.abs();
+        let size = absolute * center.abs() + to_from_here.translation.abs();
         let reach = absolute * half;
         let reach = reach + (size + reach) * (8.0 * UNIT_ROUNDOFF);
-        let middle = matrix * centre + to_from_here.translation;
+        let middle = matrix * center + to_from_here.translation;
         Self {
             lower: middle - reach,
             upper: middle + reach,

@@ -22,7 +22,7 @@ use glam::{DMat3, DVec3};
 
 use super::{DoubleDouble, rotation, sin_cos_degrees, unit};
 
-/// The way an object is turned about its own centre.
+/// The way an object is turned about its own center.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orientation {
     world_from_object: DMat3,

@@ -1,29 +1,29 @@
 //! Where an object is and which way it is turned.
 //!
-//! A point goes to the object by the difference to the centre first, so that a
-//! far centre costs one rounding of that difference and not of the products.
+//! A point goes to the object by the difference to the center first, so that a
+//! far center costs one rounding of that difference and not of the products.
 
 use glam::{DAffine3, DVec3};
 
 use super::Orientation;
 
-/// A rigid motion from an object's own space, with its centre at zero, to the
-/// world. Turns are about the object's own centre and leave it where it is; they
+/// A rigid motion from an object's own space, with its center at zero, to the
+/// world. Turns are about the object's own center and leave it where it is; they
 /// and translations follow each other in the order of the calls.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
-    /// Where the object's centre is in the world.
-    pub centre: DVec3,
+    /// Where the object's center is in the world.
+    pub center: DVec3,
     /// Which way the object is turned.
     pub orientation: Orientation,
 }
 
 impl Pose {
-    /// Not turned, with its centre at a point.
+    /// Not turned, with its center at a point.
     #[must_use]
-    pub fn at(centre: DVec3) -> Self {
+    pub fn at(center: DVec3) -> Self {
         Self {
-            centre,
+            center,
             orientation: Orientation::IDENTITY,
         }
     }
@@ -32,12 +32,12 @@ impl Pose {
     #[must_use]
     pub fn translated(self, by: DVec3) -> Self {
         Self {
-            centre: self.centre + by,
+            center: self.center + by,
             ..self
         }
     }
 
-    /// Turned on about its centre; see [`Orientation::rotated_x`].
+    /// Turned on about its center; see [`Orientation::rotated_x`].
     ///
     /// # Panics
     /// When the angle is not finite.
@@ -46,7 +46,7 @@ impl Pose {
         self.oriented(self.orientation.rotated_x(degrees))
     }
 
-    /// Turned on about its centre; see [`Orientation::rotated_y`].
+    /// Turned on about its center; see [`Orientation::rotated_y`].
     ///
     /// # Panics
     /// When the angle is not finite.
@@ -55,7 +55,7 @@ impl Pose {
         self.oriented(self.orientation.rotated_y(degrees))
     }
 
-    /// Turned on about its centre; see [`Orientation::rotated_z`].
+    /// Turned on about its center; see [`Orientation::rotated_z`].
     ///
     /// # Panics
     /// When the angle is not finite.
@@ -64,7 +64,7 @@ impl Pose {
         self.oriented(self.orientation.rotated_z(degrees))
     }
 
-    /// Turned on about its centre; see [`Orientation::rotated`].
+    /// Turned on about its center; see [`Orientation::rotated`].
     ///
     /// # Panics
     /// When the angle is not finite, or the axis is zero or not finite.
@@ -76,13 +76,13 @@ impl Pose {
     /// A point of the object in the world, rounded.
     #[must_use]
     pub fn point_to_world(&self, object: DVec3) -> DVec3 {
-        self.orientation.to_world(object) + self.centre
+        self.orientation.to_world(object) + self.center
     }
 
     /// A point of the world as the object sees it, rounded.
     #[must_use]
     pub fn point_to_object(&self, world: DVec3) -> DVec3 {
-        self.orientation.to_object(world - self.centre)
+        self.orientation.to_object(world - self.center)
     }
 
     /// A direction of the object in the world, rounded.
@@ -102,7 +102,7 @@ impl Pose {
     pub fn world_from_object(&self) -> DAffine3 {
         DAffine3 {
             matrix3: self.orientation.world_from_object(),
-            translation: self.centre,
+            translation: self.center,
         }
     }
 

@@ -1,7 +1,7 @@
 //! The first hit of a solid of whichever kind, its normal and its gap.
 //!
 //! The normal of a wall is the gradient of the polynomial that is zero there
-//! (`taper.rs`), of a sphere the way from its centre, of a face or a disk that of its
+//! (`taper.rs`), of a sphere the way from its center, of a face or a disk that of its
 //! plane.
 
 use glam::DVec3;
@@ -85,7 +85,7 @@ pub fn gap_of_any(solid: &AnySolid, ray: &Ray) -> f64 {
 }
 
 /// The unit vector out of the solid at a hit of `ray`; `None` at an apex without a
-/// disc. That of a disk is the one it is stated with.
+/// disk. That of a disk is the one it is stated with.
 ///
 /// A hit's `t` is rounded, far beyond f64: what is nearer to the apex than 2^-500 of the
 /// way there is at it.
@@ -128,7 +128,7 @@ pub fn outward_normal_of_any(solid: &AnySolid, ray: &Ray, hit: &TrueHit) -> Opti
                 }
             }
         }
-        AnySolid::Sphere(sphere) => from(sphere.centre()),
+        AnySolid::Sphere(sphere) => from(sphere.center()),
         AnySolid::Cuboid(cuboid) => {
             let axes = cuboid.orientation().world_from_object();
             let (axis, side) = match hit.part {

@@ -2,9 +2,9 @@
 //!
 //! All points of the boundary that the line goes through are listed: roots of the
 //! wall (`taper.rs`) at heights from 0 to `a·a`, and where the line crosses the
-//! plane of a disc, if the radius there reaches it. At either height a point of the
-//! wall is on the rim and belongs to the disc, if there is one. A line along the
-//! wall is on it from disc to disc, one in the plane of a disc from rim to rim.
+//! plane of a disk, if the radius there reaches it. At either height a point of the
+//! wall is on the rim and belongs to the disk, if there is one. A line along the
+//! wall is on it from disk to disk, one in the plane of a disk from rim to rim.
 
 use std::cmp::Ordering;
 
@@ -21,7 +21,7 @@ use crate::solid::{Caps, Cone, Cylinder, Part};
 /// tangent is an entry and an exit.
 #[must_use]
 pub fn cone_hits(cone: &Cone, ray: &ExactRay) -> Vec<TrueHit> {
-    hits_between_discs(&Taper::new(&numbers(cone, ray), false), cone.caps(), ray)
+    hits_between_disks(&Taper::new(&numbers(cone, ray), false), cone.caps(), ray)
 }
 
 /// The same of a cylinder, which is the cone of equal radii.
@@ -29,14 +29,14 @@ pub fn cone_hits(cone: &Cone, ray: &ExactRay) -> Vec<TrueHit> {
 pub(super) fn cylinder_hits(cylinder: &Cylinder, ray: &ExactRay) -> Vec<TrueHit> {
     let ends = [cylinder.p0(), cylinder.p1()];
     let numbers = numbers_of(ends, [cylinder.radius(); 2], ray);
-    hits_between_discs(&Taper::new(&numbers, false), cylinder.caps(), ray)
+    hits_between_disks(&Taper::new(&numbers, false), cylinder.caps(), ray)
 }
 
-fn hits_between_discs(taper: &Taper, caps: Caps, ray: &ExactRay) -> Vec<TrueHit> {
+fn hits_between_disks(taper: &Taper, caps: Caps, ray: &ExactRay) -> Vec<TrueHit> {
     let (ax, ad, aa) = (&taper.ax, &taper.ad, &taper.aa);
     let along = taper.is_along();
     let mut points = Vec::new();
-    let disc_at = |to_p0: Ordering, to_p1: Ordering| match (to_p0, to_p1) {
+    let disk_at = |to_p0: Ordering, to_p1: Ordering| match (to_p0, to_p1) {
         (Ordering::Less, _) | (_, Ordering::Greater) => None,
         (Ordering::Equal, _) => Some(Some(Part::Cap0)),
         (_, Ordering::Equal) => Some(Some(Part::Cap1)),
@@ -44,7 +44,7 @@ fn hits_between_discs(taper: &Taper, caps: Caps, ray: &ExactRay) -> Vec<TrueHit>
     };
     for t in taper.wall_points() {
         let (to_p0, to_p1) = (t.sign_of_line(ax, ad), t.sign_of_line(&(ax - aa), ad));
-        if let Some(cap) = disc_at(to_p0, to_p1) {
+        if let Some(cap) = disk_at(to_p0, to_p1) {
             points.push(TrueEnd {
                 t,
                 cap,
@@ -53,7 +53,7 @@ fn hits_between_discs(taper: &Taper, caps: Caps, ray: &ExactRay) -> Vec<TrueHit>
         }
     }
     if sign(ad) == Ordering::Equal {
-        let lies_on = disc_at(sign(ax), ax.cmp(aa)).flatten();
+        let lies_on = disk_at(sign(ax), ax.cmp(aa)).flatten();
         return hits(&points, lies_on, caps, ray);
     }
     for (part, height) in [(Part::Cap0, zero()), (Part::Cap1, aa.clone())] {

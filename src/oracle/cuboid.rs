@@ -29,7 +29,7 @@ struct OwnLine {
 #[must_use]
 pub fn cuboid_chord(cuboid: &Cuboid, ray: &ExactRay) -> Option<TrueChord> {
     let line = OwnLine {
-        start: along_axes(cuboid, &ray.origin_from(cuboid.centre())),
+        start: along_axes(cuboid, &ray.origin_from(cuboid.center())),
         slope: along_axes(cuboid, &ray.direction),
         half_widths: cuboid.half_widths().to_array().map(|one| ray.length(one)),
     };
@@ -59,8 +59,8 @@ pub fn cuboid_chord(cuboid: &Cuboid, ray: &ExactRay) -> Option<TrueChord> {
 #[must_use]
 pub fn cuboid_holds(cuboid: &Cuboid, point: glam::DVec3) -> bool {
     let half_widths = cuboid.half_widths().to_array().map(exact);
-    let from_centre = &ExactVector::new(point) - &ExactVector::new(cuboid.centre());
-    along_axes(cuboid, &from_centre)
+    let from_center = &ExactVector::new(point) - &ExactVector::new(cuboid.center());
+    along_axes(cuboid, &from_center)
         .iter()
         .zip(half_widths)
         .all(|(own, half_width)| -&half_width <= *own && *own <= half_width)
@@ -78,7 +78,7 @@ pub fn cuboid_gap(cuboid: &Cuboid, ray: &Ray) -> f64 {
     assert!(ray.is_valid(), "the gap was asked for of {ray:?}");
     let vectors = [
         cuboid.half_widths(),
-        cuboid.centre(),
+        cuboid.center(),
         ray.origin,
         ray.direction,
     ];
@@ -86,9 +86,9 @@ pub fn cuboid_gap(cuboid: &Cuboid, ray: &Ray) -> f64 {
     let is_along =
         along_axes(cuboid, &ExactVector::new(ray.direction)).map(|slope| slope == zero());
     least_change(numbers, |numbers: &[Exact]| {
-        let [half_widths, centre, origin, d] =
+        let [half_widths, center, origin, d] =
             [0, 3, 6, 9].map(|first| vector_of(&numbers[first..]));
-        let start = along_axes(cuboid, &(&origin - &centre));
+        let start = along_axes(cuboid, &(&origin - &center));
         let slope = along_axes(cuboid, &d);
         let planes: [[Exact; 2]; 3] = std::array::from_fn(|axis| {
             let (start, half_width) = (&start[axis], &half_widths.0[axis]);

@@ -14,9 +14,9 @@
 //! These are the dot products of the textbook, which lose everything in
 //! floating point and nothing here. A root is on the wall if
 //! `0 <= a·x + t a·d <= a·a`; at equality it is on a rim, and belongs to the
-//! disc if there is one. A disc is met where `a·x + t a·d` is 0 or `a·a`, if
-//! the point is within `radius` of the disc's middle. A ray within the plane of
-//! a disc, or along the wall, touches the surface over an interval of `t`: its
+//! disk if there is one. A disk is met where `a·x + t a·d` is 0 or `a·a`, if
+//! the point is within `radius` of the disk's middle. A ray within the plane of
+//! a disk, or along the wall, touches the surface over an interval of `t`: its
 //! ends and the start of the range are listed.
 
 use std::cmp::Ordering;
@@ -115,7 +115,7 @@ fn truth(cylinder: &Cylinder, ray: &ExactRay) -> CylinderTruth {
     problem.solve(ray)
 }
 
-/// Of two candidates at one `t`, the disc and the entry come first.
+/// Of two candidates at one `t`, the disk and the entry come first.
 fn rank(candidate: &Candidate) -> (bool, Crossing) {
     (candidate.part == Part::Side, candidate.crossing)
 }
@@ -125,8 +125,8 @@ impl Problem {
         let mut candidates = Vec::new();
         let wall_gap = self.list_wall(ray, &mut candidates);
         if sign(&self.ad) != Ordering::Equal {
-            self.list_disc(Part::Cap0, &mut candidates);
-            self.list_disc(Part::Cap1, &mut candidates);
+            self.list_disk(Part::Cap0, &mut candidates);
+            self.list_disk(Part::Cap1, &mut candidates);
         }
         let in_range = |candidate: &Candidate| {
             candidate.t.cmp_f64(ray.t_min) != Ordering::Less
@@ -195,7 +195,7 @@ impl Problem {
                     crossing,
                 )
             });
-            self.list_line_in_disc(ray, &roots, candidates);
+            self.list_line_in_disk(ray, &roots, candidates);
             for (t, crossing) in roots {
                 let to_p0 = t.sign_of_line(&self.ax, &self.ad);
                 let to_p1 = t.sign_of_line(&(&self.ax - &self.aa), &self.ad);
@@ -229,8 +229,8 @@ impl Problem {
         }
     }
 
-    /// A line within the plane of a disc touches the disc between the roots.
-    fn list_line_in_disc(
+    /// A line within the plane of a disk touches the disk between the roots.
+    fn list_line_in_disk(
         &self,
         ray: &ExactRay,
         roots: &[(Surd, Crossing); 2],
@@ -270,12 +270,12 @@ impl Problem {
         }
     }
 
-    /// Lists where a line that is not parallel to the discs meets one.
-    fn list_disc(&self, cap: Part, candidates: &mut Vec<Candidate>) {
+    /// Lists where a line that is not parallel to the disks meets one.
+    fn list_disk(&self, cap: Part, candidates: &mut Vec<Candidate>) {
         if !self.has(cap) {
             return;
         }
-        // From the disc's middle: y = x or x - a, a·y + t a·d = 0.
+        // From the disk's middle: y = x or x - a, a·y + t a·d = 0.
         let (y, ay) = match cap {
             Part::Cap1 => (&self.x - &self.a, &self.ax - &self.aa),
             _ => (self.x.clone(), self.ax.clone()),
@@ -348,7 +348,7 @@ mod tests {
             ),
             None
         );
-        // Along the axis, with and without discs.
+        // Along the axis, with and without disks.
         assert_eq!(
             answer(Caps::Both, [0.0, 0.0, -5.0], [0.0, 0.0, 1.0], 0.0),
             cap0(5.0)
@@ -374,7 +374,7 @@ mod tests {
             answer(Caps::Both, [1.0, 0.0, -5.0], [0.0, 0.0, 1.0], 5.5),
             side(5.5)
         );
-        // In the plane of a disc: its rim, the disc from the start, or the
+        // In the plane of a disk: its rim, the disk from the start, or the
         // edge of an open wall.
         assert_eq!(
             answer(Caps::Both, [-3.0, 0.0, 0.0], [1.0, 0.0, 0.0], 0.0),

@@ -2,7 +2,7 @@
 //!
 //! A line that is not parallel to the plane meets it in one point, which is
 //! compared with the radius as it is; within the plane the disk is the ball around
-//! its centre.
+//! its center.
 
 use std::cmp::Ordering;
 
@@ -17,7 +17,7 @@ use crate::solid::{Disk, Part};
 /// line within its plane.
 #[must_use]
 pub fn disk_chord(disk: &Disk, ray: &ExactRay) -> Option<TrueChord> {
-    let (x, d) = (ray.origin_from(disk.centre()), &ray.direction);
+    let (x, d) = (ray.origin_from(disk.center()), &ray.direction);
     let (n, radius) = (ExactVector::new(disk.normal()), ray.length(disk.radius()));
     let (height, slope) = (n.dot(&x), n.dot(d));
     let is_along = sign(&slope) == Ordering::Equal;
@@ -53,7 +53,7 @@ pub fn disk_chord(disk: &Disk, ray: &ExactRay) -> Option<TrueChord> {
 /// When the point is not finite.
 #[must_use]
 pub fn disk_holds(disk: &Disk, point: glam::DVec3) -> bool {
-    let x = &ExactVector::new(point) - &ExactVector::new(disk.centre());
+    let x = &ExactVector::new(point) - &ExactVector::new(disk.center());
     let radius = exact(disk.radius());
     ExactVector::new(disk.normal()).dot(&x) == zero() && x.dot(&x) <= &radius * &radius
 }
@@ -69,12 +69,12 @@ pub fn disk_holds(disk: &Disk, point: glam::DVec3) -> bool {
 pub fn disk_gap(disk: &Disk, ray: &Ray) -> f64 {
     assert!(ray.is_valid(), "the gap was asked for of {ray:?}");
     let mut numbers = vec![exact(disk.radius())];
-    for vector in [disk.centre(), disk.normal(), ray.origin, ray.direction] {
+    for vector in [disk.center(), disk.normal(), ray.origin, ray.direction] {
         numbers.extend(vector.to_array().map(exact));
     }
     least_change(numbers, |numbers: &[Exact]| {
-        let [centre, n, origin, d] = [1, 4, 7, 10].map(|first| vector_of(&numbers[first..]));
-        let x = &origin - &centre;
+        let [center, n, origin, d] = [1, 4, 7, 10].map(|first| vector_of(&numbers[first..]));
+        let x = &origin - &center;
         let (height, slope) = (n.dot(&x), n.dot(&d));
         let point = &x.times(&slope) - &d.times(&height);
         let reach = &numbers[0] * slope;

@@ -15,7 +15,7 @@ use crate::solid::{Caps, Crossing, Part};
 #[derive(Clone, Debug)]
 pub(super) struct TrueEnd {
     pub t: Surd,
-    /// The disc or sphere that the point belongs to, if any.
+    /// The disk or sphere that the point belongs to, if any.
     pub cap: Option<Part>,
     /// Whether it is on the wall.
     pub on_side: bool,

@@ -3,9 +3,9 @@
 //! An answer (hit or miss, and which part) changes only at an *event*:
 //!
 //! - **tangency**: the line touches the wall, `D = r²|n|² - w² = 0` with
-//!   `n = a × d`, `w = x·n`, at a height within the slab between the discs;
-//! - **rim**: the line meets the edge of a disc, `G = |P|² - r² (a·d)² = 0`
-//!   with `P = x (a·d) - d (a·x)`, `x` from that disc's middle;
+//!   `n = a × d`, `w = x·n`, at a height within the slab between the disks;
+//! - **rim**: the line meets the edge of a disk, `G = |P|² - r² (a·d)² = 0`
+//!   with `P = x (a·d) - d (a·x)`, `x` from that disk's middle;
 //! - **range**: a finite end of the range is on the surface.
 //!
 //! The first two count only where the event is in the ray's range and not
@@ -141,7 +141,7 @@ impl Case {
         let (n, w) = (rounded(&exact_n), rounded_number(&exact_w));
         let nn = n.dot(n);
         if nn == 0.0 {
-            // Along the axis; only the edges of the discs decide.
+            // Along the axis; only the edges of the disks decide.
             return f64::INFINITY;
         }
         let rr = exact(self.r) * exact(self.r);
@@ -166,7 +166,7 @@ impl Case {
             .max(self.to_range(t, k))
     }
 
-    /// The edge of the disc at `p0`, or at `p1`.
+    /// The edge of the disk at `p0`, or at `p1`.
     fn rim(&self, at_p1: bool) -> f64 {
         let from_middle = if at_p1 {
             &self.exact_x - &self.exact_a
@@ -186,7 +186,7 @@ impl Case {
         let by_a = (d * p.dot(y) - y * p.dot(d)) * 2.0 - d * (2.0 * r * r * ad);
         let gradient = Gradient {
             x: by_y,
-            // y = x - a for the disc at p1.
+            // y = x - a for the disk at p1.
             a: if at_p1 { by_a - by_y } else { by_a },
             d: (a * p.dot(y) - p * ay) * 2.0 - a * (2.0 * r * r * ad),
             r: 2.0 * r * ad * ad,
@@ -216,20 +216,20 @@ impl Case {
         let gradient = on_line(v.cross(a) * 2.0, by_a, 2.0 * r * a.length_squared());
         let to_wall = self.first_order(wall, &gradient);
 
-        // a·q and a·(q - a), the heights above the discs.
+        // a·q and a·(q - a), the heights above the disks.
         let height0 = rounded_number(&self.exact_a.dot(&exact_q));
         let over_p1 = &exact_q - &self.exact_a;
         let height1 = rounded_number(&self.exact_a.dot(&over_p1));
-        let to_disc0 = self.first_order(height0, &on_line(a, q, 0.0));
-        let to_disc1 = self.first_order(height1, &on_line(a, rounded(&over_p1) - a, 0.0));
+        let to_disk0 = self.first_order(height0, &on_line(a, q, 0.0));
+        let to_disk1 = self.first_order(height1, &on_line(a, rounded(&over_p1) - a, 0.0));
 
         let within_wall = if wall <= 0.0 { 0.0 } else { to_wall };
-        let above0 = if height0 >= 0.0 { 0.0 } else { to_disc0 };
-        let below1 = if height1 <= 0.0 { 0.0 } else { to_disc1 };
+        let above0 = if height0 >= 0.0 { 0.0 } else { to_disk0 };
+        let below1 = if height1 <= 0.0 { 0.0 } else { to_disk1 };
         let mut gap = to_wall.max(above0).max(below1);
-        for (is_closed, to_disc) in self.caps.into_iter().zip([to_disc0, to_disc1]) {
+        for (is_closed, to_disk) in self.caps.into_iter().zip([to_disk0, to_disk1]) {
             if is_closed {
-                gap = gap.min(to_disc.max(within_wall));
+                gap = gap.min(to_disk.max(within_wall));
             }
         }
         gap
@@ -278,11 +278,11 @@ mod tests {
     fn gap_at_each_event_is_the_distance_to_it() {
         let near = 1e-9;
         let gaps = [
-            // Next to the wall; next to a rim; next to a disc's plane.
+            // Next to the wall; next to a rim; next to a disk's plane.
             gap_of(Caps::Both, [-3.0, 1.0 + near, 2.0], [1.0, 0.0, 0.0]),
             gap_of(Caps::Both, [-3.0, 0.0, -3.0 + near], [1.0, 0.0, 2.0]),
             gap_of(Caps::Both, [-3.0, 0.0, 1.0 + near], [1.0, 0.0, 0.0]),
-            // From next to the wall, and from next to a disc.
+            // From next to the wall, and from next to a disk.
             gap_of(Caps::Both, [-1.0 - near, 0.0, 2.0], [1.0, 0.0, 0.0]),
             gap_of(Caps::Both, [0.0, 0.0, 1.0 + near], [1.0, 0.0, 1.0]),
         ];
@@ -296,7 +296,7 @@ mod tests {
     #[test]
     fn gap_ignores_events_out_of_reach() {
         // Tangent above the cylinder; tangent behind the origin; a rim
-        // behind the hit; next to an absent disc.
+        // behind the hit; next to an absent disk.
         for gap in [
             gap_of(Caps::Both, [-3.0, 1.0, 6.0], [1.0, 0.0, 0.0]),
             gap_of(Caps::Both, [3.0, 1.0, 2.0], [1.0, 0.0, 0.0]),

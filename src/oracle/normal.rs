@@ -1,7 +1,7 @@
 //! The true outward normal at a hit.
 //!
 //! On the wall it is the part of `x + t d` across the axis,
-//! `(a·a) q - (a·q) a` with `q = x + t d`; on a disc it is the axis. Both are
+//! `(a·a) q - (a·q) a` with `q = x + t d`; on a disk it is the axis. Both are
 //! computed from the parameter as [`first_hit`](super::first_hit) gives it and
 //! rounded only when they are divided by their length.
 

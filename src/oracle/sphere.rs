@@ -11,7 +11,7 @@ use crate::solid::{Part, Sphere};
 #[must_use]
 pub fn sphere_chord(sphere: &Sphere, ray: &ExactRay) -> Option<TrueChord> {
     let (x, radius) = (
-        ray.origin_from(sphere.centre()),
+        ray.origin_from(sphere.center()),
         ray.length(sphere.radius()),
     );
     let [enter, leave] = in_ball(&x, &ray.direction, &radius)?.map(|t| TrueEnd {
@@ -31,7 +31,7 @@ pub fn sphere_chord(sphere: &Sphere, ray: &ExactRay) -> Option<TrueChord> {
 /// When the point is not finite.
 #[must_use]
 pub fn sphere_holds(sphere: &Sphere, point: glam::DVec3) -> bool {
-    let x = &ExactVector::new(point) - &ExactVector::new(sphere.centre());
+    let x = &ExactVector::new(point) - &ExactVector::new(sphere.center());
     let radius = exact(sphere.radius());
     x.dot(&x) <= &radius * &radius
 }
@@ -47,12 +47,12 @@ pub fn sphere_holds(sphere: &Sphere, point: glam::DVec3) -> bool {
 pub fn sphere_gap(sphere: &Sphere, ray: &Ray) -> f64 {
     assert!(ray.is_valid(), "the gap was asked for of {ray:?}");
     let mut numbers = vec![exact(sphere.radius())];
-    for vector in [sphere.centre(), ray.origin, ray.direction] {
+    for vector in [sphere.center(), ray.origin, ray.direction] {
         numbers.extend(vector.to_array().map(exact));
     }
     least_change(numbers, |numbers: &[Exact]| {
-        let [centre, origin, d] = [1, 4, 7].map(|first| vector_of(&numbers[first..]));
-        let (x, rr) = (&origin - &centre, &numbers[0] * &numbers[0]);
+        let [center, origin, d] = [1, 4, 7].map(|first| vector_of(&numbers[first..]));
+        let (x, rr) = (&origin - &center, &numbers[0] * &numbers[0]);
         let (dd, xd) = (d.dot(&d), x.dot(&d));
         let height = x.dot(&x) - rr;
         vec![&xd * &xd - &dd * &height, height]

@@ -3,7 +3,7 @@
 //! With `a = p1 - p0`, `x = o - p0`, a point of the line is `q = x + t d`. The
 //! square of its distance to the axis times `a·a` is `a·a q·q - (a·q)²`; the radius
 //! at its height, times `√β`, is `r0 a·a + (r1 - r0) a·q`, where `β` is `a·a` for a
-//! cone through two discs and `a·a - (r1 - r0)²` for one that touches two balls.
+//! cone through two disks and `a·a - (r1 - r0)²` for one that touches two balls.
 //! Expanded in dot products, both sides' squares are polynomials in t:
 //!
 //! ```text

@@ -29,7 +29,7 @@ pub struct Mark {
 /// How a series is marked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symbol {
-    /// A disc.
+    /// A disk.
     Circle,
     /// A square.
     Square,
@@ -312,8 +312,8 @@ impl Figure {
             if dx * dx + dy * dy > LED * LED {
                 line(svg, "lead", (x, y), end);
             }
-            let centre = 0.5 * (place.left + place.right);
-            text(svg, "middle", (centre, place.bottom - 3.0), &mark.label);
+            let center = 0.5 * (place.left + place.right);
+            text(svg, "middle", (center, place.bottom - 3.0), &mark.label);
         }
     }
 }

@@ -95,13 +95,13 @@ fn places(
         (0..DIRECTIONS).map(move |direction| {
             let angle = std::f64::consts::TAU * f64::from(direction) / f64::from(DIRECTIONS);
             let (sin, cos) = libm::sincos(angle);
-            let centre_x = x + cos * (distance + 0.5 * width);
-            let centre_y = y + sin * (distance + 0.5 * height);
+            let center_x = x + cos * (distance + 0.5 * width);
+            let center_y = y + sin * (distance + 0.5 * height);
             let place = Rectangle {
-                left: centre_x - 0.5 * width,
-                top: centre_y - 0.5 * height,
-                right: centre_x + 0.5 * width,
-                bottom: centre_y + 0.5 * height,
+                left: center_x - 0.5 * width,
+                top: center_y - 0.5 * height,
+                right: center_x + 0.5 * width,
+                bottom: center_y + 0.5 * height,
             };
             (distance - NEAREST, place)
         })

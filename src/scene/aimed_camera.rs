@@ -50,7 +50,7 @@ impl AimedCamera {
         let size = DVec2::new(f64::from(film.width), f64::from(film.height));
         let shape = DVec2::new(size.x / size.y, 1.0);
         let (towards_eye, up, target) = match description.frame {
-            Frame::Auto => (AUTO_EYE, DVec3::Z, centre(bounds)),
+            Frame::Auto => (AUTO_EYE, DVec3::Z, center(bounds)),
             Frame::LookAt {
                 position,
                 look_at,
@@ -159,7 +159,7 @@ impl AimedCamera {
 
     /// The corners of the scene's box in camera coordinates.
     fn corners(&self, bounds: &Bounds) -> [DVec3; 8] {
-        let middle = centre(bounds);
+        let middle = center(bounds);
         let half = half_extent(bounds);
         std::array::from_fn(|corner| {
             let side = |axis: usize| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
@@ -231,11 +231,11 @@ fn balancing_shift(x: &[f64; 8], depths: &[f64; 8]) -> f64 {
 }
 
 /// The middle of the box; the origin for an empty one.
-fn centre(bounds: &Bounds) -> DVec3 {
+fn center(bounds: &Bounds) -> DVec3 {
     if bounds.is_empty() {
         DVec3::ZERO
     } else {
-        bounds.centre()
+        bounds.center()
     }
 }
 

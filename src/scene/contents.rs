@@ -13,7 +13,7 @@ use crate::solid::{Composition, ConvexSolid, SolidKind};
 
 /// What a prototype holds, counted.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Contents {
+pub struct ExpectedCounts {
     /// The name in the scene file; empty for the root.
     pub name: String,
     /// Its own cylinders.
@@ -104,7 +104,7 @@ pub struct PlacedCount {
     pub count: u64,
 }
 
-impl Contents {
+impl ExpectedCounts {
     /// What a prototype with these placements holds; equal `of` are joined.
     pub(super) fn new(
         name: &str,
@@ -143,7 +143,7 @@ impl Contents {
 }
 
 /// Marks what the root, the first, needs; cycles do no harm.
-pub(super) fn mark_used(contents: &mut [Contents]) {
+pub(super) fn mark_used(contents: &mut [ExpectedCounts]) {
     let mut open = vec![PrototypeIndex::ROOT];
     while let Some(index) = open.pop() {
         let prototype = &mut contents[index.0 as usize];
@@ -158,12 +158,12 @@ impl Scene {
     /// What the prototypes hold, in their order. Runs on the rayon pool that
     /// this is called in.
     #[must_use]
-    pub fn contents(&self) -> Vec<Contents> {
+    pub fn contents(&self) -> Vec<ExpectedCounts> {
         let mut contents: Vec<_> = self
             .prototypes
             .iter()
             .map(|prototype| {
-                Contents::new(
+                ExpectedCounts::new(
                     &prototype.name,
                     prototype.cylinders.len() as u64,
                     prototype.cylinders.records(),
@@ -202,7 +202,7 @@ mod tests {
         let at = PrototypeIndex;
         let holding = |name, placed: &[(PrototypeIndex, u64)]| {
             let others = OtherSolids::default();
-            Contents::new(name, 1, Records::F64, others, placed.iter().copied())
+            ExpectedCounts::new(name, 1, Records::F64, others, placed.iter().copied())
         };
         let mut contents = [
             holding("", &[(at(2), 3), (at(1), 5), (at(2), 4)]),

@@ -5,8 +5,8 @@ use toml::Spanned;
 
 use super::description::CylinderRecord;
 use super::error::SceneError;
-use super::gathered::{Degenerate, Gathered, Look, SKIP_HELP, is_degenerate};
 use super::named_table::{NamedTable, TableKeys, Tables, keys_of};
+use super::solid_collector::{Degenerate, Look, SKIP_HELP, SolidCollector, is_degenerate};
 use super::solid_keys::{CylinderColumns, CylinderTableKeys};
 use super::source::Source;
 use super::table::{Column, ColumnKey, Fault, Row};
@@ -16,7 +16,7 @@ use crate::solid::{Caps, Cylinder, CylinderError};
 
 /// Adds the rows of a `[[cylinder_table]]`.
 pub(super) fn add_table(
-    solids: &mut Gathered,
+    solids: &mut SolidCollector,
     tables: &Tables,
     keys: &CylinderTableKeys,
     look: Look,

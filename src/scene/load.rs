@@ -13,7 +13,6 @@ use super::cylinder_table::add_table;
 use super::description::{Prototype, PrototypeIndex, Scene};
 use super::document::{Body, Document, PrototypeKeys, ScatterKeys};
 use super::error::SceneError;
-use super::gathered::{Degenerate, Gathered, Look, Refusal};
 use super::graph::{self, Node};
 use super::named_table::Tables;
 use super::names::{quoted, suggestion};
@@ -23,6 +22,7 @@ use super::scatter::{Pattern, Scatter};
 use super::scene_file::SceneFile;
 use super::set_operations::Operation;
 use super::settings::{Materials, check_names, film, lights, render};
+use super::solid_collector::{Degenerate, Look, Refusal, SolidCollector};
 use super::solid_keys::{BeamLatticeKeys, CompositionKeys, SolidTable};
 use super::solids::{SolidKeys, caps};
 use super::source::Source;
@@ -204,9 +204,9 @@ impl Loader<'_> {
     }
 
     /// The cylinders and what comes from files, in the order of their numbers.
-    fn files_and_cylinders(&self, body: &Body) -> Result<Gathered, SceneError> {
+    fn files_and_cylinders(&self, body: &Body) -> Result<SolidCollector, SceneError> {
         let source = self.source;
-        let mut solids = Gathered::new(self.records);
+        let mut solids = SolidCollector::new(self.records);
         self.add_solids(&mut solids, body.cylinder)?;
         for Keys(keys) in body.cylinder_table {
             let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
@@ -235,7 +235,7 @@ impl Loader<'_> {
     /// Adds solids of one kind.
     fn add_solids<K: SolidKeys>(
         &self,
-        solids: &mut Gathered,
+        solids: &mut SolidCollector,
         tables: &[Keys<K>],
     ) -> Result<(), SceneError> {
         for Keys(keys) in tables {
@@ -250,7 +250,7 @@ impl Loader<'_> {
     /// Adds solids composed by one set operation.
     fn add_compositions(
         &self,
-        solids: &mut Gathered,
+        solids: &mut SolidCollector,
         operation: Operation,
         tables: &[Keys<CompositionKeys>],
     ) -> Result<(), SceneError> {
@@ -265,7 +265,7 @@ impl Loader<'_> {
 
     /// That the solid at a place is not added.
     fn refused(&self, place: Range<usize>, refusal: &Refusal) -> SceneError {
-        let (message, help) = refusal.told();
+        let (message, help) = refusal.message();
         match help {
             Some(help) => self.source.error_with_help(place, message, help),
             None => self.source.error(place, message),
@@ -317,7 +317,7 @@ impl Loader<'_> {
     }
 
     fn scatter(&self, keys: &ScatterKeys) -> Result<Scatter, SceneError> {
-        const PATTERNS: [(&str, Pattern); 2] = [("grid", Pattern::Grid), ("disc", Pattern::Disc)];
+        const PATTERNS: [(&str, Pattern); 2] = [("grid", Pattern::Grid), ("disc", Pattern::Disk)];
         const YAWS: [(&str, bool); 2] = [("none", false), ("random", true)];
         let wrong = |place, message: String| Err(self.source.error(place, message));
 

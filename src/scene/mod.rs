@@ -5,7 +5,7 @@
 //! entries are lowered one kind a file (`solids`, with their `pose`,
 //! `set_operations`, `cylinder_table`, `swc`, `beam_lattice`, `placing`, `scatter`,
 //! `camera`, `settings`), streaming the rows of tables, which `table` reads and
-//! `named_table` opens for them; `gathered` collects the
+//! `named_table` opens for them; `solid_collector` collects the
 //! solids of a prototype and numbers them; `graph` checks how prototypes place each
 //! other. `scene_file` knows the file between the two
 //! first steps, and `contents` what it will hold, so that a scene which is too
@@ -19,7 +19,6 @@
 mod aimed_camera;
 mod beam_lattice;
 mod camera;
-mod census;
 mod contents;
 mod cylinder_list;
 mod cylinder_table;
@@ -27,7 +26,6 @@ mod defaults;
 mod description;
 mod document;
 mod error;
-mod gathered;
 mod graph;
 mod hit_table;
 mod limits;
@@ -42,8 +40,10 @@ mod pose;
 mod regular_file;
 mod scatter;
 mod scene_file;
+mod scene_stats;
 mod set_operations;
 mod settings;
+mod solid_collector;
 mod solid_keys;
 mod solid_lists;
 mod solids;
@@ -57,8 +57,7 @@ mod view_volume;
 
 pub use aimed_camera::AimedCamera;
 pub use beam_lattice::beams_of_model;
-pub use census::Census;
-pub use contents::{Contents, OtherSolids, PlacedCount};
+pub use contents::{ExpectedCounts, OtherSolids, PlacedCount};
 pub(crate) use cylinder_list::SharedRecords;
 pub use cylinder_list::{CylinderList, CylinderRecord32, Iter as CylinderIter, Records};
 pub use description::{
@@ -72,6 +71,7 @@ pub use load::load;
 pub use number_table::{NumberColumns, NumberRow, NumberTable};
 pub use origins::{Origin, Origins};
 pub use scene_file::SceneFile;
+pub use scene_stats::SceneStats;
 pub use solid_lists::{CompositionRecord, Listed, SolidRecord, Solids};
 pub use swc::check_swc;
 pub use table::{

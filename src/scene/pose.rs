@@ -1,9 +1,9 @@
 //! How solids are turned and moved by the keys of their pose: about x, y and z,
-//! then by the list `rotate`, each about the solid's own centre, then along
+//! then by the list `rotate`, each about the solid's own center, then along
 //! `translate`.
 //!
 //! What is not stated changes nothing, not even by a rounding. The points of a turned
-//! solid are `centre + R (point - centre)`, rounded to f64; from then on they are
+//! solid are `center + R (point - center)`, rounded to f64; from then on they are
 //! exact numbers as those of any other solid.
 
 use std::ops::Range;
@@ -19,7 +19,7 @@ use super::values::{Keys, Number};
 use crate::math::{Orientation, unit};
 use crate::solid::{AnySolid, Composition, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 
-/// A turn about a centre that is not known yet, and a translation.
+/// A turn about a center that is not known yet, and a translation.
 pub(super) struct Motion<'a> {
     source: &'a Source,
     /// Where to point at when a solid is none where it is moved to.
@@ -63,42 +63,42 @@ impl<'a> Motion<'a> {
         })
     }
 
-    /// A composition, all of it turned about one centre.
+    /// A composition, all of it turned about one center.
     pub fn of_composition(
         &self,
         composition: Composition,
-        centre: DVec3,
+        center: DVec3,
     ) -> Result<Composition, SceneError> {
         let all = |parts: Vec<Composition>| {
             let parts = parts.into_iter();
-            let parts = parts.map(|part| self.of_composition(part, centre));
+            let parts = parts.map(|part| self.of_composition(part, center));
             parts.collect::<Result<Vec<_>, _>>()
         };
         Ok(match composition {
-            Composition::Solid(solid) => Composition::Solid(self.of_solid(&solid, centre)?),
+            Composition::Solid(solid) => Composition::Solid(self.of_solid(&solid, center)?),
             Composition::Union(parts) => Composition::Union(all(parts)?),
             Composition::Intersection(parts) => Composition::Intersection(all(parts)?),
             Composition::Difference(parts) => Composition::Difference(all(parts)?),
         })
     }
 
-    /// A solid, turned about a centre.
-    pub fn of_solid(&self, solid: &AnySolid, centre: DVec3) -> Result<AnySolid, SceneError> {
+    /// A solid, turned about a center.
+    pub fn of_solid(&self, solid: &AnySolid, center: DVec3) -> Result<AnySolid, SceneError> {
         if self.turn.is_none() && self.translation.is_none() {
             return Ok(*solid);
         }
-        self.moved(solid, centre).map_err(|error| {
+        self.moved(solid, center).map_err(|error| {
             let place = self.place.clone();
             self.source
                 .error(place, format!("where the solid is moved to, {error}"))
         })
     }
 
-    fn moved(&self, solid: &AnySolid, centre: DVec3) -> Result<AnySolid, String> {
+    fn moved(&self, solid: &AnySolid, center: DVec3) -> Result<AnySolid, String> {
         let direction = |direction| self.turn.map_or(direction, |turn| turn.to_world(direction));
         let point = |point: DVec3| {
             let turned = match self.turn {
-                Some(turn) => centre + turn.to_world(point - centre),
+                Some(turn) => center + turn.to_world(point - center),
                 None => point,
             };
             self.translation.map_or(turned, |by| turned + by)
@@ -106,34 +106,34 @@ impl<'a> Motion<'a> {
         match solid {
             AnySolid::Cylinder(one) => {
                 let ends = (point(one.p0()), point(one.p1()));
-                told(Cylinder::new(ends.0, ends.1, one.radius(), one.caps()))
+                any_solid(Cylinder::new(ends.0, ends.1, one.radius(), one.caps()))
             }
             AnySolid::Cone(one) => {
                 let ends = (point(one.p0()), point(one.p1()));
                 let radii = (one.radius0(), one.radius1());
-                told(Cone::new(ends.0, ends.1, radii.0, radii.1, one.caps()))
+                any_solid(Cone::new(ends.0, ends.1, radii.0, radii.1, one.caps()))
             }
             AnySolid::RoundedCone(one) => {
                 let ends = (point(one.p0()), point(one.p1()));
-                told(RoundedCone::new(
+                any_solid(RoundedCone::new(
                     ends.0,
                     ends.1,
                     one.radius0(),
                     one.radius1(),
                 ))
             }
-            AnySolid::Sphere(one) => told(Sphere::new(point(one.centre()), one.radius())),
+            AnySolid::Sphere(one) => any_solid(Sphere::new(point(one.center()), one.radius())),
             AnySolid::Cuboid(one) => {
                 let orientation = one.orientation();
                 let orientation = self.turn.map_or(orientation, |turn| orientation.then(turn));
-                told(Cuboid::new(
-                    point(one.centre()),
+                any_solid(Cuboid::new(
+                    point(one.center()),
                     one.half_widths(),
                     orientation,
                 ))
             }
-            AnySolid::Disk(one) => told(Disk::new(
-                point(one.centre()),
+            AnySolid::Disk(one) => any_solid(Disk::new(
+                point(one.center()),
                 direction(one.normal()),
                 one.radius(),
             )),
@@ -142,6 +142,6 @@ impl<'a> Motion<'a> {
 }
 
 /// A solid of its kind, or why it is none.
-fn told<S: Into<AnySolid>, E: ToString>(solid: Result<S, E>) -> Result<AnySolid, String> {
+fn any_solid<S: Into<AnySolid>, E: ToString>(solid: Result<S, E>) -> Result<AnySolid, String> {
     solid.map(Into::into).map_err(|error| error.to_string())
 }

@@ -26,7 +26,7 @@ pub(super) enum Pattern {
     Grid,
     /// A sunflower: item k at distance `spacing · √((k + 1/2)/π)`, a golden
     /// angle further than the last. The area per item is `spacing²`.
-    Disc,
+    Disk,
 }
 
 /// A `[[scatter]]` whose values have been checked.
@@ -47,7 +47,7 @@ impl Scatter {
     /// What holds for all items.
     pub fn reach(&self) -> Reach {
         // A grid's last item is at most (√count + 1)/2 spacings away on each
-        // axis, a disc's at most √(count/π).
+        // axis, a disk's at most √(count/π).
         let farthest = self.spacing * (f64::from(self.count).sqrt() + 1.0);
         Reach {
             stretch: self.scale[1] * ROUNDING_FACTOR,
@@ -91,7 +91,7 @@ impl Scatter {
                     0.0,
                 )
             }
-            Pattern::Disc => {
+            Pattern::Disk => {
                 let turn = u64::from(item).wrapping_mul(GOLDEN_TURN);
                 let turn = (turn >> 11) as f64 * (f64::EPSILON / 2.0);
                 let (sin, cos) = libm::sincos(turn * TAU);
@@ -122,7 +122,7 @@ mod tests {
     };
 
     #[test]
-    fn grid_is_centred_and_counts_row_by_row() {
+    fn grid_is_centerd_and_counts_row_by_row() {
         let positions: Vec<DVec3> = SCATTER.items().map(|item| item.translation).collect();
         let expected = [
             [-2.0, -2.0, 0.0],
@@ -147,9 +147,9 @@ mod tests {
     }
 
     #[test]
-    fn disc_spreads_items_evenly_and_apart() {
+    fn disk_spreads_items_evenly_and_apart() {
         let scatter = Scatter {
-            pattern: Pattern::Disc,
+            pattern: Pattern::Disk,
             count: 2_000,
             ..SCATTER
         };
@@ -157,7 +157,7 @@ mod tests {
         let radius = 2.0 * (2_000.0 / PI).sqrt();
         let mean: DVec3 = positions.iter().sum::<DVec3>() / 2_000.0;
         assert!(mean.length() < 0.02 * radius, "{mean:?}");
-        // A disc of 1/√2 of the radius has half of the area.
+        // A disk of 1/√2 of the radius has half of the area.
         let inside = positions
             .iter()
             .filter(|position| position.length() < radius * 0.5_f64.sqrt());

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 
 use super::beam_lattice::counted;
-use super::contents::{Contents, OtherSolids, mark_used};
+use super::contents::{ExpectedCounts, OtherSolids, mark_used};
 use super::description::{PrototypeIndex, Scene};
 use super::document::{Body, Document, ThreeColumns};
 use super::error::SceneError;
@@ -68,7 +68,7 @@ impl SceneFile {
     /// counted by their lines, lattices by their beams, and what cannot be read holds
     /// nothing. No record is made, so that a scene which is too large can be refused.
     #[must_use]
-    pub fn contents(&self) -> Vec<Contents> {
+    pub fn contents(&self) -> Vec<ExpectedCounts> {
         let records = records(&self.source, self.document.records.as_ref()).unwrap_or_default();
         let index: HashMap<&str, PrototypeIndex> = (0..)
             .zip(self.document.bodies())
@@ -98,7 +98,7 @@ impl SceneFile {
                 .into_iter()
                 .filter_map(|(of, count)| Some((of?, count)));
             let (cylinders, others) = self.solids(&body);
-            Contents::new(body.name, cylinders, records, others, placed)
+            ExpectedCounts::new(body.name, cylinders, records, others, placed)
         };
         let mut contents: Vec<_> = self.document.bodies().map(count).collect();
         mark_used(&mut contents);

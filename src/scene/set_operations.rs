@@ -42,11 +42,11 @@ impl Operation {
             Self::Difference => Composition::Difference(operands),
         };
         // An operation has an operand, so that there is a first solid.
-        let centre = unmoved
+        let center = unmoved
             .solids()
             .first()
-            .map_or(DVec3::ZERO, AnySolid::centre);
-        Motion::new(source, &keys.pose(), keys.of.span())?.of_composition(unmoved, centre)
+            .map_or(DVec3::ZERO, AnySolid::center);
+        Motion::new(source, &keys.pose(), keys.of.span())?.of_composition(unmoved, center)
     }
 }
 

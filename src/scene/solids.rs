@@ -37,7 +37,7 @@ pub(super) trait SolidKeys: SolidTable {
     fn solid(&self, source: &Source) -> Result<AnySolid, SceneError> {
         let unmoved = self.unmoved(source)?;
         let motion = Motion::new(source, &self.pose(), self.place())?;
-        motion.of_solid(&unmoved, unmoved.centre())
+        motion.of_solid(&unmoved, unmoved.center())
     }
 }
 
@@ -55,7 +55,7 @@ pub(super) fn caps(source: &Source, word: Option<&Spanned<String>>) -> Result<Ca
 }
 
 /// A solid of its kind, or the error told at its place.
-fn told<S: Into<AnySolid>, E: ToString>(
+fn with_span<S: Into<AnySolid>, E: ToString>(
     source: &Source,
     solid: Result<S, E>,
     place: impl FnOnce(&E) -> Range<usize>,
@@ -78,7 +78,7 @@ impl SolidKeys for CylinderKeys {
         let caps = caps(source, self.caps.as_ref())?;
         let radius = self.radius.get_ref().0;
         let cylinder = Cylinder::new(vector(&self.p0), vector(&self.p1), radius, caps);
-        told(source, cylinder, |error| match error {
+        with_span(source, cylinder, |error| match error {
             CylinderError::Endpoint { which: "p0", .. } => self.p0.span(),
             CylinderError::Endpoint { .. } | CylinderError::Length { .. } => self.p1.span(),
             CylinderError::Radius { .. } => self.radius.span(),
@@ -120,7 +120,7 @@ impl SolidKeys for ConeKeys {
         let [radius0, radius1] = [&self.radius0, &self.radius1].map(|radius| radius.get_ref().0);
         let cone = Cone::new(p0, p1, radius0, radius1, caps);
         let places = ConePlaces([&self.p0, &self.p1], [&self.radius0, &self.radius1]);
-        told(source, cone, |error| places.of(error))
+        with_span(source, cone, |error| places.of(error))
     }
 }
 
@@ -134,7 +134,7 @@ impl SolidKeys for RoundedConeKeys {
         let [radius0, radius1] = [&self.radius0, &self.radius1].map(|radius| radius.get_ref().0);
         let cone = RoundedCone::new(p0, p1, radius0, radius1);
         let places = ConePlaces([&self.p0, &self.p1], [&self.radius0, &self.radius1]);
-        told(source, cone, |error| places.of(&error.0))
+        with_span(source, cone, |error| places.of(&error.0))
     }
 }
 
@@ -145,8 +145,8 @@ impl SolidKeys for SphereKeys {
 
     fn unmoved(&self, source: &Source) -> Result<AnySolid, SceneError> {
         let sphere = Sphere::new(vector(&self.center), self.radius.get_ref().0);
-        told(source, sphere, |error| match error {
-            SphereError::Centre { .. } => self.center.span(),
+        with_span(source, sphere, |error| match error {
+            SphereError::Center { .. } => self.center.span(),
             SphereError::Radius { .. } => self.radius.span(),
         })
     }
@@ -158,10 +158,10 @@ impl SolidKeys for CuboidKeys {
     }
 
     fn unmoved(&self, source: &Source) -> Result<AnySolid, SceneError> {
-        let centre = self.center.as_ref().map_or(DVec3::ZERO, vector);
-        let cuboid = Cuboid::new(centre, vector(&self.half_widths), Orientation::IDENTITY);
-        told(source, cuboid, |error| match (error, &self.center) {
-            (CuboidError::Centre { .. }, Some(center)) => center.span(),
+        let center = self.center.as_ref().map_or(DVec3::ZERO, vector);
+        let cuboid = Cuboid::new(center, vector(&self.half_widths), Orientation::IDENTITY);
+        with_span(source, cuboid, |error| match (error, &self.center) {
+            (CuboidError::Center { .. }, Some(center)) => center.span(),
             _ => self.half_widths.span(),
         })
     }
@@ -175,8 +175,8 @@ impl SolidKeys for DiskKeys {
     fn unmoved(&self, source: &Source) -> Result<AnySolid, SceneError> {
         let radius = self.radius.get_ref().0;
         let disk = Disk::new(vector(&self.center), vector(&self.normal), radius);
-        told(source, disk, |error| match error {
-            DiskError::Centre { .. } => self.center.span(),
+        with_span(source, disk, |error| match error {
+            DiskError::Center { .. } => self.center.span(),
             DiskError::Normal { .. } => self.normal.span(),
             DiskError::Radius { .. } => self.radius.span(),
         })

@@ -29,10 +29,10 @@ impl ViewVolume {
     /// does.
     #[must_use]
     pub fn may_reach(&self, bounds: &Bounds) -> bool {
-        let (centre, half) = (bounds.centre() - self.eye, bounds.extent() * 0.5);
+        let (center, half) = (bounds.center() - self.eye, bounds.extent() * 0.5);
         let size = bounds.lower.abs().max(bounds.upper.abs()) + self.eye.abs();
         self.sides.iter().all(|(normal, distance)| {
-            let farthest = normal.dot(centre) + normal.abs().dot(half) + distance;
+            let farthest = normal.dot(center) + normal.abs().dot(half) + distance;
             let slack = SLACK * (normal.abs().dot(size) + distance.abs());
             // Written so that NaN may be reached.
             !(farthest < -slack)

@@ -67,19 +67,19 @@ impl AnySolid {
         }
     }
 
-    /// Its own centre, about which it is turned: the middle of the axis, where it
+    /// Its own center, about which it is turned: the middle of the axis, where it
     /// has one, rounded.
     #[must_use]
-    pub fn centre(&self) -> DVec3 {
+    pub fn center(&self) -> DVec3 {
         // Halves are exact, so only their sum is rounded.
         let middle = |p0: DVec3, p1: DVec3| p0 * 0.5 + p1 * 0.5;
         match self {
             Self::Cylinder(cylinder) => middle(cylinder.p0(), cylinder.p1()),
             Self::Cone(cone) => middle(cone.p0(), cone.p1()),
             Self::RoundedCone(cone) => middle(cone.p0(), cone.p1()),
-            Self::Sphere(sphere) => sphere.centre(),
-            Self::Cuboid(cuboid) => cuboid.centre(),
-            Self::Disk(disk) => disk.centre(),
+            Self::Sphere(sphere) => sphere.center(),
+            Self::Cuboid(cuboid) => cuboid.center(),
+            Self::Disk(disk) => disk.center(),
         }
     }
 
@@ -95,10 +95,10 @@ impl AnySolid {
         of_each!(self, solid => solid.chord(from_anchor, direction))
     }
 
-    /// As [`ConvexSolid::passes_by`].
+    /// As [`ConvexSolid::rejects`].
     #[must_use]
-    pub fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
-        of_each!(self, solid => solid.passes_by(from_anchor, direction))
+    pub fn rejects(&self, from_anchor: DVec3, direction: DVec3) -> bool {
+        of_each!(self, solid => solid.rejects(from_anchor, direction))
     }
 
     /// As [`ConvexSolid::surface_point`].

@@ -1,7 +1,7 @@
 //! The ball: ray against sphere.
 //!
-//! With the ray `o + t d` and `x = o - centre`, a point of the line is at
-//! distance `radius` from the centre where
+//! With the ray `o + t d` and `x = o - center`, a point of the line is at
+//! distance `radius` from the center where
 //!
 //! ```text
 //! |d|² t² + 2 (x·d) t + |x|² - radius² = 0                                 (1)
@@ -14,7 +14,7 @@
 //! D = radius² |d|² - |x × d|²,   t = (-(x·d) ∓ √D) / |d|²                  (2)
 //! ```
 //!
-//! `|x × d| / |d|` is the distance of line and centre. It does not change when
+//! `|x × d| / |d|` is the distance of line and center. It does not change when
 //! the origin slides along the ray, so no square of the distance enters `D` and
 //! is taken off again. Rounded products leave an error of at most `3 u |x| |d|`
 //! in the length of `x × d`, u = 2^-53, and a rounding of `x` another `u |x| |d|`; its square and that of the radius round by
@@ -65,9 +65,9 @@ const MOST_OF_SQUARES: f64 = power_of_two(-25);
 /// the triple-product solver's limit.
 const LEAST_CONSTANT_TERM: f64 = power_of_two(-20);
 
-/// The interval of `t` in which the line `centre + x + t d` is inside the closed
+/// The interval of `t` in which the line `center + x + t d` is inside the closed
 /// ball, with both ends on `part`; `None` where it is not. A ball of radius zero is
-/// its centre. A non-finite argument is a miss.
+/// its center. A non-finite argument is a miss.
 pub(super) fn chord(x: impl Way, d: DVec3, radius: f64, part: Part) -> Option<Chord> {
     let from = FromBall { x, radius };
     let x = x.rounded();
@@ -93,7 +93,7 @@ pub(super) fn chord(x: impl Way, d: DVec3, radius: f64, part: Part) -> Option<Ch
     })
 }
 
-/// The first meeting of the line `centre + x + t d`; see [`quick`](super::quick).
+/// The first meeting of the line `center + x + t d`; see [`quick`](super::quick).
 #[inline(always)]
 pub(super) fn quick_first(x: DVec3, d: DVec3, radius: f64, range: &Range) -> Quick {
     let quick = QuickBall::new(x, d, radius, 0.0);
@@ -278,12 +278,12 @@ impl RoundedDiscriminant {
 }
 
 /// Where a point is, exactly.
-pub(super) fn locate(centre: DVec3, radius: f64, point: DVec3) -> Location {
+pub(super) fn locate(center: DVec3, radius: f64, point: DVec3) -> Location {
     if !point.is_finite() {
         return Location::Outside;
     }
     let x = Between {
-        from: centre,
+        from: center,
         to: point,
     };
     Location::of_sign(sign(&FromBall { x, radius }))
@@ -292,7 +292,7 @@ pub(super) fn locate(centre: DVec3, radius: f64, point: DVec3) -> Location {
 /// A point and a ball; as an expression `|x|² - radius²`.
 #[derive(Clone, Copy, Debug)]
 struct FromBall<W> {
-    /// The way from the centre to the point.
+    /// The way from the center to the point.
     x: W,
     radius: f64,
 }
@@ -348,7 +348,7 @@ mod tests {
 
     #[test]
     fn tangents_from_afar_are_told_apart_by_one_ulp() {
-        // Both lines pass the centre at 5/3 · 3 = 5, from 1e9 and at a slope.
+        // Both lines pass the center at 5/3 · 3 = 5, from 1e9 and at a slope.
         let far = DVec3::new(-4.0, 3.0, 0.0) * 1e9;
         let tangent = far + DVec3::new(3.0, 4.0, 0.0);
         let d = DVec3::new(4.0, -3.0, 0.0);
@@ -391,7 +391,7 @@ mod tests {
     }
 
     #[test]
-    fn ball_of_no_radius_is_its_centre() {
+    fn ball_of_no_radius_is_its_center() {
         let d = DVec3::new(1.0, 3.0, 7.0);
         assert_eq!(chord(d * -3.0, d, 0.0, Part::Cap0).unwrap().enter.t, 3.0);
         assert_eq!(chord(d * -3.0 + DVec3::Z * 1e-14, d, 0.0, Part::Cap0), None);
@@ -399,11 +399,11 @@ mod tests {
 
     #[test]
     fn sphere_belongs_to_the_ball() {
-        let (centre, point) = (DVec3::new(1e8, 0.0, 0.0), DVec3::new(1e8 + 3.0, 4.0, 0.0));
-        assert_eq!(locate(centre, 5.0, point), Location::Boundary);
-        assert_eq!(locate(centre, 5.0_f64.next_up(), point), Location::Inside);
-        let outside = locate(centre, 5.0_f64.next_down(), point);
+        let (center, point) = (DVec3::new(1e8, 0.0, 0.0), DVec3::new(1e8 + 3.0, 4.0, 0.0));
+        assert_eq!(locate(center, 5.0, point), Location::Boundary);
+        assert_eq!(locate(center, 5.0_f64.next_up(), point), Location::Inside);
+        let outside = locate(center, 5.0_f64.next_down(), point);
         assert_eq!(outside, Location::Outside);
-        assert_eq!(locate(centre, 5.0, DVec3::INFINITY), Location::Outside);
+        assert_eq!(locate(center, 5.0, DVec3::INFINITY), Location::Outside);
     }
 }

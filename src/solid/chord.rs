@@ -38,7 +38,7 @@ pub struct Chord<S = f64> {
 
 /// A point where a ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Meeting<S = f64> {
+pub struct Intersection<S = f64> {
     /// The parameter of the whole ray.
     pub t: S,
     /// The parameter counted as the chord's, before it was shifted.
@@ -51,7 +51,7 @@ pub struct Meeting<S = f64> {
 
 impl<S: Real> Chord<S> {
     /// The points, at most two, at which the ray is on the surface that has the
-    /// discs `caps`, among those with `t_min <= t + shift <= t_max`, in order.
+    /// disks `caps`, among those with `t_min <= t + shift <= t_max`, in order.
     ///
     /// The range is the whole ray's; `shift` is where the chord's `t` starts
     /// on it, 0 unless the solver was given a point farther along the ray. A
@@ -63,7 +63,7 @@ impl<S: Real> Chord<S> {
         shift: S,
         t_min: S,
         t_max: S,
-    ) -> impl Iterator<Item = Meeting<S>> + use<S> {
+    ) -> impl Iterator<Item = Intersection<S>> + use<S> {
         let enter = self.entry(caps, shift, t_min, t_max);
         let leave = self.exit(caps, shift, t_min, t_max);
         enter.into_iter().chain(leave)
@@ -72,19 +72,19 @@ impl<S: Real> Chord<S> {
     /// The first of [`Chord::meetings`].
     #[inline(always)]
     #[must_use]
-    pub fn first(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> Option<Meeting<S>> {
+    pub fn first(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> Option<Intersection<S>> {
         self.entry(caps, shift, t_min, t_max)
             .or_else(|| self.exit(caps, shift, t_min, t_max))
     }
 
     #[inline]
-    fn entry(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> Option<Meeting<S>> {
+    fn entry(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> Option<Intersection<S>> {
         if let Some(part) = self.lies_on
             && exists(part, caps)
             && self.holds(t_min - shift)
             && t_min <= t_max
         {
-            return Some(Meeting {
+            return Some(Intersection {
                 t: t_min,
                 t_local: t_min - shift,
                 part,
@@ -96,7 +96,7 @@ impl<S: Real> Chord<S> {
     }
 
     #[inline]
-    fn exit(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> Option<Meeting<S>> {
+    fn exit(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> Option<Intersection<S>> {
         self.leave
             .meeting(Crossing::Leave, caps, shift, t_min, t_max)
     }
@@ -117,14 +117,15 @@ impl<S: Real> ChordEnd<S> {
         shift: S,
         t_min: S,
         t_max: S,
-    ) -> Option<Meeting<S>> {
+    ) -> Option<Intersection<S>> {
         let part = self.present(caps)?;
-        self.is_in_range(shift, t_min, t_max).then_some(Meeting {
-            t: self.t + shift,
-            t_local: self.t,
-            part,
-            crossing,
-        })
+        self.is_in_range(shift, t_min, t_max)
+            .then_some(Intersection {
+                t: self.t + shift,
+                t_local: self.t,
+                part,
+                crossing,
+            })
     }
 
     /// Whether [`ChordEnd::meeting`] is one.
@@ -150,7 +151,7 @@ impl<S: Real> ChordEnd<S> {
     }
 }
 
-/// Whether a surface with these caps has this part: all are there but for discs
+/// Whether a surface with these caps has this part: all are there but for disks
 /// that are not named.
 #[inline]
 fn exists(part: Part, caps: Caps) -> bool {

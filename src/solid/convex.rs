@@ -11,7 +11,7 @@ use std::fmt::Debug;
 use glam::DVec3;
 
 use super::quick::{Quick, Range};
-use super::{Caps, Chord, Meeting, RayOrigin, SolidKind, SurfacePoint};
+use super::{Caps, Chord, Intersection, RayOrigin, SolidKind, SurfacePoint};
 use crate::math::Bounds;
 
 /// A kind of solid. Adding one is a file with an implementation of this, and its
@@ -36,7 +36,7 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// The point that the solver counts from.
     fn anchor(&self) -> DVec3;
 
-    /// Which discs the surface has; [`Caps::Both`] for solids without open ends.
+    /// Which disks the surface has; [`Caps::Both`] for solids without open ends.
     fn caps(&self) -> Caps {
         Caps::Both
     }
@@ -62,7 +62,7 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
         direction: DVec3,
         shift: f64,
         [t_min, t_max]: [f64; 2],
-    ) -> Option<Meeting> {
+    ) -> Option<Intersection> {
         let chord = self.exact_chord(origin, direction)?;
         chord.first(self.caps(), shift, t_min, t_max)
     }
@@ -70,7 +70,7 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// Whether that line certainly misses the closed solid, if a few products tell;
     /// `false` says nothing. It has no branch, so that a row of rays is tested at once.
     #[inline(always)]
-    fn passes_by(&self, _from_anchor: DVec3, _direction: DVec3) -> bool {
+    fn rejects(&self, _from_anchor: DVec3, _direction: DVec3) -> bool {
         false
     }
 
@@ -84,14 +84,14 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
         shift: f64,
         t_min: f64,
         t_max: f64,
-    ) -> Option<Meeting> {
+    ) -> Option<Intersection> {
         let chord = self.chord(from_anchor, direction)?;
         chord.first(self.caps(), shift, t_min, t_max)
     }
 
     /// The same without a branch, where that needs no exact numbers; see
-    /// [`quick`](super::quick). It may take a line that [passes
-    /// by](ConvexSolid::passes_by) as open.
+    /// [`quick`](super::quick). It may take a line that the solid
+    /// [rejects](ConvexSolid::rejects) as open.
     #[inline(always)]
     fn quick_first(&self, _from_anchor: DVec3, _direction: DVec3, _range: &Range) -> Quick {
         Quick::OPEN

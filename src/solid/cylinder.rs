@@ -3,21 +3,21 @@
 use glam::DVec3;
 
 use super::{
-    Chord, Cone, ConvexSolid, Location, Meeting, Part, RayOrigin, SolidKind, SurfacePoint, settled,
-    surface_point, triple_product,
+    Chord, Cone, ConvexSolid, Intersection, Location, Part, RayOrigin, SolidKind, SurfacePoint,
+    settled, surface_point, triple_product,
 };
 use crate::math::{Bounds, UNIT_ROUNDOFF, power_of_two};
 
-/// Which ends of a cylinder are closed by a disc.
+/// Which ends of a cylinder are closed by a disk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Caps {
     /// A tube, open at both ends.
     None,
-    /// A disc at `p0` only.
+    /// A disk at `p0` only.
     P0,
-    /// A disc at `p1` only.
+    /// A disk at `p1` only.
     P1,
-    /// Discs at both ends.
+    /// Disks at both ends.
     #[default]
     Both,
 }
@@ -34,13 +34,13 @@ impl Caps {
         }
     }
 
-    /// Whether there is a disc at `p0`.
+    /// Whether there is a disk at `p0`.
     #[must_use]
     pub fn at_p0(self) -> bool {
         matches!(self, Self::P0 | Self::Both)
     }
 
-    /// Whether there is a disc at `p1`.
+    /// Whether there is a disk at `p1`.
     #[must_use]
     pub fn at_p1(self) -> bool {
         matches!(self, Self::P1 | Self::Both)
@@ -51,7 +51,7 @@ impl Caps {
 /// all taken as exact numbers.
 ///
 /// The solid is `{x : dist(x, line p0 p1) <= radius, 0 <= (x - p0)·(p1 - p0) <= |p1 - p0|²}`;
-/// the surface is its wall and those of its discs that `caps` names.
+/// the surface is its wall and those of its disks that `caps` names.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
     p0: DVec3,
@@ -181,7 +181,7 @@ impl Cylinder {
     /// The least box that holds the solid, rounded outward by a few ulps.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
-        let reach = disc_reach(self.p1 - self.p0, self.radius);
+        let reach = disk_reach(self.p1 - self.p0, self.radius);
         Bounds {
             lower: self.p0.min(self.p1) - reach,
             upper: self.p0.max(self.p1) + reach,
@@ -221,7 +221,7 @@ impl ConvexSolid for Cylinder {
         direction: DVec3,
         shift: f64,
         range: [f64; 2],
-    ) -> Option<Meeting> {
+    ) -> Option<Intersection> {
         settled::first(self, origin, direction, shift, range)
     }
 
@@ -239,12 +239,12 @@ impl ConvexSolid for Cylinder {
     }
 }
 
-/// How far a disc across the axis `a` reaches from its middle, rounded up.
+/// How far a disk across the axis `a` reaches from its middle, rounded up.
 ///
 /// Along axis `i` that is `radius √(1 - aᵢ²/|a|²)`; written as `radius √((aⱼ² +
 /// aₖ²)/|a|²)` nothing cancels, and the relative error is below 8 roundings,
 /// which the factor on the radius covers.
-pub(super) fn disc_reach(a: DVec3, radius: f64) -> DVec3 {
+pub(super) fn disk_reach(a: DVec3, radius: f64) -> DVec3 {
     let squared = a * a;
     let others = DVec3::new(
         squared.y + squared.z,

@@ -1,6 +1,6 @@
 //! The flat disk as users state it, and ray against disk.
 //!
-//! With the normal `n` as stated and the ray `centre + x + t d`, the line meets the
+//! With the normal `n` as stated and the ray `center + x + t d`, the line meets the
 //! plane at `t = -n·x / n·d`. The point times `n·d` is
 //!
 //! ```text
@@ -22,7 +22,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::cylinder::disc_reach;
+use super::cylinder::disk_reach;
 use super::exact::{Expression, Number, cross, difference, dot, sign, vector};
 use super::passing::Line;
 use super::quick::{End, Quick, Range};
@@ -34,16 +34,16 @@ use super::{
 };
 use crate::math::{Bounds, UNIT_ROUNDOFF};
 
-/// A flat disk: its centre, a normal of any length and its radius, taken as
+/// A flat disk: its center, a normal of any length and its radius, taken as
 /// exact numbers.
 ///
-/// It is the closed set `{x : normal · (x - centre) = 0, |x - centre| <= radius}`,
+/// It is the closed set `{x : normal · (x - center) = 0, |x - center| <= radius}`,
 /// a solid without an inside: a ray that passes through it meets it in one
 /// point, an entry and an exit at the same `t`. All of it is
 /// [`Part::Side`](super::Part::Side).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disk {
-    centre: DVec3,
+    center: DVec3,
     normal: DVec3,
     radius: f64,
 }
@@ -51,11 +51,11 @@ pub struct Disk {
 /// Why numbers are not a disk.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum DiskError {
-    /// A coordinate of the centre is NaN, infinite or beyond [`Cylinder::GREATEST`].
-    #[error("the centre is ({:?}, {:?}, {:?}): every coordinate must be finite and at most {:.1e} in size", centre.x, centre.y, centre.z, Cylinder::GREATEST)]
-    Centre {
-        /// The centre as given.
-        centre: DVec3,
+    /// A coordinate of the center is NaN, infinite or beyond [`Cylinder::GREATEST`].
+    #[error("the center is ({:?}, {:?}, {:?}): every coordinate must be finite and at most {:.1e} in size", center.x, center.y, center.z, Cylinder::GREATEST)]
+    Center {
+        /// The center as given.
+        center: DVec3,
     },
     /// The normal is zero or not finite, or its greatest coordinate is out of
     /// [`Cylinder::LEAST`, `Cylinder::GREATEST`].
@@ -81,14 +81,14 @@ pub enum DiskError {
 }
 
 impl Disk {
-    /// The disk around `centre` across `normal`.
+    /// The disk around `center` across `normal`.
     ///
     /// # Errors
     /// When a number is not finite or out of range.
-    pub fn new(centre: DVec3, normal: DVec3, radius: f64) -> Result<Self, DiskError> {
+    pub fn new(center: DVec3, normal: DVec3, radius: f64) -> Result<Self, DiskError> {
         let range = Cylinder::LEAST..=Cylinder::GREATEST;
-        if !Cylinder::is_in_range(centre) {
-            return Err(DiskError::Centre { centre });
+        if !Cylinder::is_in_range(center) {
+            return Err(DiskError::Center { center });
         }
         if !normal.is_finite() || !range.contains(&normal.abs().max_element()) {
             return Err(DiskError::Normal { normal });
@@ -96,23 +96,23 @@ impl Disk {
         if !range.contains(&radius) {
             return Err(DiskError::Radius { radius });
         }
-        Ok(Self::from_valid(centre, normal, radius))
+        Ok(Self::from_valid(center, normal, radius))
     }
 
     /// The disk of numbers that [`Disk::new`] accepted before.
     #[inline]
-    pub(crate) fn from_valid(centre: DVec3, normal: DVec3, radius: f64) -> Self {
+    pub(crate) fn from_valid(center: DVec3, normal: DVec3, radius: f64) -> Self {
         Self {
-            centre,
+            center,
             normal,
             radius,
         }
     }
 
-    /// The centre.
+    /// The center.
     #[must_use]
-    pub fn centre(&self) -> DVec3 {
-        self.centre
+    pub fn center(&self) -> DVec3 {
+        self.center
     }
 
     /// The normal as stated, of any length.
@@ -132,16 +132,16 @@ impl ConvexSolid for Disk {
     const KIND: SolidKind = SolidKind::Disk;
 
     fn bounds(&self) -> Bounds {
-        let reach = disc_reach(self.normal, self.radius);
+        let reach = disk_reach(self.normal, self.radius);
         Bounds {
-            lower: self.centre - reach,
-            upper: self.centre + reach,
+            lower: self.center - reach,
+            upper: self.center + reach,
         }
         .rounded_outward()
     }
 
     fn anchor(&self) -> DVec3 {
-        self.centre
+        self.center
     }
 
     #[inline]
@@ -150,11 +150,11 @@ impl ConvexSolid for Disk {
     }
 
     fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
-        self.chord_of(origin.way_from(self.centre), direction)
+        self.chord_of(origin.way_from(self.center), direction)
     }
 
     #[inline(always)]
-    fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
+    fn rejects(&self, from_anchor: DVec3, direction: DVec3) -> bool {
         Line::new(from_anchor, direction).passes_disk(self.normal, self.radius)
     }
 
@@ -171,14 +171,14 @@ impl ConvexSolid for Disk {
     }
 
     /// `u` is the angle about the normal in turns, counted as on a cylinder whose
-    /// axis is the normal, and `v` the distance from the centre in radii.
+    /// axis is the normal, and `v` the distance from the center in radii.
     ///
-    /// The way from the centre, made perpendicular to the normal twice, is off the
+    /// The way from the center, made perpendicular to the normal twice, is off the
     /// plane by 6 u of its length, which is at most the radius within 5 u; the product
-    /// and the sum with the centre round by u of theirs.
+    /// and the sum with the center round by u of theirs.
     fn surface_point(&self, _: Part, from_anchor: DVec3) -> SurfacePoint {
         let around = Around::new(self.normal, from_anchor);
-        let point = self.centre + around.outward * around.distance.min(self.radius);
+        let point = self.center + around.outward * around.distance.min(self.radius);
         SurfacePoint {
             point,
             error: UNIT_ROUNDOFF * (point.length() + 16.0 * self.radius),
@@ -191,7 +191,7 @@ impl ConvexSolid for Disk {
     fn locate(&self, point: DVec3) -> Location {
         let is_of_it = point.is_finite()
             && sign(&Height { disk: self, point }) == Ordering::Equal
-            && ball::locate(self.centre, self.radius, point).is_held();
+            && ball::locate(self.center, self.radius, point).is_held();
         if is_of_it {
             Location::Boundary
         } else {
@@ -211,7 +211,7 @@ fn plane_at(height: f64, slope: f64) -> f64 {
 }
 
 impl Disk {
-    /// The chord of the line `centre + x + t d`.
+    /// The chord of the line `center + x + t d`.
     #[inline(always)]
     fn chord_of(&self, x: impl Way, d: DVec3) -> Option<Chord> {
         let n = self.normal;
@@ -289,7 +289,7 @@ impl<W: Way> Expression for Within<W> {
     }
 }
 
-/// `n·(point - centre)`.
+/// `n·(point - center)`.
 struct Height<'a> {
     disk: &'a Disk,
     point: DVec3,
@@ -297,7 +297,7 @@ struct Height<'a> {
 
 impl Expression for Height<'_> {
     fn value<N: Number>(&self) -> N {
-        let x = difference::<N>(self.point, self.disk.centre);
+        let x = difference::<N>(self.point, self.disk.center);
         dot(&vector(self.disk.normal), &x)
     }
 }

@@ -46,7 +46,7 @@ use std::cell::Cell;
 
 use glam::DVec3;
 
-use super::slab::{Discs, FirstMeeting, Overlap};
+use super::slab::{Disks, FirstMeeting, Overlap};
 use super::triple_product::{Axis, Line, Roots, StatedAxis, answer, slab};
 use super::{Caps, ChordEnd};
 use crate::math::{LANES, LaneMask, LaneVectors, Lanes, power_of_two};
@@ -76,7 +76,7 @@ pub trait LaneCaps: Copy {
 #[derive(Clone, Copy, Debug)]
 pub struct AllOpen;
 
-/// Discs at both ends.
+/// Disks at both ends.
 #[derive(Clone, Copy, Debug)]
 pub struct AllCapped;
 
@@ -151,7 +151,7 @@ pub fn first<C: LaneCaps>(
         for lane in 0..LANES {
             let is_unsettled = Cell::new(false);
             let overlap = overlap(cylinders, rays, &lines, lane, &is_unsettled);
-            let (is_inside, end) = overlap.enter(&Discs::of(overlap.slab()));
+            let (is_inside, end) = overlap.enter(&Disks::of(overlap.slab()));
             let is_met = cylinders.is_met(rays, lane, &end);
             let is_inside = wanted.0[lane] & is_inside;
             enter.0[lane] = end.t;
@@ -164,7 +164,7 @@ pub fn first<C: LaneCaps>(
             for lane in 0..LANES {
                 let is_unsettled = Cell::new(false);
                 let overlap = overlap(cylinders, rays, &lines, lane, &is_unsettled);
-                let end = overlap.leave(&Discs::of(overlap.slab()), enter.0[lane]);
+                let end = overlap.leave(&Disks::of(overlap.slab()), enter.0[lane]);
                 let is_met = rest.0[lane] & cylinders.is_met(rays, lane, &end);
                 let exit = end.t + rays.shift.0[lane];
                 t.0[lane] = if is_met { exit } else { t.0[lane] };

@@ -26,8 +26,8 @@ pub mod triple_product;
 mod way;
 
 pub use any::AnySolid;
-pub use chord::{Chord, ChordEnd, Meeting};
-pub use composition::{ComposedMeeting, Composition, Operand};
+pub use chord::{Chord, ChordEnd, Intersection};
+pub use composition::{ComposedIntersection, Composition, Operand};
 pub use cone::{Cone, ConeError};
 pub use convex::{ConvexSolid, Location};
 pub use cuboid::{Cuboid, CuboidError};
@@ -44,7 +44,7 @@ pub use way::RayOrigin;
 pub enum SolidKind {
     /// A circular cylinder, see [`Cylinder`].
     Cylinder,
-    /// A part of a circular cone between two discs.
+    /// A part of a circular cone between two disks.
     Cone,
     /// Two spheres and the cone that touches both.
     RoundedCone,
@@ -85,9 +85,9 @@ impl SolidKind {
 pub enum Part {
     /// The curved wall; all of a sphere or a disk.
     Side,
-    /// The disc at `p0`, its rim included; of a rounded cone the sphere there.
+    /// The disk at `p0`, its rim included; of a rounded cone the sphere there.
     Cap0,
-    /// The disc at `p1`, its rim included; of a rounded cone the sphere there.
+    /// The disk at `p1`, its rim included; of a rounded cone the sphere there.
     Cap1,
     /// The face of a cuboid where its own x is least.
     XMin,

@@ -5,7 +5,7 @@
 //! is any root or branch: so a row of rays is tested at once.
 //!
 //! A line passes by a ball of radius `r` iff `|l| > r |d|`, `l = x × d`, with `x`
-//! counted from its centre; by a disk with the normal `n` iff `|P| > r |v|`, `P = n × l`,
+//! counted from its center; by a disk with the normal `n` iff `|P| > r |v|`, `P = n × l`,
 //! `v = n·d` (`disk.rs`); and by a cone's wall, both nappes, iff `E < 0` of (4) in
 //! `cone/wall.rs`, which is `√τ |w| > |k|` with `τ = (β + Δ²) / |a|²`. What is computed
 //! of these, u = 2^-53, is off by
@@ -116,7 +116,7 @@ impl Line {
         let (aa, delta) = (a.dot(a), taper.radius1 - r0);
         let squared = delta * delta;
         let tau = match taper.fit {
-            Fit::Discs => 1.0 + squared / aa,
+            Fit::Disks => 1.0 + squared / aa,
             Fit::Balls => 1.0,
         };
         let n = a.cross(self.d);
@@ -228,7 +228,7 @@ mod tests {
             a,
             radius0: 0.0,
             radius1,
-            fit: Fit::Discs,
+            fit: Fit::Disks,
         };
         let beside = DVec3::Y * 7.233324068983989e-161;
         let d = DVec3::new(0.9998796021390856, 0.0, 0.015517126866271849);

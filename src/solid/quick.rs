@@ -5,7 +5,7 @@
 //! [`ConvexSolid::first`]. Where it is not open, the quick solver has the bits of
 //! [`ConvexSolid::first`]. A loop over its calls, which are inlined, becomes vector code.
 //!
-//! Most rays that come to a solid's box miss it widely, and [`ConvexSolid::passes_by`]
+//! Most rays that come to a solid's box miss it widely, and [`ConvexSolid::rejects`]
 //! finds that without a root or a division. So it goes first, and what it leaves of a row
 //! is solved if it leaves anything.
 
@@ -164,7 +164,7 @@ pub fn near(solid: &impl ConvexSolid, rays: &RayLanes, active: &LaneMask) -> Lan
     let mut near = LaneMask::splat(false);
     for lane in 0..LANES {
         let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
-        near.0[lane] = active.0[lane] & !solid.passes_by(x, d);
+        near.0[lane] = active.0[lane] & !solid.rejects(x, d);
     }
     near
 }

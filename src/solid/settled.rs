@@ -1,7 +1,7 @@
 //! Which decisions of the triple-product solver its rounded numbers settle.
 //!
 //! The solver decides by signs: of the discriminant, of heights over the planes of the
-//! discs, and of a `t` near zero. This file bounds how far the computed numbers are off
+//! disks, and of a `t` near zero. This file bounds how far the computed numbers are off
 //! those of exact arithmetic on the cylinder and the ray as stated. A number that is
 //! farther from zero than its bound has the exact sign. If all have, the solver's answer is
 //! the exact one; if not, `exact` decides. The bounds cover the roundings of `a = p1 - p0` and
@@ -68,9 +68,9 @@
 //! at the origin, is off by less than 2^-8 of it. So its sign is right. A root `C / q` has the sign of `C`. There `|C|` is at most
 //! `5 r² A²`; a rounded one of at least `2^-20 r² A²` is off by less than `40 u A² r (X + r)`, which
 //! is less by (2). A smaller one is computed from exact products of the rounded `a` and `x`, and
-//! off by at most `5 u A² r (X + r)`. The `t` at a disc's plane has the sign of `x·a` or `x·a - |a|²` and
+//! off by at most `5 u A² r (X + r)`. The `t` at a disk's plane has the sign of `x·a` or `x·a - |a|²` and
 //! that of `d·a`. The first two are off by at most `6 u A (X + A)`. A line of which the sign of `d·a` is open is at
-//! the same height at both roots but for less than (3), so that it comes through no disc.
+//! the same height at both roots but for less than (3), so that it comes through no disk.
 //!
 //! # Near the axis, in lanes
 //!
@@ -93,7 +93,7 @@ use super::quick::QuickLanes;
 use super::slab::Slab;
 use super::triple_product::{self, Axis, Line, Root, Roots, StatedAxis};
 use super::way::Way;
-use super::{Chord, Cylinder, Meeting, RayOrigin, exact};
+use super::{Chord, Cylinder, Intersection, RayOrigin, exact};
 use crate::math::{LANES, LaneMask, Lanes, power_of_two};
 
 /// `1 + η`. It trades long numbers for lines that graze the wall, 1 in 2^18, for the
@@ -129,7 +129,7 @@ pub(super) fn first(
     direction: DVec3,
     shift: f64,
     [t_min, t_max]: [f64; 2],
-) -> Option<Meeting> {
+) -> Option<Intersection> {
     let solve = |x| triple_product::first(cylinder, x, direction, shift, t_min, t_max);
     let of_chord = |chord: Chord| chord.first(cylinder.caps(), shift, t_min, t_max);
     decide(cylinder, origin, direction, solve, of_chord)
@@ -266,7 +266,7 @@ fn steepness(axis: &StatedAxis<f64>, d: DVec3, line: &Line<f64>) -> f64 {
     }
 }
 
-/// The heights of a line's points over the disc at `p0`.
+/// The heights of a line's points over the disk at `p0`.
 struct Heights {
     slab: Slab<f64>,
     /// `A X`, or up to √3 times as much.
@@ -282,7 +282,7 @@ impl Heights {
         }
     }
 
-    /// Whether that at `t` certainly is on the side of both discs' planes on which it is
+    /// Whether that at `t` certainly is on the side of both disks' planes on which it is
     /// computed.
     #[inline(always)]
     fn are_off_planes(&self, t: f64, slack: f64) -> bool {

@@ -1,25 +1,25 @@
-//! The wall's interval of `t` overlapped with the slab between the discs.
+//! The wall's interval of `t` overlapped with the slab between the disks.
 //!
 //! A solver finds where a line is inside the infinite wall; the solid is the
-//! part of that between the planes of the discs. The axial position of a point
+//! part of that between the planes of the disks. The axial position of a point
 //! of the line is `y = position + t * slope`, counted from `p0` in any unit,
 //! and the point is inside the slab iff `0 <= y <= height`. Both ends of the
-//! overlap are judged by `y` at the wall's roots: wall and discs are chosen
+//! overlap are judged by `y` at the wall's roots: wall and disks are chosen
 //! from the same numbers, so that no ray slips between them at a rim.
 //!
 //! Where the line is so nearly across the axis that `t * slope` rounds away between
 //! the roots, `y` does not say where it comes through a plane: an error of an ulp of
 //! the height is one of an ulp over the slope in `t`, which may be any number. So the
-//! `t` of a disc is clamped between the roots of the wall. It is there without rounding.
+//! `t` of a disk is clamped between the roots of the wall. It is there without rounding.
 
-use super::chord::{Chord, ChordEnd, Meeting};
+use super::chord::{Chord, ChordEnd, Intersection};
 use super::{Caps, Crossing, Part};
 use crate::math::Real;
 
 /// A line as seen along the axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slab<S> {
-    /// The axial position of the disc at `p1`; that at `p0` is at 0.
+    /// The axial position of the disk at `p1`; that at `p0` is at 0.
     pub height: S,
     /// The axial position at `t = 0`.
     pub position: S,
@@ -65,20 +65,20 @@ pub(super) struct FirstMeeting<S> {
 }
 
 impl<S: Real> Question<S> for FirstMeeting<S> {
-    type Answer = Meeting<S>;
+    type Answer = Intersection<S>;
 
     #[inline]
-    fn of_chord(self, chord: Chord<S>) -> Option<Meeting<S>> {
+    fn of_chord(self, chord: Chord<S>) -> Option<Intersection<S>> {
         chord.first(self.caps, self.shift, self.t_min, self.t_max)
     }
 
     #[inline(always)]
-    fn of_overlap(self, overlap: &Overlap<S, impl Wall<S>>) -> Option<Meeting<S>> {
+    fn of_overlap(self, overlap: &Overlap<S, impl Wall<S>>) -> Option<Intersection<S>> {
         if overlap.is_across() {
             return self.of_chord(overlap.across()?);
         }
-        let discs = Discs::of(&overlap.slab);
-        overlap.first(&discs, self.caps, self.shift, self.t_min, self.t_max)
+        let disks = Disks::of(&overlap.slab);
+        overlap.first(&disks, self.caps, self.shift, self.t_min, self.t_max)
     }
 }
 
@@ -98,29 +98,29 @@ impl<S: Real> Question<S> for WholeChord {
         if overlap.is_across() {
             return overlap.across();
         }
-        let discs = Discs::of(&overlap.slab);
-        let (exists, enter) = overlap.enter(&discs);
+        let disks = Disks::of(&overlap.slab);
+        let (exists, enter) = overlap.enter(&disks);
         exists.then(|| Chord {
             enter,
-            leave: overlap.leave(&discs, enter.t),
+            leave: overlap.leave(&disks, enter.t),
             lies_on: None,
         })
     }
 }
 
-/// The discs in the order in which a line that is not across the axis comes
+/// The disks in the order in which a line that is not across the axis comes
 /// through their planes.
 ///
 /// Which comes first depends on the sign of the slope, which no processor
 /// predicts. So nothing branches on it: the planes are numbers that are
 /// computed from the sign.
-pub(super) struct Discs<S> {
+pub(super) struct Disks<S> {
     sign: S,
     near: S,
     far: S,
 }
 
-impl<S: Real> Discs<S> {
+impl<S: Real> Disks<S> {
     #[inline(always)]
     pub fn of(slab: &Slab<S>) -> Self {
         // The planes are at 0 and at `height`, or the other way round, exactly.
@@ -175,40 +175,40 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
     #[inline(always)]
     pub fn first(
         &self,
-        discs: &Discs<S>,
+        disks: &Disks<S>,
         caps: Caps,
         shift: S,
         t_min: S,
         t_max: S,
-    ) -> Option<Meeting<S>> {
+    ) -> Option<Intersection<S>> {
         let meeting = |end: ChordEnd<S>, crossing| end.meeting(crossing, caps, shift, t_min, t_max);
-        let (exists, enter) = self.enter(discs);
+        let (exists, enter) = self.enter(disks);
         if !exists {
             return None;
         }
         if let Some(entry) = meeting(enter, Crossing::Enter) {
             return Some(entry);
         }
-        meeting(self.leave(discs, enter.t), Crossing::Leave)
+        meeting(self.leave(disks, enter.t), Crossing::Leave)
     }
 
     /// Whether the line enters the solid, and where.
     #[inline(always)]
-    pub fn enter(&self, discs: &Discs<S>) -> (bool, ChordEnd<S>) {
+    pub fn enter(&self, disks: &Disks<S>) -> (bool, ChordEnd<S>) {
         let slab = &self.slab;
         let t = self.wall.enter();
-        let height = slab.beyond_near(discs, t);
+        let height = slab.beyond_near(disks, t);
         if height > S::ZERO {
-            // At the far disc's height it is a single point, where the wall ends.
+            // At the far disk's height it is a single point, where the wall ends.
             let on_rim = height == slab.height;
-            let part = if on_rim { discs.far_part() } else { Part::Side };
+            let part = if on_rim { disks.far_part() } else { Part::Side };
             (height <= slab.height, ChordEnd { t, part, on_rim })
         } else {
             let leave = self.wall.leave();
-            let (to_leave, at_disc) = (slab.beyond_near(discs, leave), slab.at(discs.near));
+            let (to_leave, at_disk) = (slab.beyond_near(disks, leave), slab.at(disks.near));
             let end = ChordEnd {
-                t: at_most(if at_disc < t { t } else { at_disc }, leave),
-                part: discs.near_part(),
+                t: at_most(if at_disk < t { t } else { at_disk }, leave),
+                part: disks.near_part(),
                 // A line that leaves where it enters only touches the rim.
                 on_rim: (height == S::ZERO) | (to_leave == S::ZERO),
             };
@@ -218,26 +218,26 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
 
     /// Where the line that enters at `enter` leaves the solid.
     #[inline(always)]
-    pub fn leave(&self, discs: &Discs<S>, enter: S) -> ChordEnd<S> {
+    pub fn leave(&self, disks: &Disks<S>, enter: S) -> ChordEnd<S> {
         let slab = &self.slab;
         let t = self.wall.leave();
-        let height = slab.beyond_near(discs, t);
+        let height = slab.beyond_near(disks, t);
         let end = if height < slab.height {
             let on_rim = height == S::ZERO;
             let part = if on_rim {
-                discs.near_part()
+                disks.near_part()
             } else {
                 Part::Side
             };
             ChordEnd { t, part, on_rim }
         } else {
-            // A line that comes into the wall at the far disc's height only touches the
-            // rim. The chord's own entry will not do: at the near disc of a solid that is
+            // A line that comes into the wall at the far disk's height only touches the
+            // rim. The chord's own entry will not do: at the near disk of a solid that is
             // flat beside the rounding of heights it is at any height.
-            let to_enter = slab.beyond_near(discs, self.wall.enter());
+            let to_enter = slab.beyond_near(disks, self.wall.enter());
             ChordEnd {
-                t: at_most(slab.at(discs.far), t),
-                part: discs.far_part(),
+                t: at_most(slab.at(disks.far), t),
+                part: disks.far_part(),
                 on_rim: (height == slab.height) | (to_enter == slab.height),
             }
         };
@@ -257,11 +257,11 @@ fn at_most<S: Real>(t: S, greatest: S) -> S {
 }
 
 impl<S: Real> Slab<S> {
-    /// How far beyond the near disc's plane the line is at `t`, in its own
+    /// How far beyond the near disk's plane the line is at `t`, in its own
     /// direction.
     #[inline(always)]
-    fn beyond_near(&self, discs: &Discs<S>, t: S) -> S {
-        discs.near + discs.sign * (self.position + t * self.slope)
+    fn beyond_near(&self, disks: &Disks<S>, t: S) -> S {
+        disks.near + disks.sign * (self.position + t * self.slope)
     }
 
     /// Where the line comes through a plane.
@@ -270,7 +270,7 @@ impl<S: Real> Slab<S> {
         (plane - self.position) / self.slope
     }
 
-    /// The part of a wall between the discs.
+    /// The part of a wall between the disks.
     #[inline(always)]
     pub fn overlap<W: Wall<S>>(self, wall: W) -> Overlap<S, W> {
         Overlap { slab: self, wall }
@@ -297,14 +297,14 @@ impl<S: Real> Slab<S> {
     }
 
     /// The chord of a line across the axis: from wall to wall at one height,
-    /// which may be that of a disc.
+    /// which may be that of a disk.
     #[cold]
     fn across(&self, t0: S, t1: S) -> Option<Chord<S>> {
         let y = self.position;
         if !(S::ZERO <= y && y <= self.height) {
             return None;
         }
-        let disc = if y == S::ZERO {
+        let disk = if y == S::ZERO {
             Some(Part::Cap0)
         } else if y == self.height {
             Some(Part::Cap1)
@@ -313,13 +313,13 @@ impl<S: Real> Slab<S> {
         };
         let end = |t| ChordEnd {
             t,
-            part: disc.unwrap_or(Part::Side),
-            on_rim: disc.is_some(),
+            part: disk.unwrap_or(Part::Side),
+            on_rim: disk.is_some(),
         };
         Some(Chord {
             enter: end(t0),
             leave: end(t1),
-            lies_on: disc,
+            lies_on: disk,
         })
     }
 

@@ -10,23 +10,23 @@ use super::{
 };
 use crate::math::{Bounds, UNIT_ROUNDOFF, unit};
 
-/// A sphere: its centre and radius, taken as exact numbers. The solid is
-/// `{x : |x - centre| <= radius}`, the surface its boundary, all of it
+/// A sphere: its center and radius, taken as exact numbers. The solid is
+/// `{x : |x - center| <= radius}`, the surface its boundary, all of it
 /// [`Part::Side`](super::Part::Side).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    centre: DVec3,
+    center: DVec3,
     radius: f64,
 }
 
 /// Why numbers are not a sphere.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SphereError {
-    /// A coordinate of the centre is NaN, infinite or beyond [`Cylinder::GREATEST`].
-    #[error("the centre is ({:?}, {:?}, {:?}): every coordinate must be finite and at most {:.1e} in size", centre.x, centre.y, centre.z, Cylinder::GREATEST)]
-    Centre {
-        /// The centre as given.
-        centre: DVec3,
+    /// A coordinate of the center is NaN, infinite or beyond [`Cylinder::GREATEST`].
+    #[error("the center is ({:?}, {:?}, {:?}): every coordinate must be finite and at most {:.1e} in size", center.x, center.y, center.z, Cylinder::GREATEST)]
+    Center {
+        /// The center as given.
+        center: DVec3,
     },
     /// The radius is not a number in [`Cylinder::LEAST`, `Cylinder::GREATEST`].
     #[error(
@@ -41,30 +41,30 @@ pub enum SphereError {
 }
 
 impl Sphere {
-    /// The sphere around `centre`.
+    /// The sphere around `center`.
     ///
     /// # Errors
     /// When a number is not finite or out of range.
-    pub fn new(centre: DVec3, radius: f64) -> Result<Self, SphereError> {
-        if !Cylinder::is_in_range(centre) {
-            return Err(SphereError::Centre { centre });
+    pub fn new(center: DVec3, radius: f64) -> Result<Self, SphereError> {
+        if !Cylinder::is_in_range(center) {
+            return Err(SphereError::Center { center });
         }
         if !(Cylinder::LEAST..=Cylinder::GREATEST).contains(&radius) {
             return Err(SphereError::Radius { radius });
         }
-        Ok(Self::from_valid(centre, radius))
+        Ok(Self::from_valid(center, radius))
     }
 
     /// The sphere of numbers that [`Sphere::new`] accepted before.
     #[inline]
-    pub(crate) fn from_valid(centre: DVec3, radius: f64) -> Self {
-        Self { centre, radius }
+    pub(crate) fn from_valid(center: DVec3, radius: f64) -> Self {
+        Self { center, radius }
     }
 
-    /// The centre.
+    /// The center.
     #[must_use]
-    pub fn centre(&self) -> DVec3 {
-        self.centre
+    pub fn center(&self) -> DVec3 {
+        self.center
     }
 
     /// The radius, positive.
@@ -79,14 +79,14 @@ impl ConvexSolid for Sphere {
 
     fn bounds(&self) -> Bounds {
         Bounds {
-            lower: self.centre - self.radius,
-            upper: self.centre + self.radius,
+            lower: self.center - self.radius,
+            upper: self.center + self.radius,
         }
         .rounded_outward()
     }
 
     fn anchor(&self) -> DVec3 {
-        self.centre
+        self.center
     }
 
     #[inline]
@@ -95,12 +95,12 @@ impl ConvexSolid for Sphere {
     }
 
     fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
-        let x = origin.way_from(self.centre);
+        let x = origin.way_from(self.center);
         ball::chord(x, direction, self.radius, Part::Side)
     }
 
     #[inline(always)]
-    fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
+    fn rejects(&self, from_anchor: DVec3, direction: DVec3) -> bool {
         Line::new(from_anchor, direction).passes_ball(self.radius)
     }
 
@@ -114,11 +114,11 @@ impl ConvexSolid for Sphere {
     ///
     /// The unit vector outward is `q / |q|`, `q` first divided by its greatest
     /// component: its length is off by less than 6 u, the product with the radius and
-    /// the sum with the centre by u of theirs. At the centre itself, which has no
+    /// the sum with the center by u of theirs. At the center itself, which has no
     /// nearest point, it is z.
     fn surface_point(&self, _: Part, from_anchor: DVec3) -> SurfacePoint {
         let normal = unit(from_anchor).unwrap_or(DVec3::Z);
-        let point = self.centre + normal * self.radius;
+        let point = self.center + normal * self.radius;
         SurfacePoint {
             point,
             error: UNIT_ROUNDOFF * (point.length() + 8.0 * self.radius),
@@ -133,7 +133,7 @@ impl ConvexSolid for Sphere {
     }
 
     fn locate(&self, point: DVec3) -> Location {
-        ball::locate(self.centre, self.radius, point)
+        ball::locate(self.center, self.radius, point)
     }
 
     fn size(&self) -> f64 {
@@ -159,7 +159,7 @@ mod tests {
         ] {
             let found = sphere.surface_point(Part::Side, from);
             assert_eq!((found.u(), found.v), (u, v), "{from}");
-            assert_eq!(found.point, sphere.centre + found.normal * 2.0, "{from}");
+            assert_eq!(found.point, sphere.center + found.normal * 2.0, "{from}");
         }
     }
 
@@ -173,7 +173,7 @@ mod tests {
         }
         for x in [1e46, f64::NAN, f64::NEG_INFINITY] {
             let refused = Sphere::new(DVec3::X * x, 1.0);
-            assert!(matches!(refused, Err(SphereError::Centre { .. })));
+            assert!(matches!(refused, Err(SphereError::Center { .. })));
         }
     }
 }

@@ -5,7 +5,7 @@
 //! `o + t d` but the nearest point of the surface to it, computed as
 //! `q = base + ρ`: `base` on the axis (at `p0`, `p1` or between), `ρ`
 //! perpendicular to the axis, of length `radius` on the wall and of at most
-//! `radius` on a disc.
+//! `radius` on a disk.
 //!
 //! How far `q` is from the true surface (u = 2^-53, Euclidean norms; every
 //! component of a vector operation has relative error u, hence so has its
@@ -16,7 +16,7 @@
 //! 2. `|ρ|` has relative error 5 u (dot product, root, quotient, product);
 //! 3. `ρ` is made perpendicular twice; after the second time its component
 //!    along the computed axis is below `5 u |ρ|`, and the computed axis is off
-//!    the true one by u: at an end, `ρ` reaches past the disc's plane by at
+//!    the true one by u: at an end, `ρ` reaches past the disk's plane by at
 //!    most `6 u |ρ|`, and within the wall this does not matter;
 //! 4. the sums `y a + ρ` and `p0 + ...` round by `u (|a| + radius)` and `u |q|`.
 //!
@@ -75,7 +75,7 @@ pub(super) enum FirstParameter {
 /// `u` counts from the direction in which the coordinate axis that is most
 /// perpendicular to the cylinder's axis (the first of equals) points, and
 /// grows right-handed about the direction from `p0` to `p1`. On the axis
-/// itself, at the middle of a disc, it is 0.
+/// itself, at the middle of a disk, it is 0.
 #[must_use]
 #[inline]
 pub fn surface_point(cylinder: &Cylinder, part: Part, from_p0: DVec3) -> SurfacePoint {
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn cap_point_stays_on_its_disc() {
+    fn cap_point_stays_on_its_disk() {
         let cylinder = unit_cylinder();
         let found = surface_point(&cylinder, Part::Cap1, DVec3::new(0.7, 0.0, 2.1));
         assert_eq!(

@@ -34,7 +34,7 @@
 //! exact products.
 //!
 //! The axial position of a point is `y = x·a + t d·a`, inside the slab between
-//! the discs iff `0 <= y <= |a|²`; `slab.rs` overlaps wall and slab, and asks for
+//! the disks iff `0 <= y <= |a|²`; `slab.rs` overlaps wall and slab, and asks for
 //! the second root only where the first does not settle the answer.
 //!
 //! A derivation of the error bounds is in `docs/derivations.md`, section 2. It
@@ -43,7 +43,7 @@
 use glam::DVec3;
 
 use super::slab::{FirstMeeting, Question, Slab, Wall, WholeChord};
-use super::{Chord, Cylinder, Meeting};
+use super::{Chord, Cylinder, Intersection};
 use crate::math::{Real, RealVector, Wide, power_of_two, wide_cross, wide_square};
 
 /// Below this (2^-700), `radius² |n|²` could lose bits to underflow and the ray
@@ -155,7 +155,7 @@ pub fn first(
     shift: f64,
     t_min: f64,
     t_max: f64,
-) -> Option<Meeting> {
+) -> Option<Intersection> {
     let question = FirstMeeting {
         caps: cylinder.caps(),
         shift,
@@ -185,7 +185,7 @@ pub(super) fn answer<S: Real, A: Axis<S>, Q: Question<S>>(
     let (x, d) = (from_p0, direction);
     let line = Line::new(axis, x, d);
     if line.is_parallel() {
-        // From disc to disc, if it is not farther from the axis than the wall.
+        // From disk to disk, if it is not farther from the axis than the wall.
         let chord = parallel_chord(constant_term(axis, x, axis.a().cross(x)), slab(axis, x, d))?;
         return question.of_chord(chord);
     }

@@ -7,7 +7,7 @@
 use crate::cases::{ComposedCase, ComposedFamily, Inputs};
 use crate::math::{DoubleDouble, Ray};
 use crate::oracle::{self, ComposedHit, ComposedTruth, Face};
-use crate::solid::{ComposedMeeting, Composition, Location, Part};
+use crate::solid::{ComposedIntersection, Composition, Location, Part};
 
 use super::cell::Figures;
 use super::witness::TrueAnswer;
@@ -94,7 +94,7 @@ impl Verdict {
             half_size: 0.5 * size / ray.direction.length(),
             ..Self::default()
         };
-        let judge = |met: &ComposedMeeting, hit: &ComposedHit| {
+        let judge = |met: &ComposedIntersection, hit: &ComposedHit| {
             let answer = TrueAnswer::of_composed(hit);
             let error = answer.error_of(met.meeting.t) * ray.direction.length();
             let is_here = error.abs() <= SAME_POINT * size;
@@ -110,7 +110,7 @@ impl Verdict {
             }
             (met, hit) => verdict.is_wrong_hit = met.is_some() != hit.is_some(),
         }
-        let is_same = |(met, hit): (&ComposedMeeting, &ComposedHit)| {
+        let is_same = |(met, hit): (&ComposedIntersection, &ComposedHit)| {
             let (is_here, is_face, _) = judge(met, hit);
             is_here && is_face && met.meeting.crossing == hit.crossing
         };
@@ -136,7 +136,12 @@ impl Verdict {
 }
 
 /// Whether the answer names one of the faces, with its normal.
-fn is_face(composition: &Composition, ray: &Ray, met: &ComposedMeeting, faces: &[Face]) -> bool {
+fn is_face(
+    composition: &Composition,
+    ray: &Ray,
+    met: &ComposedIntersection,
+    faces: &[Face],
+) -> bool {
     let named = |face: &&Face| face.leaf == met.leaf && face.part == met.meeting.part;
     faces.iter().filter(named).any(|face| {
         let at = |anchor| (ray.origin - anchor) + ray.direction * met.meeting.t;

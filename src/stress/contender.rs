@@ -8,7 +8,7 @@ use crate::cases::Case;
 use crate::math::Ray;
 use crate::solid::formulations::{self, Answer, Formulation, Precision, Problem};
 use crate::solid::{
-    AnySolid, ConvexSolid, Meeting, Part, RayOrigin, SolidKind, SpawnMargin, SurfacePoint,
+    AnySolid, ConvexSolid, Intersection, Part, RayOrigin, SolidKind, SpawnMargin, SurfacePoint,
 };
 
 /// Someone who answers cases of one kind of solid.
@@ -150,9 +150,9 @@ fn exact_answer(case: &Case) -> Option<Answer> {
     Some(answer_of(case, &first))
 }
 
-fn answer_of(case: &Case, first: &Meeting) -> Answer {
+fn answer_of(case: &Case, first: &Intersection) -> Answer {
     let (solid, ray) = (solver(&case.solid), &case.ray);
-    let Meeting { t, part, .. } = *first;
+    let Intersection { t, part, .. } = *first;
     let on_ray = (ray.origin - solid.anchor()) + ray.direction * t;
     let normal = solid.surface_point(part, on_ray).normal;
     Answer { t, part, normal }
@@ -161,9 +161,9 @@ fn answer_of(case: &Case, first: &Meeting) -> Answer {
 /// What is asked of a solid of any kind.
 pub(super) trait Solver {
     /// The first point of a ray on the surface.
-    fn first(&self, ray: &Ray) -> Option<Meeting>;
+    fn first(&self, ray: &Ray) -> Option<Intersection>;
     /// The same, decided exactly.
-    fn exact_first(&self, ray: &Ray) -> Option<Meeting>;
+    fn exact_first(&self, ray: &Ray) -> Option<Intersection>;
     /// As [`ConvexSolid::anchor`].
     fn anchor(&self) -> DVec3;
     /// As [`ConvexSolid::surface_point`].
@@ -175,12 +175,12 @@ pub(super) trait Solver {
 }
 
 impl<S: ConvexSolid> Solver for S {
-    fn first(&self, ray: &Ray) -> Option<Meeting> {
+    fn first(&self, ray: &Ray) -> Option<Intersection> {
         let x = ray.origin - ConvexSolid::anchor(self);
         ConvexSolid::first(self, x, ray.direction, 0.0, ray.t_min, ray.t_max)
     }
 
-    fn exact_first(&self, ray: &Ray) -> Option<Meeting> {
+    fn exact_first(&self, ray: &Ray) -> Option<Intersection> {
         let origin = RayOrigin::at(ray.origin);
         ConvexSolid::exact_first(self, &origin, ray.direction, 0.0, [ray.t_min, ray.t_max])
     }

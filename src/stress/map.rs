@@ -43,7 +43,7 @@ pub struct UlpMap {
     /// The picture: tiles in rows.
     pub film: Film,
     /// The case in the middle of every tile.
-    pub centre: Problem,
+    pub center: Problem,
     /// Each tile from the left of the top row, and its share of wrong rays.
     pub tiles: Vec<(String, f64)>,
     /// What the colours mean.
@@ -53,8 +53,8 @@ pub struct UlpMap {
 /// The map of a family's hardest case.
 #[must_use]
 pub fn ulp_map(contenders: &[Contender], family: Family, inputs: Inputs, seed: u64) -> UlpMap {
-    let centre = hardest(family, inputs, seed);
-    let problems = neighbours(&centre, inputs);
+    let center = hardest(family, inputs, seed);
+    let problems = neighbours(&center, inputs);
     let truth: Vec<Option<Part>> = problems
         .par_iter()
         .map(|problem| {
@@ -89,7 +89,7 @@ pub fn ulp_map(contenders: &[Contender], family: Family, inputs: Inputs, seed: u
     }
     UlpMap {
         film: picture(&tiles),
-        centre,
+        center,
         tiles: names,
         legend: LEGEND,
     }
@@ -112,13 +112,13 @@ fn hardest(family: Family, inputs: Inputs, seed: u64) -> Problem {
 }
 
 /// Row by row from the top, the case itself in the middle.
-fn neighbours(centre: &Problem, inputs: Inputs) -> Vec<Problem> {
-    let along = centre.ray.direction.abs().max_position();
+fn neighbours(center: &Problem, inputs: Inputs) -> Vec<Problem> {
+    let along = center.ray.direction.abs().max_position();
     let (across, up) = ((along + 1) % 3, (along + 2) % 3);
     let half = ACROSS / 2;
     let grid = (-half..=half).flat_map(|row| (-half..=half).map(move |column| (row, column)));
     grid.map(|(row, column)| {
-        let mut problem = *centre;
+        let mut problem = *center;
         let origin = &mut problem.ray.origin;
         origin[across] = inputs.stepped(origin[across], column);
         origin[up] = inputs.stepped(origin[up], -row);

@@ -1,7 +1,7 @@
 //! A case as one word, to be passed on and replayed.
 //!
 //! Of cylinders bit for bit: fifteen numbers in hexadecimal, the bits of their f64, joined by `:` (zero
-//! is written `0`): p0, p1, radius, origin, direction, t_min, t_max. The discs
+//! is written `0`): p0, p1, radius, origin, direction, t_min, t_max. The disks
 //! come last: `none`, `p0`, `p1` or `both`. Of other solids by what it is drawn from:
 //! the name of the family, the inputs, the seed and the index, as in
 //! `cone-rim:f32:0:17`.
@@ -26,7 +26,7 @@ const CAPS: [(&str, Caps); 4] = [
 pub enum ReplayError {
     /// There are more or fewer parts.
     #[error(
-        "a case has 16 parts joined by ':', fifteen numbers and the discs, or 4, family, inputs, \
+        "a case has 16 parts joined by ':', fifteen numbers and the disks, or 4, family, inputs, \
          seed and index; there are {0}"
     )]
     Parts(usize),
@@ -34,7 +34,7 @@ pub enum ReplayError {
     #[error("{0:?} is not the bits of a number in hexadecimal")]
     Number(String),
     /// The last part is unknown.
-    #[error("{0:?} names no discs: it must be none, p0, p1 or both")]
+    #[error("{0:?} names no disks: it must be none, p0, p1 or both")]
     Caps(String),
     /// The numbers are no cylinder.
     #[error(transparent)]

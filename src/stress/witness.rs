@@ -93,7 +93,7 @@ impl Witness {
         let (a, d) = (cylinder.p1() - cylinder.p0(), ray.direction);
         let (x, r) = ((ray.origin - cylinder.p0()).length(), cylinder.radius());
         let n = a.cross(d).length();
-        // A ray along the axis meets discs only, where k does not enter.
+        // A ray along the axis meets disks only, where k does not enter.
         let k = if n > 0.0 {
             a.length() * d.length() / n
         } else {

@@ -21,7 +21,7 @@
 //! below N/8 hits, and at its first size where the range prunes.
 
 use super::frame::LocalRay;
-use super::query::{Found, Keep, Query};
+use super::query::{Found, Query, QueryMode};
 use super::resolve::Which;
 use super::{Hit, HitFields, PartialHit, Tracer};
 use crate::math::Ray;
@@ -92,7 +92,7 @@ impl<'a> AllHits<'a> {
         let decisions = self.tracer.decisions();
         let mut query = Query::next(&ray, decisions, self.last.take(), self.batch);
         root.search(&LocalRay::new(&ray), &mut query);
-        let Keep::Next(next) = query.keep else {
+        let QueryMode::Next(next) = query.keep else {
             unreachable!("a query keeps the kind of answer that it began with");
         };
         let hits = next.hits.into_sorted_vec();

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::prototype::{Outlines, Prototype, Workshop};
+use super::prototype::{BuildContext, Outlines, Prototype};
 use crate::embree;
 use crate::math::{ChildFromParent, PlacementErrors};
 use crate::scene::{
@@ -227,7 +227,7 @@ impl Total {
 
 /// Makes the prototypes in the plan's order; those it leaves out stay `None`.
 pub(crate) fn make(
-    workshop: &Workshop,
+    context: &BuildContext,
     scene: &Arc<Scene>,
     plan: &Plan,
 ) -> Vec<Option<Arc<Prototype>>> {
@@ -235,7 +235,7 @@ pub(crate) fn make(
     let mut made = vec![None; scene.prototypes.len()];
     for &index in &plan.order {
         let groups = (index, outlines.take(index));
-        made[index.0 as usize] = Prototype::new(workshop, scene, groups, &made);
+        made[index.0 as usize] = Prototype::new(context, scene, groups, &made);
     }
     made
 }

@@ -16,8 +16,8 @@ use glam::DVec3;
 
 use super::frame::LocalRay;
 use super::prototype::Prototype;
-use super::query::{Keep, Query};
-use super::{Tracer, with_usual_length};
+use super::query::{Query, QueryMode};
+use super::{Tracer, normalize_direction};
 use crate::math::Ray;
 use crate::scene::PrototypeIndex;
 use crate::solid::SolidKind;
@@ -67,12 +67,12 @@ impl Tracer {
             t_max: 0.0,
             ..Ray::new(point, DVec3::ONE)
         };
-        let (Some(root), Some((ray, _))) = (&self.root, with_usual_length(&ray)) else {
+        let (Some(root), Some((ray, _))) = (&self.root, normalize_direction(&ray)) else {
             return Vec::new();
         };
         let mut query = Query::holding(&ray);
         trace(root, &LocalRay::new(&ray), &mut query);
-        let Keep::Holding(places) = query.keep else {
+        let QueryMode::Containing(places) = query.keep else {
             unreachable!("the query keeps what it was told to keep");
         };
         let mut containing: Vec<_> = places

@@ -1,7 +1,7 @@
 //! How queries decide about hits.
 
 use super::frame::LocalRay;
-use crate::solid::{Chord, ConvexSolid, Meeting};
+use crate::solid::{Chord, ConvexSolid, Intersection};
 
 /// How hits, misses and parts of solids are decided. Set operations decide by
 /// rounded numbers always.
@@ -39,7 +39,7 @@ pub(crate) fn exact_first<S: ConvexSolid>(
     ray: &LocalRay,
     t_min: f64,
     t_max: f64,
-) -> Option<Meeting> {
+) -> Option<Intersection> {
     solid.exact_first(&ray.start(), ray.direction, ray.shift, [t_min, t_max])
 }
 

@@ -46,7 +46,7 @@ use super::options::Layout;
 use super::prototype::{MOST_INNER, MOST_INSTANCES, MOST_OUTER, block_bytes};
 use crate::embree::MaxIsa;
 use crate::math::LANES;
-use crate::scene::{Contents, Placement, Records};
+use crate::scene::{ExpectedCounts, Placement, Records};
 
 /// Bytes of an instance: Embree 3.13.5's structures and what their allocator adds.
 pub(super) const INSTANCE_BYTES: u64 = 305;
@@ -104,7 +104,7 @@ impl MemoryEstimate {
     /// The estimate for a scene that holds so much, built whole and held to
     /// `max_isa`, as [`Options`](super::Options) are.
     #[must_use]
-    pub fn of(contents: &[Contents], layout: Layout, max_isa: Option<MaxIsa>) -> Self {
+    pub fn of(contents: &[ExpectedCounts], layout: Layout, max_isa: Option<MaxIsa>) -> Self {
         let is_wide = is_wide(max_isa);
         let mut sum = Self::default();
         for prototype in contents {
@@ -157,12 +157,12 @@ impl MemoryEstimate {
 
 /// How many instances of Embree's there may be in a prototype: its innermost placements, and
 /// all that it places with nothing but a few placements.
-fn instances(prototype: &Contents, all: &[Contents]) -> u64 {
+fn instances(prototype: &ExpectedCounts, all: &[ExpectedCounts]) -> u64 {
     let placements = prototype.placements();
     if placements > MOST_INSTANCES as u64 {
         return 0;
     }
-    let of_one = |child: &Contents| {
+    let of_one = |child: &ExpectedCounts| {
         let within = child.placements();
         let is_bare = child.cylinders == 0 && child.others.count == 0;
         let may_be_opened = placements <= MOST_OUTER as u64 && within <= MOST_INNER as u64;
@@ -290,8 +290,8 @@ mod tests {
         (bytes, peak)
     }
 
-    fn root(cylinders: u64, records: Records) -> [Contents; 1] {
-        [Contents {
+    fn root(cylinders: u64, records: Records) -> [ExpectedCounts; 1] {
+        [ExpectedCounts {
             name: String::new(),
             cylinders,
             records,

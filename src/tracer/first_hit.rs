@@ -1,6 +1,6 @@
 //! The least that a query answers.
 
-use super::query::{Member, Nearest};
+use super::query::{Nearest, SolidSlot};
 use crate::scene::{PrototypeIndex, Scene};
 use crate::solid::SolidKind;
 
@@ -28,7 +28,7 @@ impl FirstHit {
     /// When the hit is of another scene.
     #[must_use]
     pub fn primitive(&self, scene: &Scene) -> u32 {
-        let Member { kind, record } = self.nearest.place.member;
+        let SolidSlot { kind, record } = self.nearest.place.member;
         let prototype = &scene.prototypes[self.prototype().0 as usize];
         prototype.primitive(kind, record as usize)
     }

@@ -52,8 +52,8 @@ use crate::scene::Scene;
 use build::Plan;
 use decisions::Decisions;
 use glam::DVec3;
-use prototype::{Prototype, Workshop};
-use query::{Keep, Place, Query};
+use prototype::{BuildContext, Prototype};
+use query::{Query, QueryMode, SolidRef};
 use resolve::Which;
 use statistics::Counted;
 
@@ -70,7 +70,7 @@ pub struct Tracer {
     traces_packets: bool,
     counted: Counted,
     /// The middle of the scene, and how far from it a ray may start.
-    centre: DVec3,
+    center: DVec3,
     farthest: f64,
 }
 
@@ -86,7 +86,7 @@ impl Tracer {
             threads: options.threads,
             max_isa: options.max_isa,
         })?;
-        let workshop = Workshop {
+        let context = BuildContext {
             device: device.clone(),
             layout: options.layout,
             view: options.view,
@@ -96,7 +96,7 @@ impl Tracer {
                 .or_else(|| std::thread::available_parallelism().ok())
                 .map_or(1, usize::from),
         };
-        let prototypes = build::make(&workshop, &scene, &plan);
+        let prototypes = build::make(&context, &scene, &plan);
         if options.build == BuildTime::AtOnce {
             for prototype in prototypes.iter().flatten() {
                 prototype.build()?;
@@ -106,7 +106,7 @@ impl Tracer {
         let bounds = root.as_ref().map_or(Bounds::EMPTY, |root| root.bounds);
         Ok(Self {
             root,
-            centre: bounds.centre(),
+            center: bounds.center(),
             farthest: GREATEST_DISTANCE * (bounds.upper - bounds.lower).max_element(),
             prototypes,
             traces_packets: device.packet_width().is_some(),
@@ -268,9 +268,9 @@ impl Tracer {
     /// is not valid or starts too far away.
     #[inline]
     fn in_use(&self, ray: &Ray) -> Option<(Ray, f64)> {
-        let distance = (ray.origin - self.centre).abs().max_element();
+        let distance = (ray.origin - self.center).abs().max_element();
         (distance <= self.farthest)
-            .then(|| with_usual_length(ray))
+            .then(|| normalize_direction(ray))
             .flatten()
     }
 
@@ -285,8 +285,8 @@ impl Tracer {
         let mut query = Query::first(&ray, self.decisions());
         trace(root, &LocalRay::new(&ray), &mut query);
         let first = match query.keep {
-            Keep::First(nearest) => nearest.map(|nearest| FirstHit::new(nearest, factor)),
-            Keep::Next(_) | Keep::Holding(_) => None,
+            QueryMode::First(nearest) => nearest.map(|nearest| FirstHit::new(nearest, factor)),
+            QueryMode::Next(_) | QueryMode::Containing(_) => None,
         };
         (first, query.callbacks)
     }
@@ -296,7 +296,7 @@ impl Tracer {
         &self,
         root: &Arc<Prototype>,
         (ray, factor): (&Ray, f64),
-        place: &Place,
+        place: &SolidRef,
         which: Which,
         fields: HitFields,
     ) -> Hit {
@@ -322,7 +322,7 @@ const USUAL_LENGTHS: std::ops::Range<f64> = power_of_two(-32)..power_of_two(32);
 /// The factor is a power of two, so the scaling is exact (but for components of the
 /// direction 2^-1000 times smaller than the largest).
 #[inline]
-fn with_usual_length(ray: &Ray) -> Option<(Ray, f64)> {
+fn normalize_direction(ray: &Ray) -> Option<(Ray, f64)> {
     if !ray.is_valid() {
         return None;
     }

@@ -66,7 +66,7 @@ pub fn outliers(scene: &Scene) -> Vec<Outlier> {
                         List::Placements { .. } => return None,
                     };
                     let bounds = all.entry(list, position);
-                    let apart = (bounds.centre() - most.centre()).length();
+                    let apart = (bounds.center() - most.center()).length();
                     let reach = 0.5 * most.extent().length();
                     Some(Outlier {
                         prototype: index,

@@ -27,12 +27,14 @@ use smallvec::SmallVec;
 use super::decisions::{Decisions, exact_first};
 use super::frame::LocalRay;
 use super::prototype::Prototype;
-use super::query::Place;
-use super::traced::{Met, TracedSolid};
+use super::query::SolidRef;
+use super::traced::{SurfaceHit, TracedSolid};
 use super::{Hit, HitFields};
 use crate::math::{ChildFromParent, PlacementErrors, Ray, UNIT_ROUNDOFF};
 use crate::scene::{CylinderRecord, MaterialIndex, Scene, SolidRecord};
-use crate::solid::{Meeting, SolidKind, SpawnMargin, SurfacePoint, surface_point, triple_product};
+use crate::solid::{
+    Intersection, SolidKind, SpawnMargin, SurfacePoint, surface_point, triple_product,
+};
 
 /// What a query is to work out of a hit.
 #[derive(Clone, Copy)]
@@ -40,12 +42,12 @@ pub(crate) enum Which {
     /// The first meeting with the solid, which is at this `t`.
     FirstAt(f64),
     /// This one.
-    This(Met),
+    This(SurfaceHit),
 }
 
 /// A hit in its prototype's own space.
 struct LocalHit {
-    meeting: Meeting,
+    meeting: Intersection,
     surface: SurfacePoint,
     /// `None` where no rays are spawned.
     margin: Option<SpawnMargin>,
@@ -65,7 +67,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// The meeting, of which a query that only knows its `t` finds the rest by
     /// `first`. The query went through the same operations: it is the same meeting.
-    fn met(&self, first: impl FnOnce(f64) -> Option<Met>) -> Met {
+    fn met(&self, first: impl FnOnce(f64) -> Option<SurfaceHit>) -> SurfaceHit {
         match self.which {
             Which::This(met) => met,
             Which::FirstAt(t) => first(t).expect("a hit is found again"),
@@ -75,13 +77,13 @@ impl Search<'_> {
     fn on_cylinder(&self, record: &CylinderRecord) -> LocalHit {
         let (cylinder, ray) = (record.cylinder(), self.ray);
         let from_p0 = ray.origin_from(cylinder.p0());
-        let Met { meeting, .. } = self.met(|t| {
+        let SurfaceHit { meeting, .. } = self.met(|t| {
             if self.decisions == Decisions::Exact {
-                return exact_first(&cylinder, ray, self.t_min, t).map(Met::whole);
+                return exact_first(&cylinder, ray, self.t_min, t).map(SurfaceHit::whole);
             }
             let (direction, shift) = (ray.direction, ray.shift);
             let first = triple_product::first(&cylinder, from_p0, direction, shift, self.t_min, t);
-            first.map(Met::whole)
+            first.map(SurfaceHit::whole)
         });
         let on_ray = from_p0 + ray.direction * meeting.t_local;
         let surface = surface_point(&cylinder, meeting.part, on_ray);
@@ -174,7 +176,7 @@ pub(crate) fn resolve(
     scene: &Scene,
     root: &Arc<Prototype>,
     ray: &Ray,
-    place: &Place,
+    place: &SolidRef,
     (decisions, which, fields): (Decisions, Which, HitFields),
 ) -> Hit {
     // Down to the prototype that was hit.

@@ -16,13 +16,14 @@ use crate::scene::Listed;
 use crate::solid::lanes::RayLanes;
 use crate::solid::quick::{self, QuickLanes};
 use crate::solid::{
-    ComposedMeeting, Composition, ConvexSolid, Meeting, SolidKind, SpawnMargin, SurfacePoint,
+    ComposedIntersection, Composition, ConvexSolid, Intersection, SolidKind, SpawnMargin,
+    SurfacePoint,
 };
 
 /// A meeting with a solid.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Met {
-    pub meeting: Meeting,
+pub(crate) struct SurfaceHit {
+    pub meeting: Intersection,
     /// Which of the solids that it is made of is met; 0 where it is one.
     pub leaf: u32,
     /// Whether the normal is that solid's reversed.
@@ -32,10 +33,10 @@ pub(crate) struct Met {
     pub rank: u32,
 }
 
-impl Met {
+impl SurfaceHit {
     /// A meeting with a solid that is one.
     #[inline(always)]
-    pub fn whole(meeting: Meeting) -> Self {
+    pub fn whole(meeting: Intersection) -> Self {
         Self {
             meeting,
             leaf: 0,
@@ -94,23 +95,29 @@ pub(crate) trait TracedSolid: Listed + Send + Sync {
 
     /// The first meeting of the ray with its surface in a range of the whole
     /// ray's `t`.
-    fn first(&self, ray: &LocalRay, decisions: Decisions, t_min: f64, t_max: f64) -> Option<Met>;
-
-    /// Hands on all of them.
-    fn each_meeting(
+    fn first(
         &self,
         ray: &LocalRay,
         decisions: Decisions,
         t_min: f64,
         t_max: f64,
-        keep: impl FnMut(Met),
+    ) -> Option<SurfaceHit>;
+
+    /// Hands on all of them.
+    fn for_each_hit(
+        &self,
+        ray: &LocalRay,
+        decisions: Decisions,
+        t_min: f64,
+        t_max: f64,
+        keep: impl FnMut(SurfaceHit),
     );
 
     /// The point of the surface where the ray meets it.
-    fn surface(&self, ray: &LocalRay, met: &Met) -> SurfacePoint;
+    fn surface(&self, ray: &LocalRay, met: &SurfaceHit) -> SurfacePoint;
 
     /// By how much a query that starts at that point may be displaced.
-    fn spawn_margin(&self, met: &Met, surface: &SurfacePoint) -> SpawnMargin;
+    fn spawn_margin(&self, met: &SurfaceHit, surface: &SurfacePoint) -> SpawnMargin;
 
     /// Whether the closed solid holds a point.
     fn contains(&self, point: DVec3) -> bool;
@@ -141,34 +148,40 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
     }
 
     #[inline]
-    fn first(&self, ray: &LocalRay, decisions: Decisions, t_min: f64, t_max: f64) -> Option<Met> {
-        decisions
-            .chord(self, ray)?
-            .first(self.caps(), ray.shift, t_min, t_max)
-            .map(Met::whole)
-    }
-
-    fn each_meeting(
+    fn first(
         &self,
         ray: &LocalRay,
         decisions: Decisions,
         t_min: f64,
         t_max: f64,
-        keep: impl FnMut(Met),
+    ) -> Option<SurfaceHit> {
+        decisions
+            .chord(self, ray)?
+            .first(self.caps(), ray.shift, t_min, t_max)
+            .map(SurfaceHit::whole)
+    }
+
+    fn for_each_hit(
+        &self,
+        ray: &LocalRay,
+        decisions: Decisions,
+        t_min: f64,
+        t_max: f64,
+        keep: impl FnMut(SurfaceHit),
     ) {
         if let Some(chord) = decisions.chord(self, ray) {
             let meetings = chord.meetings(self.caps(), ray.shift, t_min, t_max);
-            meetings.map(Met::whole).for_each(keep);
+            meetings.map(SurfaceHit::whole).for_each(keep);
         }
     }
 
-    fn surface(&self, ray: &LocalRay, met: &Met) -> SurfacePoint {
-        let Meeting { part, t_local, .. } = met.meeting;
+    fn surface(&self, ray: &LocalRay, met: &SurfaceHit) -> SurfacePoint {
+        let Intersection { part, t_local, .. } = met.meeting;
         let from_anchor = ray.origin_from(self.anchor()) + ray.direction * t_local;
         self.surface_point(part, from_anchor)
     }
 
-    fn spawn_margin(&self, _: &Met, surface: &SurfacePoint) -> SpawnMargin {
+    fn spawn_margin(&self, _: &SurfaceHit, surface: &SurfacePoint) -> SpawnMargin {
         SpawnMargin::of_solid(self, surface)
     }
 
@@ -177,8 +190,8 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
     }
 }
 
-impl From<ComposedMeeting> for Met {
-    fn from(met: ComposedMeeting) -> Self {
+impl From<ComposedIntersection> for SurfaceHit {
+    fn from(met: ComposedIntersection) -> Self {
         Self {
             meeting: met.meeting,
             leaf: met.leaf,
@@ -188,8 +201,8 @@ impl From<ComposedMeeting> for Met {
     }
 }
 
-impl From<&Met> for ComposedMeeting {
-    fn from(met: &Met) -> Self {
+impl From<&SurfaceHit> for ComposedIntersection {
+    fn from(met: &SurfaceHit) -> Self {
         Self {
             meeting: met.meeting,
             leaf: met.leaf,
@@ -210,19 +223,19 @@ impl TracedSolid for Composition {
         self.bounds()
     }
 
-    fn first(&self, ray: &LocalRay, _: Decisions, t_min: f64, t_max: f64) -> Option<Met> {
+    fn first(&self, ray: &LocalRay, _: Decisions, t_min: f64, t_max: f64) -> Option<SurfaceHit> {
         let from = |anchor| ray.origin_from(anchor);
         self.first(from, ray.direction, ray.shift, [t_min, t_max])
-            .map(Met::from)
+            .map(SurfaceHit::from)
     }
 
-    fn each_meeting(
+    fn for_each_hit(
         &self,
         ray: &LocalRay,
         _: Decisions,
         t_min: f64,
         t_max: f64,
-        mut keep: impl FnMut(Met),
+        mut keep: impl FnMut(SurfaceHit),
     ) {
         let from = |anchor| ray.origin_from(anchor);
         let range = [t_min, t_max];
@@ -231,13 +244,13 @@ impl TracedSolid for Composition {
         });
     }
 
-    fn surface(&self, ray: &LocalRay, met: &Met) -> SurfacePoint {
+    fn surface(&self, ray: &LocalRay, met: &SurfaceHit) -> SurfacePoint {
         self.surface(&met.into(), |anchor| {
             ray.origin_from(anchor) + ray.direction * met.meeting.t_local
         })
     }
 
-    fn spawn_margin(&self, met: &Met, surface: &SurfacePoint) -> SpawnMargin {
+    fn spawn_margin(&self, met: &SurfaceHit, surface: &SurfacePoint) -> SpawnMargin {
         self.spawn_margin(&met.into(), surface)
     }
 

@@ -12,7 +12,7 @@ pub fn cases() -> Vec<Case> {
         Case::new(
             "sphere_beyond_all_numbers",
             "[[sphere]]\nradius = 1\ncenter = [0, 1e50, 0]\n",
-            &["scene.toml:3:10", "the centre is (0.0, 1e50, 0.0)"],
+            &["scene.toml:3:10", "the center is (0.0, 1e50, 0.0)"],
         ),
         Case::new(
             "sphere_without_a_center",

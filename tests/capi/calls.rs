@@ -55,12 +55,12 @@ fn rays_get_the_tracer_s_answers() {
     let path = std::path::Path::new(super::ROOT).join("scenes/minimal.toml");
     let scene = std::sync::Arc::new(scene::load(&path).expect("loads"));
     let tracer = Tracer::new(scene, &Options::default()).expect("builds");
-    let centre = tracer.bounds().centre();
+    let center = tracer.bounds().center();
     let mut rays: Vec<Ray> = (0..500)
         .map(|number| {
             let mut random = Random::new(1, number);
-            let from = centre + random.direction() * 9.0;
-            Ray::new(from, centre + random.direction() * 2.0 - from)
+            let from = center + random.direction() * 9.0;
+            Ray::new(from, center + random.direction() * 2.0 - from)
         })
         .collect();
     rays[7].direction.x = f64::NAN;
@@ -367,7 +367,7 @@ fn tracer_checked_through_c_holds_and_wrong_parts_do_not() {
         assert!(outcome.text.is_null() && outcome.json.is_null());
     }
 
-    // Every hit told to be of the disc at p0.
+    // Every hit told to be of the disk at p0.
     let (code, mut outcome, _) = check(&loaded, &SETTINGS, Some(CYLTRACE_CAP0));
     assert_eq!(code, CYLTRACE_VIOLATIONS);
     assert!(outcome.violations > 100, "{}", text(outcome.text));

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cyltrace::check::{self, Class, Finding, Intersector, Outcome, Settings};
+use cyltrace::check::{self, Class, Intersector, Outcome, ReportedHit, Settings};
 use cyltrace::math::{Random, Ray};
 use cyltrace::scene::{CylinderRecord, MaterialIndex, Scene};
 use cyltrace::solid::{Caps, Cylinder};
@@ -15,8 +15,8 @@ use super::{checked, tracer};
 /// An answer that is tampered with.
 pub struct Tampered<F>(pub F);
 
-impl<F: Fn(&Ray) -> Option<Finding> + Sync> Intersector for Tampered<F> {
-    fn closest(&self, ray: &Ray) -> Option<Finding> {
+impl<F: Fn(&Ray) -> Option<ReportedHit> + Sync> Intersector for Tampered<F> {
+    fn closest(&self, ray: &Ray) -> Option<ReportedHit> {
         (self.0)(ray)
     }
 }
@@ -28,7 +28,7 @@ fn settings(rays: u64) -> Settings {
     }
 }
 
-/// 30 cylinders with discs, some of them placed.
+/// 30 cylinders with disks, some of them placed.
 fn scene() -> Scene {
     let mut random = Random::new(77, 0);
     let mut cylinders = |count| {
@@ -101,7 +101,7 @@ fn far_root_is_caught() {
     let wrong = Tampered(|ray: &Ray| {
         let first = Intersector::closest(&tracer, ray)?;
         let far = tracer.all_hits(ray, 8).nth(1);
-        Some(far.map_or(first.clone(), |far| Finding { t: far.t, ..first }))
+        Some(far.map_or(first.clone(), |far| ReportedHit { t: far.t, ..first }))
     });
     bites("far root", &scene, &wrong, 1_000, &Class::ALL);
 }
@@ -149,7 +149,7 @@ fn length_off_by_a_ten_thousandth_is_caught() {
 fn flipped_normal_is_caught() {
     let scene = scene();
     let tracer = tracer(&Arc::new(scene.clone()));
-    let flipped = |finding: Finding| Finding {
+    let flipped = |finding: ReportedHit| ReportedHit {
         normal: finding.normal.map(|normal| -normal),
         ..finding
     };
@@ -157,7 +157,7 @@ fn flipped_normal_is_caught() {
     bites("normal", &scene, &wrong, 500, &Class::ALL);
     let nameless = Tampered(|ray: &Ray| {
         let finding = Intersector::closest(&tracer, ray).map(flipped)?;
-        Some(Finding {
+        Some(ReportedHit {
             place: None,
             ..finding
         })
@@ -178,7 +178,7 @@ fn shifted_hit_is_caught() {
         let wrong = Tampered(|ray: &Ray| {
             let finding = Intersector::closest(&tracer, ray)?;
             let t = finding.t + sign * 0.5e-5 / ray.direction.length();
-            Some(Finding {
+            Some(ReportedHit {
                 t: t.clamp(ray.t_min, ray.t_max),
                 ..finding
             })

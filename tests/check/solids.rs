@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use cyltrace::check::{Class, Finding, Intersector, Outcome, Settings};
+use cyltrace::check::{Class, Intersector, Outcome, ReportedHit, Settings};
 use cyltrace::math::{Orientation, Random, Ray};
 use cyltrace::scene::{
     CompositionRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene,
@@ -119,18 +119,18 @@ fn shrunk(solid: &AnySolid) -> AnySolid {
                 .unwrap()
                 .into()
         }
-        AnySolid::Sphere(one) => Sphere::new(one.centre(), one.radius() * LESS)
+        AnySolid::Sphere(one) => Sphere::new(one.center(), one.radius() * LESS)
             .unwrap()
             .into(),
         AnySolid::Cuboid(one) => {
             let half_widths = one.half_widths() * LESS;
-            Cuboid::new(one.centre(), half_widths, one.orientation())
+            Cuboid::new(one.center(), half_widths, one.orientation())
                 .unwrap()
                 .into()
         }
         AnySolid::Disk(one) => {
             let off = one.normal().normalize() * (1e-4 * one.radius());
-            Disk::new(one.centre() + off, one.normal(), one.radius())
+            Disk::new(one.center() + off, one.normal(), one.radius())
                 .unwrap()
                 .into()
         }
@@ -182,7 +182,7 @@ fn sizes_off_by_a_ten_thousandth_are_caught() {
 }
 
 /// Tampers with what the tracer finds.
-fn tampered(scene: &Scene, change: impl Fn(&mut Finding) + Sync) -> impl Intersector {
+fn tampered(scene: &Scene, change: impl Fn(&mut ReportedHit) + Sync) -> impl Intersector {
     let tracer = tracer(&Arc::new(scene.clone()));
     Tampered(move |ray: &Ray| {
         let mut finding = Intersector::closest(&tracer, ray)?;
@@ -193,7 +193,7 @@ fn tampered(scene: &Scene, change: impl Fn(&mut Finding) + Sync) -> impl Interse
 
 #[test]
 fn flipped_normals_are_caught() {
-    let flip = |finding: &mut Finding| finding.normal = finding.normal.map(|normal| -normal);
+    let flip = |finding: &mut ReportedHit| finding.normal = finding.normal.map(|normal| -normal);
     let scenes = (0..KIND_NAMES.len() as u64).map(|kind| scene_of_kind(kind, 8));
     for scene in scenes.chain([scene_of_compositions(8)]) {
         let outcome = bites("flipped", &scene, &tampered(&scene, flip), 400);
@@ -211,7 +211,7 @@ fn flipped_normals_are_caught() {
 
 #[test]
 fn wrong_parts_are_caught() {
-    let change = |finding: &mut Finding| {
+    let change = |finding: &mut ReportedHit| {
         let place = finding.place.as_mut().expect("a place");
         place.part = match place.part {
             Part::Side => Part::Cap0,

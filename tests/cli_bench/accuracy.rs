@@ -13,7 +13,7 @@ const SMALL: [&str; 13] = [
     "--seed",
     "5",
     "--formulation",
-    "centre-dot",
+    "center-dot",
     "--formulation",
     "cone-curve",
     "--formulation",
@@ -37,8 +37,8 @@ fn accuracy_json_has_the_promised_keys_and_sensible_figures() {
     assert_eq!(
         names,
         [
-            ("centre-dot", "f32"),
-            ("centre-dot", "f64"),
+            ("center-dot", "f32"),
+            ("center-dot", "f64"),
             ("triple-product", "f64"),
             ("cone-curve", "f32"),
             ("mesh-16", "f32"),
@@ -85,7 +85,7 @@ fn accuracy_report_is_written_whole_and_needs_nothing_else() {
         |name: &str| fs::read_to_string(folder.path().join("new/report").join(name)).unwrap();
     assert_eq!(read("accuracy.csv").lines().count(), 6);
     let (figure, page) = (read("accuracy.svg"), read("index.html"));
-    assert!(page.contains(&figure) && figure.contains(">centre-dot<"));
+    assert!(page.contains(&figure) && figure.contains(">center-dot<"));
 }
 
 #[test]

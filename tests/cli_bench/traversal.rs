@@ -28,8 +28,8 @@ const REPRESENTATIONS: [&str; 19] = [
     "embree_round_packet",
     "embree_sphere",
     "embree_sphere_packet",
-    "embree_disc",
-    "embree_disc_packet",
+    "embree_disk",
+    "embree_disk_packet",
     "mesh_8",
     "mesh_16",
     "mesh_32",
@@ -105,7 +105,7 @@ fn traversal_json_has_every_row_and_ratio_or_its_reason() {
                 "vs_embree_cone",
                 "vs_embree_round",
                 "vs_embree_sphere",
-                "vs_embree_disc",
+                "vs_embree_disk",
                 "vs_mesh_32",
                 "vs_mesh_64",
                 "vs_mesh_faces",
@@ -208,7 +208,7 @@ fn traversal_nested_placements_are_instanced_and_absent_scenes_say_so() {
 }
 
 fn is_of_other_kinds(representation: &str) -> bool {
-    let own = ["embree_round", "embree_sphere", "embree_disc", "mesh_faces"];
+    let own = ["embree_round", "embree_sphere", "embree_disk", "mesh_faces"];
     own.iter().any(|one| representation.starts_with(one))
 }
 
@@ -219,7 +219,7 @@ fn traversal_other_solids_have_rows_and_rivals_of_their_own() {
         ("cuboids_1e5", &["mesh_faces"][..]),
         (
             "disks_1e5",
-            &["embree_disc", "embree_disc_packet", "mesh_8"],
+            &["embree_disk", "embree_disk_packet", "mesh_8"],
         ),
     ];
     for (scene, rivals) in scenes {
@@ -425,7 +425,7 @@ fn traversal_unknown_rival_is_refused_with_the_known_ones() {
     for name in ["cone", "analytic_single"] {
         let (code, out, err) = bench(folder.path(), &["traversal", "--rival", name]);
         assert_eq!((code, out.as_str()), (2, ""));
-        for part in ["one of own, c_callback", "embree_disc_packet", "mesh_faces"] {
+        for part in ["one of own, c_callback", "embree_disk_packet", "mesh_faces"] {
             assert!(err.contains(part), "no {part} in {err}");
         }
         assert!(!err.contains("of analytic"), "{err}");

@@ -259,19 +259,19 @@ fn whole_vector(random: &mut Random, reach: u32) -> DVec3 {
 
 fn leaf(random: &mut Random) -> Composition {
     let size = |random: &mut Random| 1.0 + below(random, 3);
-    let centre = whole_vector(random, 2);
+    let center = whole_vector(random, 2);
     let axis = DVec3::AXES[random.below(3) as usize] * size(random);
     match random.below(8) {
-        0..=2 => cuboid(centre, at(size(random), size(random), size(random))),
-        3 | 4 => cylinder(centre - axis, centre + axis, size(random)),
+        0..=2 => cuboid(center, at(size(random), size(random), size(random))),
+        3 | 4 => cylinder(center - axis, center + axis, size(random)),
         5 => {
             let radius1 = below(random, 3);
-            cone(centre - axis, centre + axis, size(random), radius1)
+            cone(center - axis, center + axis, size(random), radius1)
         }
-        6 => cone(centre - axis, centre + axis, 0.0, size(random)),
+        6 => cone(center - axis, center + axis, 0.0, size(random)),
         _ => {
             let radius = [1.0, 2.0, 3.0, 5.0][random.below(4) as usize];
-            sphere(centre, radius)
+            sphere(center, radius)
         }
     }
 }

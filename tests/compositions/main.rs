@@ -12,8 +12,8 @@ mod wedges;
 
 use cyltrace::math::{Orientation, power_of_two};
 use cyltrace::solid::{
-    AnySolid, Caps, ComposedMeeting, Composition, Cone, Crossing, Cuboid, Cylinder, Location, Part,
-    RoundedCone, SolidKind, Sphere,
+    AnySolid, Caps, ComposedIntersection, Composition, Cone, Crossing, Cuboid, Cylinder, Location,
+    Part, RoundedCone, SolidKind, Sphere,
 };
 use glam::DVec3;
 
@@ -28,16 +28,16 @@ fn cylinder(p0: DVec3, p1: DVec3, radius: f64) -> Composition {
     Composition::Solid(cylinder.into())
 }
 
-fn sphere(centre: DVec3, radius: f64) -> Composition {
-    Composition::Solid(Sphere::new(centre, radius).expect("a sphere").into())
+fn sphere(center: DVec3, radius: f64) -> Composition {
+    Composition::Solid(Sphere::new(center, radius).expect("a sphere").into())
 }
 
-fn cuboid(centre: DVec3, half_widths: DVec3) -> Composition {
-    turned_cuboid(centre, half_widths, Orientation::IDENTITY)
+fn cuboid(center: DVec3, half_widths: DVec3) -> Composition {
+    turned_cuboid(center, half_widths, Orientation::IDENTITY)
 }
 
-fn turned_cuboid(centre: DVec3, half_widths: DVec3, orientation: Orientation) -> Composition {
-    let cuboid = Cuboid::new(centre, half_widths, orientation).expect("a cuboid");
+fn turned_cuboid(center: DVec3, half_widths: DVec3, orientation: Orientation) -> Composition {
+    let cuboid = Cuboid::new(center, half_widths, orientation).expect("a cuboid");
     Composition::Solid(cuboid.into())
 }
 
@@ -46,7 +46,7 @@ fn meetings_in(
     origin: DVec3,
     direction: DVec3,
     range: [f64; 2],
-) -> Vec<ComposedMeeting> {
+) -> Vec<ComposedIntersection> {
     let mut all = Vec::new();
     let from = |anchor| origin - anchor;
     composition.meetings(from, direction, 0.0, range, |met| all.push(met));
@@ -59,12 +59,16 @@ fn meetings_in(
     all
 }
 
-fn meetings(composition: &Composition, origin: DVec3, direction: DVec3) -> Vec<ComposedMeeting> {
+fn meetings(
+    composition: &Composition,
+    origin: DVec3,
+    direction: DVec3,
+) -> Vec<ComposedIntersection> {
     meetings_in(composition, origin, direction, ALL)
 }
 
 /// What is told of meetings in a table.
-fn told(meetings: &[ComposedMeeting]) -> Vec<(f64, Crossing, Part, u32)> {
+fn told(meetings: &[ComposedIntersection]) -> Vec<(f64, Crossing, Part, u32)> {
     let all = meetings.iter();
     all.map(|met| {
         (

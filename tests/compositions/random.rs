@@ -1,7 +1,7 @@
 //! Random trees of operations, and the mouths of bores.
 
 use cyltrace::math::{Orientation, Random};
-use cyltrace::solid::{ComposedMeeting, Composition, Crossing};
+use cyltrace::solid::{ComposedIntersection, Composition, Crossing};
 use glam::DVec3;
 
 use super::support::trees::{draw_solid, draw_tree, holds};
@@ -91,7 +91,7 @@ fn check(tree: &Composition, origin: DVec3, direction: DVec3, figures: &mut Figu
             ends.extend([chord.enter.t, chord.leave.t]);
         }
     }
-    let of_leaves = |met: &ComposedMeeting| ends.contains(&met.meeting.t);
+    let of_leaves = |met: &ComposedIntersection| ends.contains(&met.meeting.t);
     assert!(all.iter().all(of_leaves), "{}", show());
     // Between any two ends the ray is where exact membership says.
     ends.sort_by(f64::total_cmp);

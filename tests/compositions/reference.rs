@@ -37,10 +37,10 @@ fn beyond(solid: &AnySolid, point: DVec3) -> Vec<(Part, f64)> {
         AnySolid::Cylinder(one) => cone(one.p0(), one.p1(), one.radius(), one.radius()),
         AnySolid::Cone(one) => cone(one.p0(), one.p1(), one.radius0(), one.radius1()),
         AnySolid::Sphere(one) => {
-            vec![(Part::Side, (point - one.centre()).length() - one.radius())]
+            vec![(Part::Side, (point - one.center()).length() - one.radius())]
         }
         AnySolid::Cuboid(one) => {
-            let x = point - one.centre();
+            let x = point - one.center();
             let h = one.half_widths();
             vec![
                 (Part::XMin, -x.x - h.x),
@@ -284,11 +284,11 @@ impl<'a> Reference<'a> {
                 AnySolid::Cylinder(one) => cone(one.p0(), one.p1(), one.radius(), one.radius()),
                 AnySolid::Cone(one) => cone(one.p0(), one.p1(), one.radius0(), one.radius1()),
                 AnySolid::Sphere(one) => {
-                    let (x, r) = (origin - one.centre(), one.radius());
+                    let (x, r) = (origin - one.center(), one.radius());
                     quadratic(direction.dot(direction), x.dot(direction), x.dot(x) - r * r);
                 }
                 AnySolid::Cuboid(one) => {
-                    let x = origin - one.centre();
+                    let x = origin - one.center();
                     for axis in 0..3 {
                         for side in [-1.0, 1.0] {
                             let height = x[axis] - side * one.half_widths()[axis];

@@ -146,7 +146,7 @@ fn draw_signs(random: &mut Random) -> DVec3 {
 }
 
 /// A solid with the origin on its surface. Normals are of whole numbers, and those of its
-/// discs are tilted by multiples of `e`.
+/// disks are tilted by multiples of `e`.
 fn draw_through_origin(random: &mut Random, e: f64) -> AnySolid {
     let shift = random.below(3);
     let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
@@ -165,7 +165,7 @@ fn draw_through_origin(random: &mut Random, e: f64) -> AnySolid {
             flat(axis)[random.below(4) as usize].clone()
         }
         2 => cuboid(draw_signs(random), DVec3::ONE),
-        // The rim of a disc.
+        // The rim of a disk.
         3 => cylinder(placed(0.0, 0.0, 1.0), placed(1.0, tilt, 1.0), 1.0),
         4 => sphere(placed(2.0, 0.0, 0.0), 2.0),
         5 => cylinder(placed(1.0, 0.0, -1.0), placed(1.0, 0.0, 2.0), 1.0),

@@ -68,7 +68,7 @@ pub(crate) use {no_packets, one_by_one};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Ball {
-    pub centre: DVec3,
+    pub center: DVec3,
     pub radius: f64,
 }
 
@@ -96,10 +96,10 @@ pub struct Balls(pub Vec<Ball>);
 impl Ball {
     /// Where a ray from outside enters.
     pub fn enter(&self, query: &BallQuery) -> Option<f64> {
-        let to_centre = self.centre - query.origin;
+        let to_center = self.center - query.origin;
         let a = query.direction.length_squared();
-        let b = to_centre.dot(query.direction);
-        let discriminant = b * b - a * (to_centre.length_squared() - self.radius * self.radius);
+        let b = to_center.dot(query.direction);
+        let discriminant = b * b - a * (to_center.length_squared() - self.radius * self.radius);
         let t = (b - discriminant.sqrt()) / a;
         (0.0..=query.t_max).contains(&t).then_some(t)
     }
@@ -108,8 +108,8 @@ impl Ball {
     pub fn bounds(&self) -> Box32 {
         let reach = DVec3::splat(self.radius * 1.001);
         Box32 {
-            lower: (self.centre - reach).as_vec3().to_array(),
-            upper: (self.centre + reach).as_vec3().to_array(),
+            lower: (self.center - reach).as_vec3().to_array(),
+            upper: (self.center + reach).as_vec3().to_array(),
         }
     }
 }
@@ -210,13 +210,13 @@ impl BallQuery {
 pub fn random_balls(seed: u64, count: usize) -> Vec<Ball> {
     let mut random = Random::new(seed, 0);
     let mut coordinate = || random.uniform(-1.0, 1.0);
-    let centres: Vec<DVec3> = (0..count)
+    let centers: Vec<DVec3> = (0..count)
         .map(|_| DVec3::new(coordinate(), coordinate(), coordinate()))
         .collect();
-    centres
+    centers
         .into_iter()
-        .map(|centre| Ball {
-            centre,
+        .map(|center| Ball {
+            center,
             radius: random.log_uniform(1e-3, 0.2),
         })
         .collect()

@@ -1,4 +1,4 @@
-//! Embree's own triangles, straight curves, spheres and discs.
+//! Embree's own triangles, straight curves, spheres and disks.
 
 use cyltrace::embree::{Device, DeviceOptions, Error, NativeHit, Ray32, SceneBuilder};
 
@@ -184,16 +184,16 @@ fn round_curves_end_in_spheres() {
 
 /// With as many normals as fill the last 16 bytes of their buffer, and fewer.
 #[test]
-fn discs_are_met_from_both_sides_within_their_radius() {
+fn disks_are_met_from_both_sides_within_their_radius() {
     for count in [1_u8, 3, 4, 8] {
-        let discs: Vec<[f32; 4]> = (0..count)
+        let disks: Vec<[f32; 4]> = (0..count)
             .map(|i| [10.0 * f32::from(i), 0.0, 1.0, 0.5])
             .collect();
         // Of any length, and the last one tilted.
-        let mut normals = vec![[0.0, 0.0, 3.0]; discs.len()];
+        let mut normals = vec![[0.0, 0.0, 3.0]; disks.len()];
         *normals.last_mut().unwrap() = [1.0, 0.0, 1.0];
         let mut builder = builder();
-        let attached = builder.attach_discs(&discs, &normals).unwrap();
+        let attached = builder.attach_disks(&disks, &normals).unwrap();
         let scene = builder.commit().unwrap();
         let x = 10.0 * f32::from(count - 1);
         for (from, towards) in [(5.0, -1.0), (-5.0, 1.0)] {
@@ -204,7 +204,7 @@ fn discs_are_met_from_both_sides_within_their_radius() {
                 (attached, u32::from(count) - 1)
             );
             assert!(is_near(hit.t, (0.75 - from).abs()), "{hit:?}");
-            // Within the radius of a disc that is seen from above, not of this one.
+            // Within the radius of a disk that is seen from above, not of this one.
             let beside = ray([x + 0.4, 0.0, from], [0.0, 0.0, towards]);
             assert_eq!(scene.closest_native(&beside, &mut ()), None);
             if count > 1 {
@@ -236,17 +236,17 @@ fn spheres_are_met_from_outside_and_from_inside() {
 #[test]
 fn points_bad_input_is_refused_before_embree_sees_it() {
     let mut builder = builder();
-    let disc = [0.0, 0.0, 0.0, 1.0];
+    let disk = [0.0, 0.0, 0.0, 1.0];
     assert_eq!(
-        builder.attach_discs(&[disc], &[]),
+        builder.attach_disks(&[disk], &[]),
         Err(Error::NormalCount {
             normals: 0,
-            discs: 1
+            disks: 1
         })
     );
-    let bad_normal = builder.attach_discs(&[disc], &[[f32::NAN, 0.0, 1.0]]);
+    let bad_normal = builder.attach_disks(&[disk], &[[f32::NAN, 0.0, 1.0]]);
     assert!(bad_normal.is_err());
-    let negative = builder.attach_spheres(&[disc, [0.0, 0.0, 0.0, -1.0]]);
+    let negative = builder.attach_spheres(&[disk, [0.0, 0.0, 0.0, -1.0]]);
     assert!(negative.unwrap_err().to_string().starts_with("vertex 1"));
 }
 

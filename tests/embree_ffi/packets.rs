@@ -157,7 +157,7 @@ fn packets_agree_with_brute_force_for_every_isa_and_width() {
 fn packets_of_parallel_rays_find_the_first_of_a_row() {
     let balls: Vec<Ball> = (0..1000)
         .map(|number| Ball {
-            centre: DVec3::new(0.0, 0.0, f64::from(number)),
+            center: DVec3::new(0.0, 0.0, f64::from(number)),
             radius: 0.25,
         })
         .collect();
@@ -357,7 +357,7 @@ fn packet_width_grows_with_the_instruction_set() {
 fn packets_of_no_rays_and_of_empty_scenes_meet_nothing() {
     let (_, device) = devices().last().expect("Embree has a choice");
     let ball = Ball {
-        centre: DVec3::ZERO,
+        center: DVec3::ZERO,
         radius: 1.0,
     };
     for (balls, active) in [(vec![], RaySet::ALL), (vec![ball], RaySet::EMPTY)] {

@@ -119,7 +119,7 @@ fn queries_of_empty_scenes_miss() {
 #[test]
 fn closest_one_primitive_is_hit_missed_and_bounded() {
     let ball = Ball {
-        centre: DVec3::new(1.0, 2.0, 3.0),
+        center: DVec3::new(1.0, 2.0, 3.0),
         radius: 0.5,
     };
     let scene = scene_of(&device(), &[ball]);
@@ -137,7 +137,7 @@ fn closest_many_geometries_names_the_one_that_was_hit() {
     let mut builder = SceneBuilder::new(&device()).unwrap();
     let balls: Vec<Ball> = (0..1000)
         .map(|number| Ball {
-            centre: DVec3::new(f64::from(number), 0.0, 0.0),
+            center: DVec3::new(f64::from(number), 0.0, 0.0),
             radius: 0.25,
         })
         .collect();
@@ -147,7 +147,7 @@ fn closest_many_geometries_names_the_one_that_was_hit() {
     }
     let scene = builder.commit().unwrap();
     for (number, ball) in (0..).zip(&balls) {
-        let mut query = BallQuery::new(ball.centre - DVec3::Z, DVec3::Z);
+        let mut query = BallQuery::new(ball.center - DVec3::Z, DVec3::Z);
         let hit = scene.closest_native(&query.ray(), &mut query).unwrap();
         assert_eq!(
             (hit.geometry.0, hit.primitive, hit.normal),
@@ -162,7 +162,7 @@ fn closest_many_geometries_names_the_one_that_was_hit() {
 fn closest_accepted_hit_shortens_the_ray() {
     let balls: Vec<Ball> = (0..1000)
         .map(|number| Ball {
-            centre: DVec3::new(0.0, 0.0, f64::from(number)),
+            center: DVec3::new(0.0, 0.0, f64::from(number)),
             radius: 0.25,
         })
         .collect();
@@ -234,7 +234,7 @@ impl UserGeometry for Level {
 #[test]
 fn nested_queries_64_levels_reach_the_innermost_scene() {
     let ball = Ball {
-        centre: DVec3::ZERO,
+        center: DVec3::ZERO,
         radius: 0.5,
     };
     let check = move || {

@@ -30,8 +30,8 @@ fn leaf(solid: impl Into<AnySolid>) -> Composition {
 
 /// The box between two corners.
 fn block(lower: DVec3, upper: DVec3) -> Composition {
-    let (centre, half_widths) = ((lower + upper) / 2.0, (upper - lower) / 2.0);
-    leaf(Cuboid::new(centre, half_widths, Orientation::IDENTITY).expect("a cuboid"))
+    let (center, half_widths) = ((lower + upper) / 2.0, (upper - lower) / 2.0);
+    leaf(Cuboid::new(center, half_widths, Orientation::IDENTITY).expect("a cuboid"))
 }
 
 fn cylinder(p0: DVec3, p1: DVec3, radius: f64) -> Composition {
@@ -42,8 +42,8 @@ fn cone(p0: DVec3, p1: DVec3, radii: [f64; 2]) -> Composition {
     leaf(Cone::new(p0, p1, radii[0], radii[1], Caps::Both).expect("a cone"))
 }
 
-fn sphere(centre: DVec3, radius: f64) -> Composition {
-    leaf(Sphere::new(centre, radius).expect("a sphere"))
+fn sphere(center: DVec3, radius: f64) -> Composition {
+    leaf(Sphere::new(center, radius).expect("a sphere"))
 }
 
 /// The hits of a ray from a point; each must have a face to name.

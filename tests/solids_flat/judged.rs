@@ -36,10 +36,10 @@ impl Judged for Sphere {
 
     fn distance(&self, part: Part, point: DVec3) -> f64 {
         assert_eq!(part, Part::Side);
-        let (from_centre, r) = (between(self.centre(), point), exact(self.radius()));
+        let (from_center, r) = (between(self.center(), point), exact(self.radius()));
         // The difference of the squares over the sum.
-        let off = to_f64(&(from_centre.dot(&from_centre) - &r * &r)).abs();
-        off / (from_centre.length() + self.radius())
+        let off = to_f64(&(from_center.dot(&from_center) - &r * &r)).abs();
+        off / (from_center.length() + self.radius())
     }
 }
 
@@ -72,7 +72,7 @@ impl Judged for Cuboid {
         };
         let frame = self.orientation().world_from_object();
         let offs = [0, 1, 2].map(|axis| {
-            let own = ExactVector::new(frame.col(axis)).dot(&between(self.centre(), point));
+            let own = ExactVector::new(frame.col(axis)).dot(&between(self.center(), point));
             let half_width = self.half_widths()[axis];
             if axis == face {
                 to_f64(&(own - exact(side * half_width))).abs()
@@ -105,9 +105,9 @@ impl Judged for Disk {
 
     fn distance(&self, part: Part, point: DVec3) -> f64 {
         assert_eq!(part, Part::Side);
-        let from_centre = between(self.centre(), point);
-        let height = to_f64(&ExactVector::new(self.normal()).dot(&from_centre)).abs();
-        let over = from_centre.length() - self.radius();
+        let from_center = between(self.center(), point);
+        let height = to_f64(&ExactVector::new(self.normal()).dot(&from_center)).abs();
+        let over = from_center.length() - self.radius();
         (height / self.normal().length()).max(over)
     }
 }

@@ -308,7 +308,7 @@ fn containment_is_exact_next_to_the_surface() {
     }
 }
 
-/// The corners are `centre + F⁻¹ y`, here by the adjugate.
+/// The corners are `center + F⁻¹ y`, here by the adjugate.
 #[test]
 fn bounds_of_cuboids_hold_their_exact_corners() {
     for family in [
@@ -328,7 +328,7 @@ fn bounds_of_cuboids_hold_their_exact_corners() {
             for corner in 0..8 {
                 let side = |bit: u32| if corner >> bit & 1 == 0 { -1.0 } else { 1.0 };
                 let own = cuboid.half_widths() * DVec3::new(side(0), side(1), side(2));
-                let corner = &scaled(cuboid.centre()) + &adjugate.times(&ExactVector::new(own));
+                let corner = &scaled(cuboid.center()) + &adjugate.times(&ExactVector::new(own));
                 for axis in 0..3 {
                     let within = lower.0[axis] <= corner.0[axis] && corner.0[axis] <= upper.0[axis];
                     assert!(within, "{cuboid:?} {own} {bounds:?}");
@@ -345,8 +345,8 @@ fn numbers_that_are_none_are_misses() {
         let Some((cuboid, ray)) = family.case(SEED, 1, Inputs::F32) else {
             continue;
         };
-        let sphere = Sphere::new(cuboid.centre(), cuboid.half_widths().x).unwrap();
-        let disk = Disk::new(cuboid.centre(), DVec3::Z, cuboid.half_widths().x).unwrap();
+        let sphere = Sphere::new(cuboid.center(), cuboid.half_widths().x).unwrap();
+        let disk = Disk::new(cuboid.center(), DVec3::Z, cuboid.half_widths().x).unwrap();
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let axis = random.below(3) as usize;
             let (mut x, mut d) = (ray.origin, ray.direction);

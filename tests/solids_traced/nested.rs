@@ -114,8 +114,8 @@ impl Nest {
         ray: &Ray,
         found: &[(Part, Crossing)],
     ) -> bool {
-        let centre = self.exact.point(&ExactVector::new(solid.centre()));
-        let way = centre.rounded() - ray.origin;
+        let center = self.exact.point(&ExactVector::new(solid.center()));
+        let way = center.rounded() - ray.origin;
         let t = way.length() / ray.direction.length();
         let displacement = self.displacement(solid, ray, t);
         (0..64).any(|_| {

@@ -47,18 +47,18 @@ fn moved(solid: &AnySolid, image: &DAffine3) -> AnySolid {
             RoundedCone::new(p0, p1, r0, r1).unwrap().into()
         }
         AnySolid::Sphere(one) => {
-            let centre = point(one.centre());
-            Sphere::new(centre, one.radius() * scale).unwrap().into()
+            let center = point(one.center());
+            Sphere::new(center, one.radius() * scale).unwrap().into()
         }
         AnySolid::Cuboid(one) => {
             let half_widths = image.transform_vector3(one.half_widths()).abs();
-            Cuboid::new(point(one.centre()), half_widths, Orientation::IDENTITY)
+            Cuboid::new(point(one.center()), half_widths, Orientation::IDENTITY)
                 .unwrap()
                 .into()
         }
         AnySolid::Disk(one) => {
             let normal = image.transform_vector3(one.normal());
-            Disk::new(point(one.centre()), normal, one.radius() * scale)
+            Disk::new(point(one.center()), normal, one.radius() * scale)
                 .unwrap()
                 .into()
         }

@@ -109,13 +109,13 @@ pub fn ray_through(random: &mut Random) -> Ray {
     Ray::new(from - (to - from).normalize() * back, direction)
 }
 
-/// A ray from up to 100 away that passes a solid's centre by up to half its size.
+/// A ray from up to 100 away that passes a solid's center by up to half its size.
 pub fn ray_near(random: &mut Random, solid: &AnySolid) -> Ray {
     let heading = random.direction();
     let aside = random.direction() * (0.5 * solid.size() * random.unit());
     let back = heading * random.log_uniform(4.0, 100.0);
     let direction = heading * random.log_uniform(1e-3, 1e3);
-    Ray::new(solid.centre() + aside - back, direction)
+    Ray::new(solid.center() + aside - back, direction)
 }
 
 /// The kinds by number.

@@ -23,13 +23,13 @@ pub fn draw_solid(random: &mut Random, is_coarse: bool, turn: Orientation) -> An
         DVec3::new(one(), one(), one())
     };
     let size = |random: &mut Random| number(random, 0.3, 1.5, is_coarse).max(0.25);
-    let centre = turn.to_world(vector(random));
+    let center = turn.to_world(vector(random));
     let axis = if is_coarse {
         DVec3::AXES[random.below(3) as usize] * size(random)
     } else {
         random.direction() * size(random)
     };
-    let ends = (centre - turn.to_world(axis), centre + turn.to_world(axis));
+    let ends = (center - turn.to_world(axis), center + turn.to_world(axis));
     let (radius0, radius1) = (size(random), size(random));
     match random.below(5) {
         0 => Cylinder::new(ends.0, ends.1, radius0, Caps::Both)
@@ -41,10 +41,10 @@ pub fn draw_solid(random: &mut Random, is_coarse: bool, turn: Orientation) -> An
         2 => RoundedCone::new(ends.0, ends.1, radius0, radius1)
             .expect("a hull")
             .into(),
-        3 => Sphere::new(centre, radius0).expect("a sphere").into(),
+        3 => Sphere::new(center, radius0).expect("a sphere").into(),
         _ => {
             let half_widths = DVec3::new(radius0, radius1, size(random));
-            Cuboid::new(centre, half_widths, turn)
+            Cuboid::new(center, half_widths, turn)
                 .expect("a cuboid")
                 .into()
         }

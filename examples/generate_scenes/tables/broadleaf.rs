@@ -54,15 +54,15 @@ fn trunk() -> Skeleton {
 /// uneven outline and the gaps that let light in.
 fn attractors() -> Vec<DVec3> {
     let mut random = Random::new(SEED, 1);
-    let centre = DVec3::new(0.0, 0.0, 8.6);
-    let mut clumps = vec![(centre, 2.6)];
+    let center = DVec3::new(0.0, 0.0, 8.6);
+    let mut clumps = vec![(center, 2.6)];
     for index in 0..17 {
         let height = (f64::from(index) + random.unit()) / 17.0 * 1.8 - 0.8;
         let across = (1.0 - height * height).max(0.0).sqrt();
         let turn = f64::from(index) * 2.4 + random.uniform(-0.5, 0.5);
         let (sin, cos) = libm::sincos(turn);
         let offset = DVec3::new(3.3 * across * cos, 3.3 * across * sin, 4.0 * height);
-        clumps.push((centre + offset, random.uniform(1.2, 2.0)));
+        clumps.push((center + offset, random.uniform(1.2, 2.0)));
     }
     (0..ATTRACTORS)
         .map(|_| {

@@ -1,6 +1,6 @@
 //! Where the ten thousand trees stand, and the land under them.
 //!
-//! The land is made of cylinders too: a disc for the plain, and cylinders that
+//! The land is made of cylinders too: a disk for the plain, and cylinders that
 //! lie half sunk in it for the hills. Trees keep a distance from each other,
 //! leave a glade free in front of the camera, and sort themselves into groves
 //! of one kind.

@@ -1,6 +1,6 @@
 //! One layer of an octet truss, the stiffest lattice for its weight.
 //!
-//! The nodes are those of a face-centred cubic crystal; every node is joined to
+//! The nodes are those of a face-centerd cubic crystal; every node is joined to
 //! its twelve nearest neighbours. A round hole goes through the block, and the
 //! struts are thicker near it, as a designer would have them where the load is.
 

@@ -77,7 +77,7 @@ impl<R: Rival> Formulation for R {
 /// tree to walk.
 const CYLINDERS_TIMED: usize = 256;
 
-/// Cylinders whose memory is measured: with both discs, side by side.
+/// Cylinders whose memory is measured: with both disks, side by side.
 fn measured_cylinders() -> Vec<Cylinder> {
     (0..CYLINDERS_TIMED)
         .map(|index| {

@@ -68,14 +68,14 @@ impl Native {
         builder.commit()
     }
 
-    /// A mesh has its walls first and its discs after them, in the order of
+    /// A mesh has its walls first and its disks after them, in the order of
     /// the ends. A curve does not say; its normal is along the axis on the
-    /// discs and across it on the wall.
+    /// disks and across it on the wall.
     fn part(&self, cylinder: &Cylinder, hit: &NativeHit, normal: DVec3) -> Part {
         let at_p1 = match self.shape {
             Shape::Mesh(sides) if hit.primitive < 2 * sides => return Part::Side,
             Shape::Mesh(sides) => !cylinder.caps().at_p0() || hit.primitive >= 3 * sides,
-            Shape::Cone | Shape::Round | Shape::Sphere | Shape::Disc | Shape::Faces => {
+            Shape::Cone | Shape::Round | Shape::Sphere | Shape::Disk | Shape::Faces => {
                 let axis = cylinder.p1() - cylinder.p0();
                 let along = normal.dot(axis);
                 if along * along < 0.5 * normal.length_squared() * axis.length_squared() {

@@ -2,10 +2,10 @@
 //!
 //! All of it is stated as Embree wants it, so that it is the same solid but for f32:
 //!
-//! - a cone curve is flat at its ends, each of which has a disc or is open;
+//! - a cone curve is flat at its ends, each of which has a disk or is open;
 //! - a round linear curve is the two balls and the cone that touches them;
 //! - a sphere point is a ball; a ray that starts within it meets it from inside;
-//! - an oriented disc point is met from both sides.
+//! - an oriented disk point is met from both sides.
 
 use glam::DVec3;
 
@@ -23,7 +23,7 @@ pub enum Shape {
     /// A `SPHERE_POINT`: spheres.
     Sphere,
     /// An `ORIENTED_DISC_POINT`: disks.
-    Disc,
+    Disk,
     /// The inscribed mesh with so many sides: all solids that are turned about an axis.
     Mesh(u32),
     /// The triangles of a cuboid's faces.
@@ -38,7 +38,7 @@ impl Shape {
             Self::Cone => matches!(kind, SolidKind::Cylinder | SolidKind::Cone),
             Self::Round => kind == SolidKind::RoundedCone,
             Self::Sphere => kind == SolidKind::Sphere,
-            Self::Disc => kind == SolidKind::Disk,
+            Self::Disk => kind == SolidKind::Disk,
             Self::Mesh(_) => matches!(
                 kind,
                 SolidKind::Cylinder
@@ -87,9 +87,9 @@ impl Shape {
                 let spheres: Vec<[f32; 4]> = solids.map(|solid| sphere(&solid)).collect();
                 builder.attach_spheres(&spheres)?;
             }
-            Self::Disc => {
-                let (discs, normals): (Vec<_>, Vec<_>) = solids.map(|solid| disc(&solid)).unzip();
-                builder.attach_discs(&discs, &normals)?;
+            Self::Disk => {
+                let (disks, normals): (Vec<_>, Vec<_>) = solids.map(|solid| disk(&solid)).unzip();
+                builder.attach_disks(&disks, &normals)?;
             }
             Self::Mesh(sides) => attach_meshes(builder, solids, sides)?,
             Self::Faces => attach_meshes(builder, solids, ANY_SIDES)?,
@@ -101,7 +101,7 @@ impl Shape {
     #[must_use]
     pub fn primitives(self, solid: &AnySolid) -> u64 {
         match self {
-            Self::Cone | Self::Round | Self::Sphere | Self::Disc => 1,
+            Self::Cone | Self::Round | Self::Sphere | Self::Disk => 1,
             Self::Mesh(sides) => mesh_size_of(solid, sides).1,
             Self::Faces => mesh_size_of(solid, ANY_SIDES).1,
         }
@@ -142,7 +142,7 @@ impl Segments {
             segments
                 .vertices
                 .extend(vertices.map(|(end, radius)| vertex(end, radius)));
-            // An end without disc is one that a neighbour continues.
+            // An end without disk is one that a neighbour continues.
             segments.neighbours.push(match caps {
                 Caps::Both => 0,
                 Caps::P1 => 1,
@@ -156,17 +156,17 @@ impl Segments {
 
 fn sphere(solid: &AnySolid) -> [f32; 4] {
     match solid {
-        AnySolid::Sphere(one) => vertex(one.centre(), one.radius()),
+        AnySolid::Sphere(one) => vertex(one.center(), one.radius()),
         other => stray(other, "sphere"),
     }
 }
 
-/// The disc and its normal.
-fn disc(solid: &AnySolid) -> ([f32; 4], [f32; 3]) {
+/// The disk and its normal.
+fn disk(solid: &AnySolid) -> ([f32; 4], [f32; 3]) {
     match solid {
         AnySolid::Disk(one) => {
             let normal = one.normal().as_vec3().to_array();
-            (vertex(one.centre(), one.radius()), normal)
+            (vertex(one.center(), one.radius()), normal)
         }
         other => stray(other, "disc"),
     }

@@ -48,7 +48,7 @@ impl Spaced {
                 (index / side / side) as f64,
             );
             let grid = cell - 0.5 * (side - 1) as f64;
-            grid * (2.0 * GAP * reach) - centre(&placed[index])
+            grid * (2.0 * GAP * reach) - center(&placed[index])
         };
         let cylinders = placed
             .iter()
@@ -59,7 +59,7 @@ impl Spaced {
             .map(|number| {
                 let index = number % placed.len();
                 let turned = turned(&placed[index], (number / placed.len()) as f64 * TURN);
-                let t_max = leaves_ball(&turned, centre(&placed[index]), reach);
+                let t_max = leaves_ball(&turned, center(&placed[index]), reach);
                 Ray {
                     origin: rounded(turned.origin + shift(index)),
                     direction: rounded(turned.direction),
@@ -76,17 +76,17 @@ fn rounded(point: DVec3) -> DVec3 {
     point.as_vec3().as_dvec3()
 }
 
-fn centre(problem: &Problem) -> DVec3 {
+fn center(problem: &Problem) -> DVec3 {
     0.5 * (problem.cylinder.p0() + problem.cylinder.p1())
 }
 
-/// The radius of a ball about the cylinder's centre that holds the cylinder
+/// The radius of a ball about the cylinder's center that holds the cylinder
 /// and the ray's origin.
 fn ball_radius(problem: &Problem) -> f64 {
     let cylinder = &problem.cylinder;
     let half_length = 0.5 * (cylinder.p1() - cylinder.p0()).length();
     let corner = (half_length * half_length + cylinder.radius() * cylinder.radius()).sqrt();
-    corner.max((problem.ray.origin - centre(problem)).length())
+    corner.max((problem.ray.origin - center(problem)).length())
 }
 
 fn moved(cylinder: &Cylinder, shift: DVec3) -> Cylinder {
@@ -113,9 +113,9 @@ fn turned(problem: &Problem, angle: f64) -> Ray {
 }
 
 /// Where a ray that starts within the ball leaves it: the greater root of
-/// `|origin + t direction - centre|² = radius²`.
-fn leaves_ball(ray: &Ray, centre: DVec3, radius: f64) -> f64 {
-    let (from, d) = (ray.origin - centre, ray.direction);
+/// `|origin + t direction - center|² = radius²`.
+fn leaves_ball(ray: &Ray, center: DVec3, radius: f64) -> f64 {
+    let (from, d) = (ray.origin - center, ray.direction);
     let (a, b) = (d.dot(d), from.dot(d));
     let c = from.dot(from) - radius * radius;
     (-b + (b * b - a * c).max(0.0).sqrt()) / a

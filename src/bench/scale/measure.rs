@@ -8,12 +8,12 @@ use glam::{DAffine3, DQuat, DVec3};
 use super::growth::Fits;
 use crate::bench::timing::Timer;
 use crate::bench::traversal::{
-    Crew, Kind, Lap, Rays, camera_rays, race, random_rays, run_ours, sticks,
+    Kind, Rays, Sample, Workers, camera_rays, interleave, random_rays, run_ours, sticks,
 };
 use crate::math::Random;
 use crate::report::readable;
 use crate::scene::{
-    Contents, OtherSolids, PlacedCount, Placement, Prototype, PrototypeIndex, Records, Scene,
+    ExpectedCounts, OtherSolids, PlacedCount, Placement, Prototype, PrototypeIndex, Records, Scene,
 };
 use crate::tracer::{Layout, MemoryEstimate, Options, Tracer};
 
@@ -62,7 +62,7 @@ impl Series {
 
     /// Bytes that a scene of the series takes, before there is one.
     fn estimate(self, n: usize) -> u64 {
-        let contents = |cylinders: usize, placements: usize| Contents {
+        let contents = |cylinders: usize, placements: usize| ExpectedCounts {
             name: String::new(),
             cylinders: cylinders as u64,
             records: Records::F64,
@@ -116,7 +116,7 @@ pub struct Plan {
     /// Chooses scenes and rays.
     pub seed: u64,
     /// The threads that trace.
-    pub crew: Crew,
+    pub workers: Workers,
     /// Scenes that would take more bytes are left out.
     pub max_memory: u64,
     /// How scenes are built.
@@ -196,7 +196,7 @@ impl Scale {
             sizes.map(row).collect()
         });
         Self {
-            threads: plan.crew.threads,
+            threads: plan.workers.threads,
             rows,
         }
     }
@@ -239,13 +239,13 @@ fn measure(
     let bounds = tracer.bounds();
     let mut rate = |kind, rays| {
         let rays = Rays::new(kind, rays);
-        let lap = Lap {
-            crew: &plan.crew,
+        let sample = Sample {
+            workers: &plan.workers,
             count: plan.rays,
             run: Box::new(|range| run_ours(&tracer, &rays, range, true)),
         };
-        let times = race(timer, &[lap], plan.rounds);
-        plan.rays as f64 / times[0].lap().median
+        let times = interleave(timer, &[sample], plan.rounds);
+        plan.rays as f64 / times[0].sample().median
     };
     let rays_per_s = rate(Kind::Coherent, camera_rays(&scene, &bounds, plan.rays));
     let random = random_rays(&bounds, plan.rays, plan.seed);
@@ -280,7 +280,7 @@ mod tests {
             rays: 256,
             rounds: 1,
             seed: 2,
-            crew: Crew::new(1).unwrap(),
+            workers: Workers::new(1).unwrap(),
             max_memory: Series::Placements.estimate(1000),
             options: Options::default(),
         };

@@ -161,12 +161,12 @@ pub fn growths(found: &Scale) -> [String; 2] {
     Series::ALL.map(|series| growth(found, series))
 }
 
-/// The page: figures, growth and the table. `circumstances` say where and how it
+/// The page: figures, growth and the table. `environment` says where and how it
 /// was measured.
 #[must_use]
-pub fn page(found: &Scale, circumstances: &str) -> String {
+pub fn page(found: &Scale, environment: &str) -> String {
     let mut page = Page::new("Larger and larger scenes: time, memory and rays");
-    page.note(&format!("On {} threads. {circumstances}", found.threads));
+    page.note(&format!("On {} threads. {environment}", found.threads));
     for sentence in growths(found) {
         page.paragraph(&sentence);
     }

@@ -6,7 +6,7 @@ use super::rays::Kind;
 use super::representation::Representation;
 use super::scenes::SceneName;
 
-/// Each side at its best, on the first crew's threads.
+/// Each side at its best, on the first set of workers' threads.
 pub struct Best<'a> {
     /// The scene.
     pub scene: SceneName,

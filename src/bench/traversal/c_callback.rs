@@ -169,7 +169,7 @@ impl Representative for CCallback {
 #[cfg(test)]
 mod tests {
     use super::super::ours;
-    use super::super::thicket::sticks;
+    use super::super::random_scene::sticks;
     use super::*;
     use crate::tracer::Options;
 

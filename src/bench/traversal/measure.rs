@@ -13,11 +13,11 @@ use std::time::Instant;
 
 use super::building::build;
 use super::flat::Flat;
+use super::interleave::{Sample, Times, Workers, interleave};
 use super::order::{Order, sorted};
 use super::ours;
 use super::outcome::{Figures, Row, Traversal};
 use super::plan::Plan;
-use super::race::{Crew, Lap, Times, race};
 use super::rays::{Kind, Rays};
 use super::representation::{Representation, Representative};
 use super::scenes::SceneName;
@@ -53,7 +53,11 @@ impl Traversal {
         }
         Self {
             scenes: plan.scenes.clone(),
-            threads: plan.crews.iter().map(|crew| crew.threads).collect(),
+            threads: plan
+                .worker_sets
+                .iter()
+                .map(|workers| workers.threads)
+                .collect(),
             rows,
         }
     }
@@ -146,8 +150,13 @@ impl<'a> Course<'a> {
     fn absent(&mut self, representation: Representation, reason: &str) {
         let plan = self.plan;
         for rays in Kind::ALL {
-            for crew in &plan.crews {
-                self.push(rays, representation, crew.threads, Err(reason.to_owned()));
+            for workers in &plan.worker_sets {
+                self.push(
+                    rays,
+                    representation,
+                    workers.threads,
+                    Err(reason.to_owned()),
+                );
             }
         }
     }
@@ -170,21 +179,21 @@ impl<'a> Course<'a> {
     }
 
     /// Times this library's modes, and answers with the fastest by rays and
-    /// crew.
+    /// workers.
     fn run_ours(&mut self, field: &Field, timer: &mut dyn Timer) -> Vec<Vec<usize>> {
         let plan = self.plan;
         let mut fastest = Vec::new();
         for asked in &field.rays {
             let rays = &asked.rays;
             let mut by_crew = Vec::new();
-            for crew in &plan.crews {
-                let laps: Vec<Lap<'_>> = field
+            for workers in &plan.worker_sets {
+                let samples: Vec<Sample<'_>> = field
                     .ours
                     .iter()
-                    .map(|(_, ours, _)| lap(ours.as_ref(), rays, crew))
+                    .map(|(_, ours, _)| sample(ours.as_ref(), rays, workers))
                     .collect();
-                let times = race(timer, &laps, plan.rounds);
-                let seconds: Vec<Spread> = times.iter().map(Times::lap).collect();
+                let times = interleave(timer, &samples, plan.rounds);
+                let seconds: Vec<Spread> = times.iter().map(Times::sample).collect();
                 let order =
                     |a: &usize, b: &usize| seconds[*a].median.total_cmp(&seconds[*b].median);
                 by_crew.push((0..seconds.len()).min_by(order).unwrap_or(0));
@@ -198,7 +207,7 @@ impl<'a> Course<'a> {
                         ratio: None,
                     };
                     let found = figures(field, asked, entry);
-                    self.push(rays.kind, *mode, crew.threads, found);
+                    self.push(rays.kind, *mode, workers.threads, found);
                 }
             }
             fastest.push(by_crew);
@@ -217,19 +226,19 @@ impl<'a> Course<'a> {
     ) {
         let plan = self.plan;
         for (asked, fastest) in field.rays.iter().zip(fastest) {
-            for (crew, &fastest) in plan.crews.iter().zip(fastest) {
+            for (workers, &fastest) in plan.worker_sets.iter().zip(fastest) {
                 let against = match representation {
                     Representation::CCallback => 0,
                     _ => fastest,
                 };
                 let (mode, ours, _) = &field.ours[against];
                 let mut race_in = |rays| {
-                    let laps = [
-                        lap(ours.as_ref(), &asked.rays, crew),
-                        lap(rival.as_ref(), rays, crew),
+                    let samples = [
+                        sample(ours.as_ref(), &asked.rays, workers),
+                        sample(rival.as_ref(), rays, workers),
                     ];
-                    let times = race(timer, &laps, plan.rounds);
-                    (times[1].lap(), times[1].over(&times[0]))
+                    let times = interleave(timer, &samples, plan.rounds);
+                    (times[1].sample(), times[1].over(&times[0]))
                 };
                 let mut order = Order::Given;
                 let (mut lap_s, mut ratio) = race_in(&asked.rays);
@@ -249,15 +258,19 @@ impl<'a> Course<'a> {
                     ratio: Some((ratio, *mode)),
                 };
                 let found = figures(field, asked, entry);
-                self.push(asked.rays.kind, representation, crew.threads, found);
+                self.push(asked.rays.kind, representation, workers.threads, found);
             }
         }
     }
 }
 
-fn lap<'a>(representative: &'a dyn Representative, rays: &'a Rays, crew: &'a Crew) -> Lap<'a> {
-    Lap {
-        crew,
+fn sample<'a>(
+    representative: &'a dyn Representative,
+    rays: &'a Rays,
+    workers: &'a Workers,
+) -> Sample<'a> {
+    Sample {
+        workers,
         count: rays.wide.len(),
         run: Box::new(|range| representative.run(rays, range)),
     }
@@ -325,7 +338,7 @@ mod tests {
             rounds: 1,
             seed: 4,
             rivals: Representation::ALL.to_vec(),
-            crews: vec![Crew::new(1).unwrap(), Crew::new(2).unwrap()],
+            worker_sets: vec![Workers::new(1).unwrap(), Workers::new(2).unwrap()],
             // Room for 32 triangles a cylinder, not for 64.
             max_memory: 48 * 10_000 * BYTES_PER_PRIMITIVE,
             options: Options::default(),

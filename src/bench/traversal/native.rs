@@ -190,8 +190,8 @@ impl Representative for Native {
 #[cfg(test)]
 mod tests {
     use super::super::ours;
+    use super::super::random_scene::{random_scene, sticks};
     use super::super::representation::Representation;
-    use super::super::thicket::{sticks, thicket};
     use super::super::witness::Witness;
     use super::*;
     use crate::solid::SolidKind;
@@ -234,10 +234,10 @@ mod tests {
     #[test]
     fn embree_s_own_solids_are_nearly_those_that_they_represent() {
         use Representation::{
-            EmbreeConePacket, EmbreeDiscPacket, EmbreeRoundPacket, EmbreeSpherePacket, Mesh64,
+            EmbreeConePacket, EmbreeDiskPacket, EmbreeRoundPacket, EmbreeSpherePacket, Mesh64,
             MeshFaces,
         };
-        let of = |kind| thicket(kind, 1000, SEED);
+        let of = |kind| random_scene(kind, 1000, SEED);
         agrees(
             sticks(1000, SEED),
             &[(EmbreeConePacket, 1e-2), (Mesh64, 0.1)],
@@ -256,7 +256,7 @@ mod tests {
         );
         agrees(
             of(SolidKind::Disk),
-            &[(EmbreeDiscPacket, 1e-2), (Mesh64, 0.1)],
+            &[(EmbreeDiskPacket, 1e-2), (Mesh64, 0.1)],
         );
         agrees(of(SolidKind::Cuboid), &[(MeshFaces, 1e-2)]);
     }

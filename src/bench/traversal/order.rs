@@ -5,7 +5,7 @@
 //! with both and the faster one counts. Sorting is not part of a rival's time; it is part
 //! of this library's.
 
-use super::race::PIECE;
+use super::interleave::PIECE;
 use super::rays::Rays;
 use crate::tracer::Tracer;
 
@@ -45,8 +45,8 @@ mod tests {
     use std::sync::Arc;
 
     use super::super::flat::Flat;
+    use super::super::random_scene::sticks;
     use super::super::rays::Kind;
-    use super::super::thicket::sticks;
     use super::*;
     use crate::tracer::Options;
 

@@ -9,7 +9,7 @@ use crate::bench::statistics::Spread;
 /// What was found of a representation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figures {
-    /// Nanoseconds a ray: of the whole crew, so that two threads take half.
+    /// Nanoseconds a ray: of all workers together, so that two threads take half.
     pub ns: Spread,
     /// Rays with a wrong answer, of those that the oracle judged.
     pub wrong_percent: f64,
@@ -93,8 +93,8 @@ pub const RIVALS: [(&str, &[Representation]); 7] = [
         ],
     ),
     (
-        "vs_embree_disc",
-        &[Representation::EmbreeDisc, Representation::EmbreeDiscPacket],
+        "vs_embree_disk",
+        &[Representation::EmbreeDisk, Representation::EmbreeDiskPacket],
     ),
     ("vs_mesh_32", &[Representation::Mesh32]),
     ("vs_mesh_64", &[Representation::Mesh64]),
@@ -106,14 +106,14 @@ pub const RIVALS: [(&str, &[Representation]); 7] = [
 pub struct Traversal {
     /// The scenes, in the order of [`Plan::scenes`](super::Plan::scenes).
     pub scenes: Vec<SceneName>,
-    /// The threads, in the order of [`Plan::crews`](super::Plan::crews).
+    /// The threads, in the order of [`Plan::worker_sets`](super::Plan::worker_sets).
     pub threads: Vec<usize>,
     /// The rows: by scene, rays, representation and threads.
     pub rows: Vec<Row>,
 }
 
 impl Traversal {
-    /// How many times faster this library is, on the first crew's threads, than
+    /// How many times faster this library is, on the first set of workers' threads, than
     /// the fastest of some representations; or why there is no such number. The fastest
     /// is the one with the least ratio: ratios are of neighbouring measurements, times
     /// depend on what else the machine did.

@@ -7,7 +7,7 @@ use super::outcome::{Figures, Row, Traversal};
 use super::rays::Kind;
 use super::representation::Representation;
 use super::scenes::SceneName;
-use crate::bench::machine::Circumstances;
+use crate::bench::machine::Environment;
 use crate::report::{self, Figure, Mark, Page, Series, Symbol, csv};
 
 /// The kinds of representations in a figure: legend, symbol, whether they are
@@ -90,7 +90,7 @@ pub fn figures(found: &Traversal) -> Vec<Shown> {
     shown
 }
 
-/// One figure of the first crew's rows; none if nothing was measured.
+/// One figure of the first set of workers' rows; none if nothing was measured.
 fn figure(
     found: &Traversal,
     scene: SceneName,
@@ -162,12 +162,12 @@ const CSV_HEADINGS: [&str; 20] = [
 
 /// The table as CSV, numbers in full; a cell is empty where there is none.
 #[must_use]
-pub fn table(found: &Traversal, here: &Circumstances) -> String {
+pub fn table(found: &Traversal, here: &Environment) -> String {
     let rows = found.rows.iter().map(|row| cells(row, here));
     csv(&CSV_HEADINGS, &rows.collect::<Vec<_>>())
 }
 
-fn cells(row: &Row, here: &Circumstances) -> Vec<String> {
+fn cells(row: &Row, here: &Environment) -> Vec<String> {
     let figures = row.found.as_ref().ok();
     let number = |of: fn(&Figures) -> Option<f64>| {
         let number = figures.and_then(of);
@@ -240,11 +240,11 @@ pub fn summary(row: &Row) -> Vec<String> {
 }
 
 /// The page: how many times faster, the figures, how to read them, the table
-/// and what is missing. `circumstances` say where and how it was measured.
+/// and what is missing. `environment` says where and how it was measured.
 #[must_use]
-pub fn page(found: &Traversal, circumstances: &str) -> String {
+pub fn page(found: &Traversal, environment: &str) -> String {
     let mut page = Page::new("Rays through whole scenes: time, error and memory");
-    page.note(circumstances);
+    page.note(environment);
     page.heading("Beside Embree's own geometry");
     let best = found.best();
     page.table(
@@ -351,7 +351,7 @@ mod tests {
 
     #[test]
     fn table_null_rows_say_why() {
-        let mut here = Circumstances::here(None, 1, 2, 3);
+        let mut here = Environment::here(None, 1, 2, 3);
         (here.processor, here.embree, here.isa) = ("Fast, Inc.".into(), "4.3.1".into(), "avx2");
         let text = table(&sample(), &here);
         let lines: Vec<&str> = text.lines().collect();
@@ -371,7 +371,7 @@ mod tests {
         let text = page(&sample(), "here");
         // Once, although of two kinds of rays; and no column for what no scene has.
         assert_eq!(text.matches("mesh_64 of lattice").count(), 1);
-        assert!(text.contains("vs_embree_cone") && !text.contains("vs_embree_disc"));
+        assert!(text.contains("vs_embree_cone") && !text.contains("vs_embree_disk"));
         for part in [
             "<td>1.50 ± 0.50</td>",
             "<svg",

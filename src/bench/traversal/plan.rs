@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::race::Crew;
+use super::interleave::Workers;
 use super::representation::Representation;
 use super::scenes::SceneName;
 use crate::tracer::Options;
@@ -21,8 +21,8 @@ pub struct Plan {
     pub seed: u64,
     /// The rivals that take part.
     pub rivals: Vec<Representation>,
-    /// The threads that trace; the first crew's times make the ratios.
-    pub crews: Vec<Crew>,
+    /// The threads that trace; the first set of workers' times make the ratios.
+    pub worker_sets: Vec<Workers>,
     /// Rivals that would take more bytes are left out.
     pub max_memory: u64,
     /// How scenes are built.

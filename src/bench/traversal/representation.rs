@@ -30,10 +30,10 @@ pub enum Representation {
     EmbreeSphere,
     /// The same, 16 rays at a time.
     EmbreeSpherePacket,
-    /// Embree's oriented disc point, a ray at a time.
-    EmbreeDisc,
+    /// Embree's oriented disk point, a ray at a time.
+    EmbreeDisk,
     /// The same, 16 rays at a time.
-    EmbreeDiscPacket,
+    EmbreeDiskPacket,
     /// Inscribed meshes of 8 sides.
     Mesh8,
     /// Inscribed meshes of 16 sides.
@@ -63,8 +63,8 @@ impl Representation {
         Self::EmbreeRoundPacket,
         Self::EmbreeSphere,
         Self::EmbreeSpherePacket,
-        Self::EmbreeDisc,
-        Self::EmbreeDiscPacket,
+        Self::EmbreeDisk,
+        Self::EmbreeDiskPacket,
         Self::Mesh8,
         Self::Mesh16,
         Self::Mesh32,
@@ -118,8 +118,8 @@ impl Representation {
             Self::EmbreeRoundPacket => "embree_round_packet",
             Self::EmbreeSphere => "embree_sphere",
             Self::EmbreeSpherePacket => "embree_sphere_packet",
-            Self::EmbreeDisc => "embree_disc",
-            Self::EmbreeDiscPacket => "embree_disc_packet",
+            Self::EmbreeDisk => "embree_disk",
+            Self::EmbreeDiskPacket => "embree_disk_packet",
             Self::Mesh8 => "mesh_8",
             Self::Mesh16 => "mesh_16",
             Self::Mesh32 => "mesh_32",
@@ -137,7 +137,7 @@ impl Representation {
             Self::EmbreeCone | Self::EmbreeConePacket => Some(Shape::Cone),
             Self::EmbreeRound | Self::EmbreeRoundPacket => Some(Shape::Round),
             Self::EmbreeSphere | Self::EmbreeSpherePacket => Some(Shape::Sphere),
-            Self::EmbreeDisc | Self::EmbreeDiscPacket => Some(Shape::Disc),
+            Self::EmbreeDisk | Self::EmbreeDiskPacket => Some(Shape::Disk),
             Self::Mesh8 => Some(Shape::Mesh(8)),
             Self::Mesh16 => Some(Shape::Mesh(16)),
             Self::Mesh32 => Some(Shape::Mesh(32)),
@@ -155,7 +155,7 @@ impl Representation {
             Self::EmbreeConePacket
                 | Self::EmbreeRoundPacket
                 | Self::EmbreeSpherePacket
-                | Self::EmbreeDiscPacket
+                | Self::EmbreeDiskPacket
         )
     }
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::thicket::{sticks, thicket};
+use super::random_scene::{random_scene, sticks};
 use crate::scene::{self, Scene};
 use crate::solid::SolidKind;
 
@@ -66,7 +66,7 @@ impl SceneName {
     /// Makes the scene, or reads its file from `directory`. The error is why it
     /// is not there.
     pub(super) fn make(self, directory: &Path, seed: u64) -> Result<Scene, String> {
-        let others = |kind| Ok(thicket(kind, 100_000, seed));
+        let others = |kind| Ok(random_scene(kind, 100_000, seed));
         let file: PathBuf = match self {
             Self::Sticks1e4 => return Ok(sticks(10_000, seed)),
             Self::Sticks1e5 => return Ok(sticks(100_000, seed)),

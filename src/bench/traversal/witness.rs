@@ -14,10 +14,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::candidate_filter::{Ball, SLACK, Sight};
 use super::flat::{Flat, Placed};
 use super::rays::{Kind, Rays, TILE};
 use super::representation::{Representative, SolidId};
-use super::sight::{Ball, SLACK, Sight};
 use crate::bench::statistics::p99;
 use crate::bench::truth::{Errors, TrueT};
 use crate::math::{ChildFromParent, Ray};
@@ -232,7 +232,7 @@ mod tests {
     use glam::{DAffine3, DMat3, DVec3};
 
     use super::super::ours;
-    use super::super::thicket::{sticks, thicket};
+    use super::super::random_scene::{random_scene, sticks};
     use super::*;
     use crate::scene::{CylinderList, Placement, PrototypeIndex, Scene};
     use crate::solid::SolidKind;
@@ -283,7 +283,7 @@ mod tests {
         for prototype in &mut scene.prototypes[1..] {
             let count = prototype.cylinders.len();
             prototype.cylinders = CylinderList::default();
-            prototype.solids = thicket(kind, count, SEED).prototypes[0].solids.clone();
+            prototype.solids = random_scene(kind, count, SEED).prototypes[0].solids.clone();
         }
         scene
     }
@@ -292,7 +292,7 @@ mod tests {
     fn witness_finds_the_tracer_right_with_and_without_placements() {
         let others = OTHER_KINDS
             .into_iter()
-            .flat_map(|kind| [thicket(kind, 500, SEED), placed_others(kind)]);
+            .flat_map(|kind| [random_scene(kind, 500, SEED), placed_others(kind)]);
         for scene in [sticks(500, SEED), placed_sticks()]
             .into_iter()
             .chain(others)
@@ -326,7 +326,8 @@ mod tests {
     /// What the library answers about other sticks, or other solids of a kind.
     #[test]
     fn witness_finds_another_scene_wrong() {
-        let others = OTHER_KINDS.map(|kind| [0, 1].map(|more| thicket(kind, 500, SEED + more)));
+        let others =
+            OTHER_KINDS.map(|kind| [0, 1].map(|more| random_scene(kind, 500, SEED + more)));
         let sticks = [0, 1].map(|more| sticks(500, SEED + more));
         for [scene, other] in others.into_iter().chain([sticks]) {
             let (flat, tracer, _) = ours_of(scene);

@@ -23,7 +23,7 @@ pub(super) enum Shape {
         radii: [f64; 2],
     },
     Ball {
-        centre: DVec3,
+        center: DVec3,
         radius: f64,
     },
 }
@@ -73,7 +73,7 @@ impl Shape {
         match random.below(6) {
             0..=2 => Self::flat(random, reach),
             3 => Self::Ball {
-                centre: p0,
+                center: p0,
                 radius: number(random, 1, 3),
             },
             4 => Self::rounded(random, p0),
@@ -105,8 +105,8 @@ impl Shape {
         const STATED: &str = "a shape of the grid is a solid";
         match *self {
             Self::Block { lower, upper } => {
-                let (centre, half_widths) = ((lower + upper) * 0.5, (upper - lower) * 0.5);
-                Cuboid::new(centre * scale, half_widths * scale, Orientation::IDENTITY)
+                let (center, half_widths) = ((lower + upper) * 0.5, (upper - lower) * 0.5);
+                Cuboid::new(center * scale, half_widths * scale, Orientation::IDENTITY)
                     .expect(STATED)
                     .into()
             }
@@ -124,13 +124,13 @@ impl Shape {
                 let [r0, r1] = radii.map(|radius| radius * scale);
                 RoundedCone::new(p0, p1, r0, r1).expect(STATED).into()
             }
-            Self::Ball { centre, radius } => Sphere::new(centre * scale, radius * scale)
+            Self::Ball { center, radius } => Sphere::new(center * scale, radius * scale)
                 .expect(STATED)
                 .into(),
         }
     }
 
-    /// Points that are worth aiming at: corners, points of rims, apexes, centres.
+    /// Points that are worth aiming at: corners, points of rims, apexes, centers.
     pub fn points(&self) -> Vec<DVec3> {
         match *self {
             Self::Block { lower, upper } => (0..8)
@@ -164,10 +164,10 @@ impl Shape {
                 }
                 points
             }
-            Self::Ball { centre, radius } => {
-                let ends = DVec3::AXES.map(|axis| [centre + axis * radius, centre - axis * radius]);
+            Self::Ball { center, radius } => {
+                let ends = DVec3::AXES.map(|axis| [center + axis * radius, center - axis * radius]);
                 let mut points = ends.as_flattened().to_vec();
-                points.push(centre);
+                points.push(center);
                 points
             }
         }
@@ -224,13 +224,13 @@ pub(super) fn on_one_wall(random: &mut Random, count: u64) -> Vec<Shape> {
 
 /// Solids that touch a cylinder, a capsule or a ball of radius 5 around an axis.
 pub(super) fn tangents(random: &mut Random) -> Vec<Shape> {
-    let round = |random: &mut Random, centre: DVec3, radius: f64| {
-        let ends = [centre, centre + DVec3::Z * 4.0];
+    let round = |random: &mut Random, center: DVec3, radius: f64| {
+        let ends = [center, center + DVec3::Z * 4.0];
         let radii = [radius; 2];
         match random.below(4) {
             0 | 1 => Shape::Taper { ends, radii },
             2 => Shape::Rounded { ends, radii },
-            _ => Shape::Ball { centre, radius },
+            _ => Shape::Ball { center, radius },
         }
     };
     let first = round(random, DVec3::ZERO, 5.0);
@@ -245,7 +245,7 @@ pub(super) fn tangents(random: &mut Random) -> Vec<Shape> {
         ][random.below(4) as usize];
         // Radii of 5 and apart by 10, or 10 and 5 apart, or of 10 and 15.
         let (apart, radius) = [(10.0, 5.0), (5.0, 10.0), (15.0, 10.0)][random.below(3) as usize];
-        let centre = (way * apart).round() + DVec3::Z * number(random, 0, 2);
+        let center = (way * apart).round() + DVec3::Z * number(random, 0, 2);
         shapes.push(match random.below(4) {
             0 => {
                 let sides = [DVec3::new(5.0, -5.0, 0.0), DVec3::new(-5.0, -10.0, 0.0)];
@@ -255,7 +255,7 @@ pub(super) fn tangents(random: &mut Random) -> Vec<Shape> {
                     upper: lower + DVec3::new(10.0, 10.0, 4.0),
                 }
             }
-            _ => round(random, centre, radius),
+            _ => round(random, center, radius),
         });
     }
     shapes
@@ -280,7 +280,7 @@ pub(super) fn on_faces(random: &mut Random) -> Vec<Shape> {
             2 if tangent != DVec3::ZERO => Shape::taper(foot, tangent * 2.0, [radius; 2]),
             3 => Shape::taper(foot, normal * 2.0, [radius, 0.0]),
             4 => Shape::Ball {
-                centre: foot + normal * radius * (random.below(3) as f64 - 1.0),
+                center: foot + normal * radius * (random.below(3) as f64 - 1.0),
                 radius,
             },
             _ => {

@@ -1,7 +1,7 @@
 //! Families for cones and rounded cones.
 //!
 //! A case is two ends, two radii and a ray, of which either solid is made: the
-//! cone through two discs, or the hull of two balls. Where a ray is aimed at the
+//! cone through two disks, or the hull of two balls. Where a ray is aimed at the
 //! wall, at its rims or along it, that is the wall of the solid in question.
 
 mod grids;
@@ -56,7 +56,7 @@ pub enum TaperFamily {
     Inside,
     /// From a point of the wall.
     FromWall,
-    /// Rays at 1e-7 to 1e-2 to the plane of a disc.
+    /// Rays at 1e-7 to 1e-2 to the plane of a disk.
     CapPlane,
     /// All lengths times 1e-20 to 1e20, directions times 1e-10 to 1e10.
     Scale,

@@ -6,13 +6,13 @@
 //! fault: of a block of rays the first [`MOST_QUESTIONS`] are asked, and the
 //! others count as not witnessed.
 
-use super::{ConeCurves, Told, Verdict};
+use super::{ConeCurves, CurveHit, Verdict};
 use crate::check::finding::Intersector;
-use crate::check::judging::truth;
-use crate::check::judging::verdict::Subject;
 use crate::check::outcome::{Violation, Witness};
 use crate::check::settings::Class;
 use crate::check::tally::Tally;
+use crate::check::verdict::truth;
+use crate::check::verdict::verdict::Subject;
 
 /// Suspects of a block that the oracle is asked about.
 const MOST_QUESTIONS: u64 = 4;
@@ -31,7 +31,7 @@ pub(in crate::check) fn curve_block(
         let (ray32, ray) = about.source.ray(class, index);
         let answer = intersector.closest(&ray);
         tally.count(answer.as_ref());
-        let told = answer.as_ref().map(|finding| Told {
+        let told = answer.as_ref().map(|finding| CurveHit {
             t: finding.t,
             solid: finding
                 .place

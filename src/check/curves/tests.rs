@@ -34,14 +34,14 @@ fn similarity(random: &mut Random) -> DAffine3 {
 }
 
 /// The first hit of the placed solids, by the oracle.
-fn truth(solids: &[Cylinder], maps: &[ExactAffine], ray: &Ray) -> Option<Told> {
+fn truth(solids: &[Cylinder], maps: &[ExactAffine], ray: &Ray) -> Option<CurveHit> {
     let hits = solids
         .iter()
         .zip(maps)
         .zip(0..)
         .filter_map(|((solid, map), number)| {
             let hit = placed_first_hit(solid, map, ray).hit?;
-            Some(Told {
+            Some(CurveHit {
                 t: hit.t_f64(),
                 solid: Some(number),
             })
@@ -120,7 +120,7 @@ fn true_answers_agree_and_wrong_ones_are_suspects() {
             suspects += u64::from(curves.compare(&ray32, told) != Verdict::Agrees);
             let Some(told) = told else { continue };
             hits += 1;
-            let behind = Told {
+            let behind = CurveHit {
                 t: told.t + 0.01 / ray.direction.length(),
                 ..told
             };
@@ -146,7 +146,7 @@ fn solid_without_curve_is_not_witnessed() {
         t_near: 0.0,
         t_far: f32::INFINITY,
     };
-    let told = |t, solid| Some(Told { t, solid });
+    let told = |t, solid| Some(CurveHit { t, solid });
     assert_eq!(curves.compare(&ray, told(5.0, Some(1))), Verdict::Agrees);
     assert_eq!(curves.compare(&ray, told(5.0, None)), Verdict::Agrees);
     assert_eq!(

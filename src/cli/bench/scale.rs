@@ -4,8 +4,8 @@ use cyltrace::bench::scale::{
     Fits, Plan, Resident, Row, SUMMARY_HEADINGS, Scale, Series, figures, growths, page, summary,
     table,
 };
-use cyltrace::bench::traversal::Crew;
-use cyltrace::bench::{Circumstances, WallClock};
+use cyltrace::bench::traversal::Workers;
+use cyltrace::bench::{Environment, WallClock};
 use cyltrace::report::Table;
 use cyltrace::tracer::Options;
 use serde_json::{Value, json};
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use super::{rays_sentence, tell, with_circumstances};
 use crate::cli::arguments::ScaleArguments;
 use crate::cli::memory::{forget_peak, peak_resident_bytes};
-use crate::cli::target::{make_directory, write_text};
+use crate::cli::output_sink::{make_directory, write_text};
 use crate::cli::{interrupt, json, progress, scene};
 
 /// Time to build, memory and rays a second against the size of scenes.
@@ -29,7 +29,7 @@ pub fn run(arguments: &ScaleArguments) -> anyhow::Result<()> {
         rays: arguments.rays.get(),
         rounds: arguments.rounds.get(),
         seed: arguments.seed,
-        crew: Crew::new(threads)?,
+        workers: Workers::new(threads)?,
         max_memory: arguments.max_memory,
         options: Options {
             threads: common.threads,
@@ -46,13 +46,13 @@ pub fn run(arguments: &ScaleArguments) -> anyhow::Result<()> {
     let found = Scale::measure(&plan, &resident, &mut WallClock, &mut || bar.inc(1));
     bar.finish_and_clear();
 
-    let circumstances = Circumstances::here(
+    let environment = Environment::here(
         common.max_isa,
         arguments.rays.get() as u64,
         arguments.seed,
         arguments.rounds.get(),
     );
-    let sentence = rays_sentence(&circumstances);
+    let sentence = rays_sentence(&environment);
     interrupt::end_in_order();
     if let Some(directory) = &arguments.report {
         for shown in figures(&found) {
@@ -61,7 +61,7 @@ pub fn run(arguments: &ScaleArguments) -> anyhow::Result<()> {
         write_text(&directory.join("scale.csv"), &table(&found))?;
         write_text(&directory.join("index.html"), &page(&found, &sentence))?;
     }
-    json::write(common, &all_figures(&found, &circumstances))?;
+    json::write(common, &all_figures(&found, &environment))?;
     let text = summary_text(&found, &sentence);
     tell(common, text, arguments.report.as_deref())
 }
@@ -82,7 +82,7 @@ fn summary_text(found: &Scale, sentence: &str) -> String {
 }
 
 /// All figures; null where there is none.
-fn all_figures(found: &Scale, circumstances: &Circumstances) -> Value {
+fn all_figures(found: &Scale, environment: &Environment) -> Value {
     let rows = |series| -> Vec<Value> { found.of(series).iter().map(row_figures).collect() };
     let fits = |series| {
         let Fits {
@@ -107,7 +107,7 @@ fn all_figures(found: &Scale, circumstances: &Circumstances) -> Value {
         },
         "threads": found.threads,
     });
-    with_circumstances(figures, circumstances, "rays")
+    with_circumstances(figures, environment, "rays")
 }
 
 fn row_figures(row: &Row) -> Value {

@@ -1,17 +1,17 @@
 //! `cyltrace bench traversal`.
 
 use cyltrace::bench::traversal::{
-    BEST_HEADINGS, BEST_NAMES, Best, Crew, Figures, Kind, Plan, RIVALS, Ratio, Representation, Row,
-    SUMMARY_HEADINGS, SceneName, Traversal, figures, page, summary, table,
+    BEST_HEADINGS, BEST_NAMES, Best, Figures, Kind, Plan, RIVALS, Ratio, Representation, Row,
+    SUMMARY_HEADINGS, SceneName, Traversal, Workers, figures, page, summary, table,
 };
-use cyltrace::bench::{Circumstances, ThreadClock, Timer, WallClock};
+use cyltrace::bench::{Environment, ThreadClock, Timer, WallClock};
 use cyltrace::report::Table;
 use cyltrace::tracer::Options;
 use serde_json::{Map, Value, json};
 
 use super::{rays_sentence, tell, with_circumstances};
 use crate::cli::arguments::TraversalArguments;
-use crate::cli::target::{make_directory, write_text};
+use crate::cli::output_sink::{make_directory, write_text};
 use crate::cli::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
 
 /// Time, error and memory of everything that traces solids. The check is that this
@@ -27,7 +27,7 @@ pub fn run(arguments: &TraversalArguments) -> anyhow::Result<u8> {
     let plan = plan(arguments, workers.current_num_threads())?;
     let bar = progress::bar(common, Traversal::steps(&plan) as u64, "steps");
     // One thread's processor time leaves out what other programs do meanwhile.
-    let is_one_thread = plan.crews.iter().all(|crew| crew.threads == 1);
+    let is_one_thread = plan.worker_sets.iter().all(|workers| workers.threads == 1);
     let timer: &mut (dyn Timer + Send) = match is_one_thread {
         true => &mut ThreadClock,
         false => &mut WallClock,
@@ -35,13 +35,13 @@ pub fn run(arguments: &TraversalArguments) -> anyhow::Result<u8> {
     let found = workers.install(|| Traversal::measure(&plan, timer, &mut || bar.inc(1)));
     bar.finish_and_clear();
 
-    let circumstances = Circumstances::here(
+    let environment = Environment::here(
         common.max_isa,
         arguments.rays.get() as u64,
         arguments.seed,
         arguments.rounds.get(),
     );
-    let sentence = rays_sentence(&circumstances);
+    let sentence = rays_sentence(&environment);
     interrupt::end_in_order();
     if let Some(directory) = &arguments.report {
         for shown in figures(&found) {
@@ -49,13 +49,13 @@ pub fn run(arguments: &TraversalArguments) -> anyhow::Result<u8> {
         }
         write_text(
             &directory.join("traversal.csv"),
-            &table(&found, &circumstances),
+            &table(&found, &environment),
         )?;
         write_text(&directory.join("index.html"), &page(&found, &sentence))?;
     }
-    let mut all = all_figures(&found, &circumstances);
-    all["processor"] = json!(circumstances.processor);
-    all["embree"] = json!(circumstances.embree);
+    let mut all = all_figures(&found, &environment);
+    all["processor"] = json!(environment.processor);
+    all["embree"] = json!(environment.embree);
     all["clock"] = json!(if is_one_thread { "thread" } else { "wall" });
     json::write(common, &all)?;
     let text = summary_text(&found, &sentence);
@@ -71,7 +71,7 @@ fn plan(arguments: &TraversalArguments, all_threads: usize) -> anyhow::Result<Pl
         None if all_threads > 1 => vec![1, all_threads],
         _ => vec![all_threads],
     };
-    let crews: Result<Vec<Crew>, _> = threads.into_iter().map(Crew::new).collect();
+    let worker_sets: Result<Vec<Workers>, _> = threads.into_iter().map(Workers::new).collect();
     let scenes = match arguments.scene.as_slice() {
         [] => SceneName::ALL.to_vec(),
         some => some.to_vec(),
@@ -86,7 +86,7 @@ fn plan(arguments: &TraversalArguments, all_threads: usize) -> anyhow::Result<Pl
             [] => Representation::ALL.to_vec(),
             some => some.iter().flat_map(|chosen| chosen.0.clone()).collect(),
         },
-        crews: crews?,
+        worker_sets: worker_sets?,
         max_memory: arguments.max_memory,
         options: Options {
             threads: common.threads,
@@ -143,7 +143,7 @@ fn wrong_text(found: &Traversal) -> String {
 }
 
 /// All figures; null where there is none.
-fn all_figures(found: &Traversal, circumstances: &Circumstances) -> Value {
+fn all_figures(found: &Traversal, environment: &Environment) -> Value {
     let numbers = |of: fn(Ratio) -> Value| by_scene(found, |ratio| ratio.map_or(Value::Null, of));
     let figures = json!({
         "rows": found.rows.iter().map(row_figures).collect::<Vec<_>>(),
@@ -157,7 +157,7 @@ fn all_figures(found: &Traversal, circumstances: &Circumstances) -> Value {
         "ratio_threads": found.threads.first(),
         "spread": "median absolute deviation",
     });
-    with_circumstances(figures, circumstances, "rays")
+    with_circumstances(figures, environment, "rays")
 }
 
 fn row_figures(row: &Row) -> Value {

@@ -5,7 +5,7 @@ use cyltrace::tracer::Tracer;
 use serde_json::{Value, json};
 
 use super::Found;
-use super::told::Told;
+use super::external_input::ExternalInput;
 use crate::cli::arguments::CheckArguments;
 use crate::cli::json;
 
@@ -25,7 +25,7 @@ pub fn figures(
     arguments: &CheckArguments,
     tracer: &Tracer,
     found: &Found,
-    told: Option<&Told>,
+    told: Option<&ExternalInput>,
     elapsed: f64,
 ) -> Value {
     let Found {

@@ -1,7 +1,7 @@
 //! `cyltrace check`.
 
+mod external_input;
 mod figures;
-mod told;
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -19,14 +19,14 @@ use cyltrace::scene::Film;
 use cyltrace::tracer::{Options, Tracer};
 
 use super::arguments::{CheckArguments, Rays};
-use super::limit::{Limit, Need};
+use super::limit::{MemoryLimit, Need};
 use super::memory::readable;
+use super::output_sink::{make_directory, write_text};
 use super::outputs::Files;
 use super::print::print;
-use super::target::{make_directory, write_text};
 use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene, text};
+use external_input::ExternalInput;
 use figures::figures;
-use told::Told;
 
 /// Wrong answers that are listed, of each kind.
 const MOST_LISTED: usize = 20;
@@ -80,10 +80,15 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         NewFile::check(page)?;
     }
     let workers = scene::workers(common)?;
-    let file = scene::read(&arguments.scene, Limit::available())?;
+    let file = scene::read(&arguments.scene, MemoryLimit::available())?;
     files.check_with(&file)?;
-    let told = workers.install(|| Told::read(arguments))?;
-    let loaded = Arc::new(scene::load(common, file, Need::Build, Limit::available())?);
+    let told = workers.install(|| ExternalInput::read(arguments))?;
+    let loaded = Arc::new(scene::load(
+        common,
+        file,
+        Need::Build,
+        MemoryLimit::available(),
+    )?);
     let options = Options {
         exact: arguments.decisions.exact,
         ..Options::default()
@@ -280,7 +285,7 @@ fn sentence(arguments: &CheckArguments, tracer: &Tracer, found: &Found) -> Strin
 }
 
 /// The lines for people.
-fn summary(found: &Found, told: Option<&Told>) -> String {
+fn summary(found: &Found, told: Option<&ExternalInput>) -> String {
     let Found {
         outcome,
         agreements,
@@ -316,6 +321,6 @@ fn summary(found: &Found, told: Option<&Told>) -> String {
 }
 
 /// Where the answer for a ray stands, when it is not the tracer's.
-fn source(told: Option<&Told>, index: u64) -> String {
+fn source(told: Option<&ExternalInput>, index: u64) -> String {
     told.map_or_else(String::new, |told| told.source(index))
 }

@@ -32,7 +32,7 @@ pub fn run(
             "{}, tiles from the left of the top row:\n{table}{}\nthe middle of each tile: {}\n",
             path.display(),
             map.legend,
-            to_bits(&map.centre)
+            to_bits(&map.center)
         ))?;
     }
     Ok(())

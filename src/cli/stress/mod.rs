@@ -13,8 +13,8 @@ use cyltrace::stress::{self, Cell, Contender, Promise, Settings, StressFamily};
 use serde_json::{Value, json};
 
 use super::arguments::StressArguments;
+use super::output_sink::{make_directory, write_text};
 use super::print::print;
-use super::target::{make_directory, write_text};
 use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
 
 /// Runs what the arguments ask for; the exit code says whether promises hold.

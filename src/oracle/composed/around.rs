@@ -195,7 +195,7 @@ impl Survey<'_> {
             };
             note(&mut self.faces, face(part), &active.gradient);
             if active.gradient.is_zero() {
-                // The disc or ball of no size at an apex is named as well as the wall.
+                // The disk or ball of no size at an apex is named as well as the wall.
                 let same = self.active.iter().filter(|one| one.leaf == active.leaf);
                 for part in same.filter_map(|one| one.sheet.part) {
                     note(&mut self.faces, face(part), &active.gradient);

@@ -36,19 +36,19 @@ impl Leaf {
         match solid {
             AnySolid::Cylinder(cylinder) => {
                 let ends = [cylinder.p0(), cylinder.p1()];
-                all(between_discs(ends, [cylinder.radius(); 2]))
+                all(between_disks(ends, [cylinder.radius(); 2]))
             }
             AnySolid::Cone(cone) => {
                 let ends = [cone.p0(), cone.p1()];
-                all(between_discs(ends, [cone.radius0(), cone.radius1()]))
+                all(between_disks(ends, [cone.radius0(), cone.radius1()]))
             }
             AnySolid::Sphere(sphere) => all(vec![Sheet::sphere(
-                &ExactVector::new(sphere.centre()),
+                &ExactVector::new(sphere.center()),
                 &exact(sphere.radius()),
                 Part::Side,
             )]),
             AnySolid::Cuboid(cuboid) => {
-                let centre = ExactVector::new(cuboid.centre());
+                let center = ExactVector::new(cuboid.center());
                 let axes = cuboid.orientation().world_from_object();
                 let parts = [
                     [Part::XMin, Part::XMax],
@@ -60,7 +60,7 @@ impl Leaf {
                     let half_width = exact(cuboid.half_widths()[axis]);
                     for (part, side) in parts.into_iter().zip([-1.0, 1.0]) {
                         let normal = ExactVector::new(axes.col(axis) * side);
-                        let offset = normal.dot(&centre) + &half_width;
+                        let offset = normal.dot(&center) + &half_width;
                         sheets.push(Sheet::plane(&normal, &offset, Some(part)));
                     }
                 }
@@ -123,7 +123,7 @@ impl Leaf {
     }
 }
 
-fn between_discs(ends: [DVec3; 2], radii: [f64; 2]) -> Vec<Sheet> {
+fn between_disks(ends: [DVec3; 2], radii: [f64; 2]) -> Vec<Sheet> {
     let [p0, p1] = ends.map(ExactVector::new);
     let [r0, r1] = radii.map(exact);
     let (a, delta) = (&p1 - &p0, &r1 - &r0);

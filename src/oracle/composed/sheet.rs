@@ -40,11 +40,11 @@ impl Sheet {
         .of_usual_size()
     }
 
-    pub fn sphere(centre: &ExactVector, radius: &Exact, part: Part) -> Self {
+    pub fn sphere(center: &ExactVector, radius: &Exact, part: Part) -> Self {
         Self {
-            form: Form::of_axis(&exact(1.0), &zero(), centre),
-            linear: centre.times(&exact(-1.0)),
-            constant: centre.dot(centre) - radius * radius,
+            form: Form::of_axis(&exact(1.0), &zero(), center),
+            linear: center.times(&exact(-1.0)),
+            constant: center.dot(center) - radius * radius,
             part: Some(part),
             axis: None,
         }

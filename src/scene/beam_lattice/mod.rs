@@ -39,8 +39,8 @@ use self::model::Model;
 pub(super) use self::model::UNITS;
 use super::description::MaterialIndex;
 use super::error::SceneError;
-use super::gathered::{
-    Degenerate, Gathered, Refusal, SKIP_HELP, is_degenerate, is_degenerate_cone,
+use super::solid_collector::{
+    Degenerate, Refusal, SKIP_HELP, SolidCollector, is_degenerate, is_degenerate_cone,
 };
 use super::source::Source;
 use crate::solid::{AnySolid, Caps, Composition, Cone, Cylinder, Sphere};
@@ -57,7 +57,7 @@ pub(super) struct BeamLattice {
 
 /// Adds the beams and balls of a `[[beam_lattice]]`.
 pub(super) fn add_beam_lattice(
-    solids: &mut Gathered,
+    solids: &mut SolidCollector,
     source: &Source,
     file: &Spanned<String>,
     keys: &BeamLattice,
@@ -125,7 +125,7 @@ struct Lowering<'a, 'input> {
     /// them is 1.
     units: (f64, f64),
     keys: &'a BeamLattice,
-    solids: &'a mut Gathered,
+    solids: &'a mut SolidCollector,
 }
 
 impl Lowering<'_, '_> {
@@ -159,7 +159,7 @@ impl Lowering<'_, '_> {
             for end in [0, 1] {
                 let half = Half {
                     vertex: beam.vertices[end],
-                    centre: ends[end],
+                    center: ends[end],
                     outward: ends[end] - ends[1 - end],
                     radius: radii[end],
                 };
@@ -233,7 +233,7 @@ impl Lowering<'_, '_> {
 /// The half of a ball beyond the end of a beam.
 struct Half {
     vertex: usize,
-    centre: DVec3,
+    center: DVec3,
     /// Along the beam, of its length.
     outward: DVec3,
     radius: f64,
@@ -246,9 +246,9 @@ impl Half {
         while axis.length() < 2.0 * self.radius {
             axis *= 2.0;
         }
-        let ball = Sphere::new(self.centre, self.radius).map_err(|error| error.to_string())?;
+        let ball = Sphere::new(self.center, self.radius).map_err(|error| error.to_string())?;
         let width = 2.0 * self.radius;
-        let stand = Cylinder::new(self.centre, self.centre + axis, width, Caps::Both);
+        let stand = Cylinder::new(self.center, self.center + axis, width, Caps::Both);
         let stand = stand.map_err(|error| error.to_string())?;
         let parts = [AnySolid::from(ball), stand.into()].map(Composition::Solid);
         Ok(Composition::Intersection(parts.into()))

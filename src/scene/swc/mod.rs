@@ -16,8 +16,10 @@ use std::path::Path;
 
 use super::description::CylinderRecord;
 use super::error::SceneError;
-use super::gathered::{Degenerate, Gathered, Look, SKIP_HELP, is_degenerate, is_degenerate_cone};
 use super::named_table::Tables;
+use super::solid_collector::{
+    Degenerate, Look, SKIP_HELP, SolidCollector, is_degenerate, is_degenerate_cone,
+};
 use super::solid_keys::SwcKeys;
 use super::source::Source;
 use super::table::input;
@@ -136,7 +138,7 @@ enum Part {
 /// Adds the solids of an `[[swc]]`: the segments in the order of their samples, then
 /// the balls of somata.
 pub(super) fn add_swc(
-    solids: &mut Gathered,
+    solids: &mut SolidCollector,
     tables: &Tables,
     keys: &SwcKeys,
     look: Look,

@@ -4,7 +4,7 @@
 //! they are, as <http://neuromorpho.org/SomaFormat.html> has it and other readers do:
 //!
 //! - One sample is a ball.
-//! - Three samples, a centre `(x, y, z)` with the radius `r` and two children of it at
+//! - Three samples, a center `(x, y, z)` with the radius `r` and two children of it at
 //!   `(x, y - r, z)` and `(x, y + r, z)` with the same radius, are a cylinder from the
 //!   one child to the other: of length `2 r`, so that its wall has the area of a ball.
 //! - Others are what their segments are.
@@ -55,7 +55,7 @@ impl Somata {
             balls: balls.collect(),
             cylinders: HashMap::new(),
         };
-        // The first child of a centre waits for the second.
+        // The first child of a center waits for the second.
         let mut waiting = HashMap::new();
         for place in 0..samples.len() {
             let Some(center) = parent_in_soma(place) else {
@@ -82,7 +82,7 @@ impl Somata {
     }
 }
 
-/// Whether the ends are where those of the cylinder of a centre are.
+/// Whether the ends are where those of the cylinder of a center are.
 fn is_cylinder(center: &Sample, ends: [&Sample; 2]) -> bool {
     let (radius, allowed) = (center.radius, center.radius * TOLERANCE);
     let is_end = |end: &Sample, y: f64| {

@@ -18,13 +18,13 @@ use super::Composition;
 use super::line::{Line, Stretch};
 use super::neighbourhood::{Face, Neighbourhood};
 use crate::solid::Crossing::{self, Enter, Leave};
-use crate::solid::{ChordEnd, Location, Meeting};
+use crate::solid::{ChordEnd, Intersection, Location};
 
 /// A point where a ray meets a composition.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ComposedMeeting {
+pub struct ComposedIntersection {
     /// The point, the part being that of the leaf.
-    pub meeting: Meeting,
+    pub meeting: Intersection,
     /// The operand whose surface it is, as a position in [`Composition::operands`].
     pub leaf: u32,
     /// Whether the composition is on the outer side of the leaf's surface, so that its normal
@@ -48,10 +48,10 @@ impl Composition {
         direction: DVec3,
         shift: f64,
         [t_min, t_max]: [f64; 2],
-        mut keep: impl FnMut(ComposedMeeting),
+        mut keep: impl FnMut(ComposedIntersection),
     ) {
         let range = [t_min, t_max];
-        self.each_meeting(origin_from, direction, shift, range, |met| {
+        self.for_each_hit(origin_from, direction, shift, range, |met| {
             keep(met);
             false
         });
@@ -65,9 +65,9 @@ impl Composition {
         direction: DVec3,
         shift: f64,
         range: [f64; 2],
-    ) -> Option<ComposedMeeting> {
+    ) -> Option<ComposedIntersection> {
         let mut first = None;
-        self.each_meeting(origin_from, direction, shift, range, |met| {
+        self.for_each_hit(origin_from, direction, shift, range, |met| {
             first = Some(met);
             true
         });
@@ -75,13 +75,13 @@ impl Composition {
     }
 
     /// Passes the meetings to `is_enough` until it returns true.
-    fn each_meeting(
+    fn for_each_hit(
         &self,
         origin_from: impl Fn(DVec3) -> DVec3,
         direction: DVec3,
         shift: f64,
         [t_min, t_max]: [f64; 2],
-        mut is_enough: impl FnMut(ComposedMeeting) -> bool,
+        mut is_enough: impl FnMut(ComposedIntersection) -> bool,
     ) {
         let line = Line::new(self, origin_from, direction);
         let mut rank = 0;
@@ -104,8 +104,8 @@ impl Composition {
             for (face, crossing, end) in crossings(&line, station, &before, &behind) {
                 rank += 1;
                 let t = end.t + shift;
-                let met = ComposedMeeting {
-                    meeting: Meeting {
+                let met = ComposedIntersection {
+                    meeting: Intersection {
                         t,
                         t_local: end.t,
                         part: face.part,
@@ -127,11 +127,16 @@ impl Composition {
 /// The meeting where the range of a ray starts that runs within the surface, which it has
 /// before it: with the first leaf whose surface that is. Of a ray that starts at a station, it is a
 /// face beside the stretch before, which reaches up to the station.
-fn start_within(line: &Line, before: &Stretch, shift: f64, t_min: f64) -> Option<ComposedMeeting> {
+fn start_within(
+    line: &Line,
+    before: &Stretch,
+    shift: f64,
+    t_min: f64,
+) -> Option<ComposedIntersection> {
     let faces = before.within.as_ref()?.faces.iter();
     let face = faces.min_by_key(|face| (face.leaf, line.lies_on(face.leaf) != Some(face.part)))?;
-    Some(ComposedMeeting {
-        meeting: Meeting {
+    Some(ComposedIntersection {
+        meeting: Intersection {
             t: t_min,
             t_local: t_min - shift,
             part: face.part,

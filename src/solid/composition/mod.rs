@@ -39,7 +39,7 @@ use smallvec::SmallVec;
 use super::spawn::{SOLVER_DISPLACEMENT, SpawnMargin};
 use super::{AnySolid, Location, SolidKind, SurfacePoint};
 use crate::math::Bounds;
-pub use crossings::ComposedMeeting;
+pub use crossings::ComposedIntersection;
 use neighbourhood::Neighbourhood;
 use piece::{Nearness, Pieces, Viewed};
 use planes::Planes;
@@ -95,7 +95,7 @@ impl Composition {
     }
 
     /// The same with what becomes of them; a position in it is the
-    /// [`ComposedMeeting::leaf`].
+    /// [`ComposedIntersection::leaf`].
     #[must_use]
     pub fn operands(&self) -> Vec<Operand> {
         let mut operands = Vec::new();
@@ -249,7 +249,7 @@ impl Composition {
     #[must_use]
     pub fn surface(
         &self,
-        met: &ComposedMeeting,
+        met: &ComposedIntersection,
         from_anchor: impl FnOnce(DVec3) -> DVec3,
     ) -> SurfacePoint {
         let solid = self.leaves()[met.leaf as usize];
@@ -266,7 +266,7 @@ impl Composition {
     /// # Panics
     /// When there is no such leaf.
     #[must_use]
-    pub fn spawn_margin(&self, met: &ComposedMeeting, surface: &SurfacePoint) -> SpawnMargin {
+    pub fn spawn_margin(&self, met: &ComposedIntersection, surface: &SurfacePoint) -> SpawnMargin {
         self.leaves()[met.leaf as usize].spawn_margin(surface)
     }
 }

@@ -4,9 +4,9 @@
 //! and `Δ = r1 - r0`, an outward normal is a polynomial for every piece that has a tangent
 //! plane. Its length is of no account.
 //!
-//! - **Disc**: `-a` at `p0`, `a` at `p1`.
+//! - **Disk**: `-a` at `p0`, `a` at `p1`.
 //! - **Face of a cuboid**: the stated axis, or its opposite.
-//! - **Sphere**: the point from the centre.
+//! - **Sphere**: the point from the center.
 //! - **Wall of a cone or cylinder**: it is where `F = |x|² - (x·a)² / L² - r²` is zero, with the
 //!   radius `r = r0 + Δ (x·a) / L²`. The gradient of `F`, times `L⁴ / 2`, is
 //!
@@ -14,7 +14,7 @@
 //!   n = L² (L² x - a (x·a)) - a Δ (r0 L² + Δ x·a)                          (1)
 //!   ```
 //!
-//! - **Wall of a rounded cone**: it is the envelope of the spheres with the centres `s a` and the
+//! - **Wall of a rounded cone**: it is the envelope of the spheres with the centers `s a` and the
 //!   radii `r0 + Δ s`. At its points `|x - s a|² - (r0 + Δ s)²` does not change with `s`, which
 //!   gives `s = (x·a + r0 Δ) / β` with `β = L² - Δ² > 0`. The normal is the sphere's, `x - s a`:
 //!
@@ -41,7 +41,7 @@ pub(super) fn outward(solid: &AnySolid, piece: &Piece, point: DVec3) -> Option<V
         AnySolid::Cone(one) => Some(of_cone(one, piece.part, point)),
         AnySolid::RoundedCone(one) => Some(of_rounded_cone(one, piece.part, point)),
         AnySolid::Cuboid(one) => Some(of_cuboid(one, piece.part)),
-        AnySolid::Sphere(one) => Some(difference(point, one.centre())),
+        AnySolid::Sphere(one) => Some(difference(point, one.center())),
         AnySolid::Disk(_) => None,
     }
 }
@@ -119,8 +119,8 @@ mod tests {
         for (solid, parts) in solids.iter().zip([3, 3, 3, 1, 6]) {
             let mut seen = Vec::new();
             for _ in 0..400 {
-                let from = solid.centre() + random.direction() * 10.0;
-                let to = solid.centre() + random.direction() * 0.5;
+                let from = solid.center() + random.direction() * 10.0;
+                let to = solid.center() + random.direction() * 0.5;
                 let way = to - from;
                 let Some(chord) = solid.chord(from - solid.anchor(), way) else {
                     continue;

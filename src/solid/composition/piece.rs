@@ -139,8 +139,8 @@ impl Viewed<'_> {
         }
     }
 
-    fn add_sphere(&self, part: Part, centre: DVec3, radius: f64, pieces: &mut Pieces) {
-        let normal = (self.from_anchor - centre).normalize();
+    fn add_sphere(&self, part: Part, center: DVec3, radius: f64, pieces: &mut Pieces) {
+        let normal = (self.from_anchor - center).normalize();
         let (around, along) = normal.any_orthonormal_pair();
         let curvature = 1.0 / radius;
         pieces.push(Piece {
@@ -216,7 +216,7 @@ impl Viewed<'_> {
         let from_first = height + r0 * sine;
         let to_second = beta / length - from_first;
         let is_wall = self.passes(Part::Side, (-from_first).max(-to_second));
-        for (part, from_seam, centre, radius, inward) in [
+        for (part, from_seam, center, radius, inward) in [
             (Part::Cap0, from_first, DVec3::ZERO, r0, axis),
             (Part::Cap1, to_second, a, r1, -axis),
         ] {
@@ -229,7 +229,7 @@ impl Viewed<'_> {
                 return;
             }
             let start = pieces.len();
-            self.add_sphere(part, centre, radius, pieces);
+            self.add_sphere(part, center, radius, pieces);
             if is_wall {
                 let piece = &mut pieces[start];
                 let around = axis.cross(piece.normal).normalize();

@@ -1,7 +1,7 @@
 //! Where the points of a line on a cone's wall lie between the two ends.
 //!
 //! Heights `y = x·a + t s`, `s = d·a`, are compared with those at which the wall
-//! ends: 0 and `|a|²` for a cone through two discs; for one that touches two balls
+//! ends: 0 and `|a|²` for a cone through two disks; for one that touches two balls
 //! the circles in which it does, at `-r0 Δ` and `|a|² - r1 Δ`, the seams.
 //!
 //! At a root of the wall the rounded height is off by some u of its terms and by
@@ -62,7 +62,7 @@ impl Rounded {
         let (a, delta) = (taper.axis(), taper.radius1 - taper.radius0);
         let (from_p0, from_p1) = (x.dot(a), (x - a).dot(a));
         let [seam0, seam1] = match taper.fit {
-            Fit::Discs => [0.0, 0.0],
+            Fit::Disks => [0.0, 0.0],
             Fit::Balls => [taper.radius0 * delta, taper.radius1 * delta],
         };
         Self {
@@ -220,7 +220,7 @@ impl<A: Way, X: Way> Expression for At<'_, A, X> {
                 End::Second => taper.radius1,
             };
             match taper.fit {
-                Fit::Discs => y,
+                Fit::Disks => y,
                 Fit::Balls => y.plus(&N::of(radius).times(delta)),
             }
         };

@@ -10,7 +10,7 @@ pub(super) mod wall;
 
 use glam::DVec3;
 
-use super::cylinder::disc_reach;
+use super::cylinder::disk_reach;
 use super::exact::{self, Expression, Number, difference, dot};
 use super::passing::Line;
 use super::quick::{Quick, Range};
@@ -30,8 +30,8 @@ use wall::{Fit, Measures};
 /// With `a = p1 - p0`, the solid is the set of the points `x` of which the axial
 /// position `h = (x - p0)·a / |a|²` is in `[0, 1]` and whose distance to the
 /// line `p0 p1` is at most `radius0 + h (radius1 - radius0)`. The surface is its
-/// wall and those of its discs that `caps` names. One radius may be zero: the
-/// disc there is a point, the apex.
+/// wall and those of its disks that `caps` names. One radius may be zero: the
+/// disk there is a point, the apex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
     ends: Ends,
@@ -115,8 +115,8 @@ impl Cone {
     /// Whether a point of the boundary is on the surface of a part, exactly.
     pub(super) fn is_on(&self, part: Part, point: DVec3) -> bool {
         let limit = match part {
-            Part::Cap0 => Limit::Disc0,
-            Part::Cap1 => Limit::Disc1,
+            Part::Cap0 => Limit::Disk0,
+            Part::Cap1 => Limit::Disk1,
             _ => Limit::Wall,
         };
         let cone = self;
@@ -134,7 +134,7 @@ impl ConvexSolid for Cone {
             radius0,
             radius1,
         } = self.ends;
-        let (reach0, reach1) = (disc_reach(p1 - p0, radius0), disc_reach(p1 - p0, radius1));
+        let (reach0, reach1) = (disk_reach(p1 - p0, radius0), disk_reach(p1 - p0, radius1));
         Bounds {
             lower: (p0 - reach0).min(p1 - reach1),
             upper: (p0 + reach0).max(p1 + reach1),
@@ -151,29 +151,29 @@ impl ConvexSolid for Cone {
     }
 
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
-        if self.passes_by(from_anchor, direction) {
+        if self.rejects(from_anchor, direction) {
             return None;
         }
         match self.as_cylinder() {
             Some(cylinder) => triple_product::chord(&cylinder, from_anchor, direction),
-            None => solver::chord(&self.ends.taper(Fit::Discs), from_anchor, direction),
+            None => solver::chord(&self.ends.taper(Fit::Disks), from_anchor, direction),
         }
     }
 
     fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
         let from_p0 = origin.way_from(self.ends.p0);
-        if self.passes_by(from_p0.rounded(), direction) {
+        if self.rejects(from_p0.rounded(), direction) {
             return None;
         }
         match self.as_cylinder() {
             Some(cylinder) => cylinder.exact_chord(origin, direction),
-            None => solver::chord(&self.ends.exact_taper(Fit::Discs), from_p0, direction),
+            None => solver::chord(&self.ends.exact_taper(Fit::Disks), from_p0, direction),
         }
     }
 
     #[inline(always)]
-    fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
-        Line::new(from_anchor, direction).passes_wall(&self.ends.taper(Fit::Discs))
+    fn rejects(&self, from_anchor: DVec3, direction: DVec3) -> bool {
+        Line::new(from_anchor, direction).passes_wall(&self.ends.taper(Fit::Disks))
     }
 
     #[inline(always)]
@@ -192,7 +192,7 @@ impl ConvexSolid for Cone {
         let cone = self;
         let within = |limit| Location::of_sign(exact::sign(&Beyond { cone, point, limit }));
         // The other nappe begins where the slab has ended.
-        let along = within(Limit::Disc0).min(within(Limit::Disc1));
+        let along = within(Limit::Disk0).min(within(Limit::Disk1));
         match along {
             Location::Outside => along,
             _ => along.min(within(Limit::Wall)),
@@ -206,8 +206,8 @@ impl ConvexSolid for Cone {
 
 #[derive(Clone, Copy, Debug)]
 enum Limit {
-    Disc0,
-    Disc1,
+    Disk0,
+    Disk1,
     Wall,
 }
 
@@ -226,10 +226,10 @@ impl Expression for Beyond<'_> {
             difference(self.point, cone.ends.p0),
         );
         match self.limit {
-            Limit::Disc0 => N::of(0.0).minus(&dot(&x, &a)),
-            Limit::Disc1 => dot(&x, &a).minus(&dot(&a, &a)),
+            Limit::Disk0 => N::of(0.0).minus(&dot(&x, &a)),
+            Limit::Disk1 => dot(&x, &a).minus(&dot(&a, &a)),
             Limit::Wall => {
-                Measures::new(&a, cone.ends.radius0, cone.ends.radius1, Fit::Discs).outside(&a, &x)
+                Measures::new(&a, cone.ends.radius0, cone.ends.radius1, Fit::Disks).outside(&a, &x)
             }
         }
     }

@@ -9,7 +9,7 @@
 //! known within
 //!
 //! ```text
-//! 2 δC / |q|  for a root,      2^-48 S / |s|  for a disc
+//! 2 δC / |q|  for a root,      2^-48 S / |s|  for a disk
 //! ```
 //!
 //! with `δC` of (5), `S` the sizes of the terms of a height, which round by less than 8 u
@@ -42,11 +42,11 @@ use crate::solid::quick::{End, Quick, Range};
 #[inline(always)]
 pub(super) fn first(cone: &Cone, x: DVec3, d: DVec3, range: &Range) -> Quick {
     let ends = &cone.ends;
-    let wall = QuickWall::new(&ends.taper(Fit::Discs), x, d);
+    let wall = QuickWall::new(&ends.taper(Fit::Disks), x, d);
     let (enter, leave) = (wall.side(&wall.enter), wall.side(&wall.leave));
-    // The line comes to a root outside of the discs through the disc on that side.
-    let [disc0, disc1] = [wall.plane(0), wall.plane(1)];
-    let end = |root: End, side: &Side| root.or(disc0.or(disc1, side.is_before), side.is_between());
+    // The line comes to a root outside of the disks through the disk on that side.
+    let [disk0, disk1] = [wall.plane(0), wall.plane(1)];
+    let end = |root: End, side: &Side| root.or(disk0.or(disk1, side.is_before), side.is_between());
     let (first, last) = (end(wall.enter, &enter), end(wall.leave, &leave));
     let is_there =
         |side: &Side| (!side.is_before | cone.caps.at_p0()) & (!side.is_beyond | cone.caps.at_p1());

@@ -284,7 +284,7 @@ impl Bounds {
     }
 
     /// Whether the line certainly does not reach the wall.
-    pub fn passes_by(&self) -> bool {
+    pub fn rejects(&self) -> bool {
         self.e.value < -INPUTS * self.e.error
     }
 

@@ -1,7 +1,7 @@
-//! Ray against cone: the wall's interval, cut by the discs.
+//! Ray against cone: the wall's interval, cut by the disks.
 //!
 //! `wall.rs` finds where the line is inside the infinite wall; that is overlapped
-//! with the slab between the discs by where the roots lie to the discs' planes
+//! with the slab between the disks by where the roots lie to the disks' planes
 //! (`heights.rs`). The other nappe lies beyond the apex, so outside of the slab.
 
 use std::cmp::Ordering::{Equal, Greater, Less};
@@ -58,13 +58,13 @@ pub(in crate::solid) fn along(heights: &Heights<impl Way, impl Way>, part: Part)
 }
 
 /// The chord of a line across the axis: from wall to wall at one height, which may
-/// be that of a disc.
+/// be that of a disk.
 fn across(heights: &Heights<impl Way, impl Way>, inside: Inside) -> Option<Chord> {
     let [above0, above1] = heights.above;
     if above0 < 0.0 || above1 > 0.0 {
         return None;
     }
-    let disc = if above0 == 0.0 {
+    let disk = if above0 == 0.0 {
         Some(Part::Cap0)
     } else if above1 == 0.0 {
         Some(Part::Cap1)
@@ -73,13 +73,13 @@ fn across(heights: &Heights<impl Way, impl Way>, inside: Inside) -> Option<Chord
     };
     let end = |t| ChordEnd {
         t,
-        part: disc.unwrap_or(Part::Side),
-        on_rim: disc.is_some(),
+        part: disk.unwrap_or(Part::Side),
+        on_rim: disk.is_some(),
     };
     Some(Chord {
         enter: end(inside.enter),
         leave: end(inside.leave.max(inside.enter)),
-        lies_on: disc,
+        lies_on: disk,
     })
 }
 
@@ -100,12 +100,12 @@ fn oblique(heights: &Heights<impl Way, impl Way>, inside: Inside) -> Option<Chor
     if enter(far) == Greater || leave(near) == Less {
         return None;
     }
-    let on_disc = |end, on_rim| ChordEnd {
+    let on_disk = |end, on_rim| ChordEnd {
         t: heights.at(end),
         part: part_at(end),
         on_rim,
     };
-    // A root that is not cut off is on the wall, or on the rim of the disc through
+    // A root that is not cut off is on the wall, or on the rim of the disk through
     // which the line would otherwise go the other way.
     let on_wall = |t, other, is_at_other| ChordEnd {
         // The plane's, so that a line turned round has the same.
@@ -121,11 +121,11 @@ fn oblique(heights: &Heights<impl Way, impl Way>, inside: Inside) -> Option<Chor
     let (touches_near, touches_far) = (leave(near) == Equal, enter(far) == Equal);
     let enter = match enter(near) {
         Greater => on_wall(inside.enter, far, touches_far),
-        to_rim => on_disc(near, to_rim == Equal || touches_near),
+        to_rim => on_disk(near, to_rim == Equal || touches_near),
     };
     let leave = match leave(far) {
         Less => on_wall(inside.leave, near, touches_near),
-        to_rim => on_disc(far, to_rim == Equal || touches_far),
+        to_rim => on_disk(far, to_rim == Equal || touches_far),
     };
     Some(Chord {
         enter,

@@ -15,7 +15,7 @@
 //! 4 are those of the cylinder, and `r0 + v Δ` rounds by 3 u R more; by step 3
 //! `outward` reaches past the plane across the axis by `6 u R`, which a slanted
 //! wall turns into as much at most. Together `u (|q| + 3 |a| + 21 R)`; second-order
-//! terms are covered by counting 4 and 26. A disc is a cylinder's.
+//! terms are covered by counting 4 and 26. A disk is a cylinder's.
 
 use glam::DVec3;
 
@@ -27,15 +27,15 @@ use crate::solid::{Cylinder, Part, SurfacePoint, surface_point as surface_point_
 /// The point of `part` nearest to `p0 + from_p0`; `u` and `v` as a cylinder's.
 pub(super) fn surface_point(cone: &Cone, part: Part, from_p0: DVec3) -> SurfacePoint {
     let (r0, r1) = (cone.ends.radius0, cone.ends.radius1);
-    let disc = |radius| {
+    let disk = |radius| {
         let cylinder = Cylinder::from_valid(cone.ends.p0, cone.ends.p1, radius, cone.caps);
         surface_point_of_cylinder(&cylinder, part, from_p0)
     };
     match part {
-        Part::Cap0 => return disc(r0),
-        Part::Cap1 => return disc(r1),
+        Part::Cap0 => return disk(r0),
+        Part::Cap1 => return disk(r1),
         // With all the bits of the cylinder that it is.
-        Part::Side if r0 == r1 => return disc(r0),
+        Part::Side if r0 == r1 => return disk(r0),
         Part::Side => {}
         part => unreachable!("a cone has no part {}", part.name()),
     }

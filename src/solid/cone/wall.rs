@@ -9,7 +9,7 @@
 //! ```
 //!
 //! and `g + t h >= 0`, which tells its nappe from the other. `β = |a|²` is the cone
-//! through the rims of the discs of radius `r0` and `r1` (its radius at height
+//! through the rims of the disks of radius `r0` and `r1` (its radius at height
 //! `y` is `r0 + Δ y / |a|²`); `β = |a|² - Δ²` is the cone that touches the balls of
 //! these radii. Divided by `β`, (1) is `A t² + 2 B t + C <= 0` with
 //!
@@ -56,8 +56,8 @@ use crate::solid::way::Way;
 /// Which cone belongs to two radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::solid) enum Fit {
-    /// That through the rims of two discs.
-    Discs,
+    /// That through the rims of two disks.
+    Disks,
     /// That which touches two balls, of which neither holds the other.
     Balls,
 }
@@ -180,7 +180,7 @@ impl<A: Way> Taper<A> {
     pub fn rounded_beta(&self) -> (f64, bool) {
         let (aa, delta) = (self.axis().length_squared(), self.radius1 - self.radius0);
         match self.fit {
-            Fit::Discs => (aa, true),
+            Fit::Disks => (aa, true),
             Fit::Balls => (aa - delta * delta, delta * delta < 0.5 * aa),
         }
     }
@@ -223,7 +223,7 @@ impl<A: Way> Taper<A> {
         d: DVec3,
     ) -> Option<(Roots, f64)> {
         let bounds = Bounds::new(rounded);
-        if bounds.passes_by() {
+        if bounds.rejects() {
             return None;
         }
         if bounds.is_good() {
@@ -298,7 +298,7 @@ impl<N: Number> Measures<N> {
         let aa = dot(a, a);
         let delta = N::difference(radius1, radius0);
         let beta = match fit {
-            Fit::Discs => aa.clone(),
+            Fit::Disks => aa.clone(),
             Fit::Balls => aa.minus(&delta.times(&delta)),
         };
         Self {

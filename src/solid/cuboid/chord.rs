@@ -1,7 +1,7 @@
 //! Ray against cuboid, by slabs.
 //!
 //! With the cuboid's axes `f_i` as they are stored, its half widths `h_i` and the
-//! ray `centre + x + t d`, the line is between the two planes of axis i where
+//! ray `center + x + t d`, the line is between the two planes of axis i where
 //!
 //! ```text
 //! -h_i <= f_i·x + t f_i·d <= h_i                                           (1)
@@ -54,7 +54,7 @@ enum Slab {
     Within(Part),
 }
 
-/// The chord of the line `centre + x + t d`.
+/// The chord of the line `center + x + t d`.
 #[inline]
 pub(super) fn chord(cuboid: &Cuboid, x: impl Way, d: DVec3) -> Option<Chord> {
     // Zero times anything but a number is NaN.
@@ -97,7 +97,7 @@ pub(super) fn chord(cuboid: &Cuboid, x: impl Way, d: DVec3) -> Option<Chord> {
     })
 }
 
-/// The first meeting of the line `centre + x + t d`; see [`quick`](crate::solid::quick).
+/// The first meeting of the line `center + x + t d`; see [`quick`](crate::solid::quick).
 #[inline(always)]
 pub(super) fn quick_first(cuboid: &Cuboid, x: DVec3, d: DVec3, range: &Range) -> Quick {
     let [mut enter, mut leave] = [f64::NEG_INFINITY, f64::INFINITY].map(|t| End { t, slack: 0.0 });

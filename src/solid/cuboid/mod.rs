@@ -11,11 +11,11 @@ use super::surface::FirstParameter;
 use super::{Chord, ConvexSolid, Cylinder, Location, Part, RayOrigin, SolidKind, SurfacePoint};
 use crate::math::{Bounds, Orientation, UNIT_ROUNDOFF, power_of_two};
 
-/// A box that may be turned: its centre, half of its width along each of its own
+/// A box that may be turned: its center, half of its width along each of its own
 /// axes, and its orientation, all taken as exact numbers.
 ///
 /// With `f` the columns of [`Orientation::world_from_object`], the solid is
-/// `{x : |f_i · (x - centre)| <= half_widths_i}` and the surface its boundary, six
+/// `{x : |f_i · (x - center)| <= half_widths_i}` and the surface its boundary, six
 /// faces named by their own axis and side. The columns of a turned cuboid are
 /// orthonormal to within roundings, and taken as they are.
 ///
@@ -23,7 +23,7 @@ use crate::math::{Bounds, Orientation, UNIT_ROUNDOFF, power_of_two};
 /// whichever way a ray passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid {
-    centre: DVec3,
+    center: DVec3,
     half_widths: DVec3,
     orientation: Orientation,
 }
@@ -31,11 +31,11 @@ pub struct Cuboid {
 /// Why numbers are not a cuboid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CuboidError {
-    /// A coordinate of the centre is NaN, infinite or beyond [`Cylinder::GREATEST`].
-    #[error("the centre is ({:?}, {:?}, {:?}): every coordinate must be finite and at most {:.1e} in size", centre.x, centre.y, centre.z, Cylinder::GREATEST)]
-    Centre {
-        /// The centre as given.
-        centre: DVec3,
+    /// A coordinate of the center is NaN, infinite or beyond [`Cylinder::GREATEST`].
+    #[error("the center is ({:?}, {:?}, {:?}): every coordinate must be finite and at most {:.1e} in size", center.x, center.y, center.z, Cylinder::GREATEST)]
+    Center {
+        /// The center as given.
+        center: DVec3,
     },
     /// A half width is not a number in [`Cylinder::LEAST`, `Cylinder::GREATEST`].
     #[error(
@@ -52,40 +52,40 @@ pub enum CuboidError {
 }
 
 impl Cuboid {
-    /// The cuboid around `centre` that reaches `half_widths` along its own axes.
+    /// The cuboid around `center` that reaches `half_widths` along its own axes.
     ///
     /// # Errors
     /// When a number is not finite or out of range.
     pub fn new(
-        centre: DVec3,
+        center: DVec3,
         half_widths: DVec3,
         orientation: Orientation,
     ) -> Result<Self, CuboidError> {
-        if !Cylinder::is_in_range(centre) {
-            return Err(CuboidError::Centre { centre });
+        if !Cylinder::is_in_range(center) {
+            return Err(CuboidError::Center { center });
         }
         for (axis, half_width) in ["x", "y", "z"].into_iter().zip(half_widths.to_array()) {
             if !(Cylinder::LEAST..=Cylinder::GREATEST).contains(&half_width) {
                 return Err(CuboidError::HalfWidth { axis, half_width });
             }
         }
-        Ok(Self::from_valid(centre, half_widths, orientation))
+        Ok(Self::from_valid(center, half_widths, orientation))
     }
 
     /// The cuboid of numbers that [`Cuboid::new`] accepted before.
     #[inline]
-    pub(crate) fn from_valid(centre: DVec3, half_widths: DVec3, orientation: Orientation) -> Self {
+    pub(crate) fn from_valid(center: DVec3, half_widths: DVec3, orientation: Orientation) -> Self {
         Self {
-            centre,
+            center,
             half_widths,
             orientation,
         }
     }
 
-    /// The centre.
+    /// The center.
     #[must_use]
-    pub fn centre(&self) -> DVec3 {
-        self.centre
+    pub fn center(&self) -> DVec3 {
+        self.center
     }
 
     /// Half of the width along each of its own axes, positive.
@@ -110,7 +110,7 @@ impl Cuboid {
 impl ConvexSolid for Cuboid {
     const KIND: SolidKind = SolidKind::Cuboid;
 
-    /// A corner is `centre + F⁻¹ y`, `F` the matrix of the rows `f_i` and `|y_i| =
+    /// A corner is `center + F⁻¹ y`, `F` the matrix of the rows `f_i` and `|y_i| =
     /// h_i`. With `M` the transpose of `F`, `F⁻¹` is `M` but for the part by which it is
     /// not orthonormal, at most 6 u of the length of y ([`Orientation`]); products
     /// and sums add 4 u. Where the axes are the world's none of this is there.
@@ -123,14 +123,14 @@ impl ConvexSolid for Cuboid {
             16.0 * UNIT_ROUNDOFF * half_widths.element_sum()
         };
         Bounds {
-            lower: self.centre - (reach + off),
-            upper: self.centre + (reach + off),
+            lower: self.center - (reach + off),
+            upper: self.center + (reach + off),
         }
         .rounded_outward()
     }
 
     fn anchor(&self) -> DVec3 {
-        self.centre
+        self.center
     }
 
     #[inline]
@@ -139,7 +139,7 @@ impl ConvexSolid for Cuboid {
     }
 
     fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
-        chord::chord(self, origin.way_from(self.centre), direction)
+        chord::chord(self, origin.way_from(self.center), direction)
     }
 
     #[inline(always)]
@@ -148,17 +148,17 @@ impl ConvexSolid for Cuboid {
     }
 
     #[inline(always)]
-    fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
-        passing::passes_by(self, from_anchor, direction)
+    fn rejects(&self, from_anchor: DVec3, direction: DVec3) -> bool {
+        passing::rejects(self, from_anchor, direction)
     }
 
     /// `u` and `v` are the two coordinates of the face, in the order y z for a face
     /// of x, z x for one of y and x y for one of z, from 0 at the least to 1.
     ///
     /// With `y` the point in own coordinates, one of which is `±h` and the others
-    /// within `±h`, the true point of the face is `centre + F⁻¹ y`. `M y` is off by 6 u
+    /// within `±h`, the true point of the face is `center + F⁻¹ y`. `M y` is off by 6 u
     /// of the length of `y` for `M` (see [`Cuboid::bounds`]) and 6 u for its products
-    /// and sums, and the sum with the centre by u of the point.
+    /// and sums, and the sum with the center by u of the point.
     fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {
         let (axis, is_upper) = face(part);
         let half_widths = self.half_widths;
@@ -168,7 +168,7 @@ impl ConvexSolid for Cuboid {
             .clamp(-half_widths, half_widths);
         let side = if is_upper { 1.0 } else { -1.0 };
         own[axis] = side * half_widths[axis];
-        let point = self.centre + self.orientation.to_world(own);
+        let point = self.center + self.orientation.to_world(own);
         let share = |axis: usize| 0.5 + 0.5 * (own[axis] / half_widths[axis]);
         SurfacePoint {
             point,
@@ -212,7 +212,7 @@ impl Cuboid {
     /// off by less than 6 u of their terms, decide where they do by 2^-48.
     fn locate_along(&self, axis: usize, point: DVec3) -> Location {
         let (terms, half_width) = (
-            self.axis(axis) * (point - self.centre),
+            self.axis(axis) * (point - self.center),
             self.half_widths[axis],
         );
         let height = (terms.x + terms.y + terms.z).abs();
@@ -237,7 +237,7 @@ impl Cuboid {
     }
 }
 
-/// `h - side f·(point - centre)`: how far a point is within a plane.
+/// `h - side f·(point - center)`: how far a point is within a plane.
 struct Height<'a> {
     cuboid: &'a Cuboid,
     axis: usize,
@@ -248,7 +248,7 @@ struct Height<'a> {
 impl Expression for Height<'_> {
     fn value<N: Number>(&self) -> N {
         let f = vector::<N>(self.cuboid.axis(self.axis) * self.side);
-        let x = difference(self.point, self.cuboid.centre);
+        let x = difference(self.point, self.cuboid.center);
         N::of(self.cuboid.half_widths[self.axis]).minus(&dot(&f, &x))
     }
 }

@@ -21,10 +21,10 @@ use crate::math::power_of_two;
 /// 16 u, doubled for the roundings of the sums.
 const ROUNDINGS: f64 = power_of_two(-48);
 
-/// Whether the line `centre + x + t d` certainly passes by. Says nothing if not, as for
+/// Whether the line `center + x + t d` certainly passes by. Says nothing if not, as for
 /// what is not finite.
 #[inline(always)]
-pub(super) fn passes_by(cuboid: &Cuboid, x: DVec3, d: DVec3) -> bool {
+pub(super) fn rejects(cuboid: &Cuboid, x: DVec3, d: DVec3) -> bool {
     let (orientation, h) = (cuboid.orientation, cuboid.half_widths);
     let (y, e) = (orientation.to_object(x), orientation.to_object(d));
     let beside = y.cross(e).abs();
@@ -49,7 +49,7 @@ mod tests {
         let turned = Orientation::IDENTITY.rotated_z(30.0);
         let cuboid = Cuboid::new(DVec3::ZERO, DVec3::new(2.0, 1.0, 3.0), turned);
         let x = turned.to_world(DVec3::new(0.5, height, 0.25)) - d * 7.0;
-        passes_by(&cuboid.expect("it is one"), x, d)
+        rejects(&cuboid.expect("it is one"), x, d)
     }
 
     #[test]

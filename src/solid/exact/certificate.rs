@@ -70,7 +70,7 @@ impl Near {
     }
 }
 
-/// Where a line is inside the wall and between the discs, with bounds.
+/// Where a line is inside the wall and between the disks, with bounds.
 struct Certifier<'a> {
     cylinder: &'a Cylinder,
     ray: &'a Ray,
@@ -88,7 +88,7 @@ struct Certifier<'a> {
     slope_error: f64,
 }
 
-/// Where a height is between the discs, in the ray's direction.
+/// Where a height is between the disks, in the ray's direction.
 #[derive(Clone, Copy, PartialEq)]
 enum Height {
     Before,
@@ -163,7 +163,7 @@ impl Certifier<'_> {
                 if self.height(leave)? == Height::Before {
                     return Some(None);
                 }
-                let (plane, at, part) = self.disc(self.is_forward())?;
+                let (plane, at, part) = self.disk(self.is_forward())?;
                 if let Some(answer) = self.hit(plane, at, part, Crossing::Enter)? {
                     return Some(Some(answer));
                 }
@@ -178,7 +178,7 @@ impl Certifier<'_> {
         let (t, at, part) = match self.height(root)? {
             Height::Before => return None,
             Height::Inside => (root, At::SecondRoot, Part::Side),
-            Height::Beyond => self.disc(!self.is_forward())?,
+            Height::Beyond => self.disk(!self.is_forward())?,
         };
         // The solver puts ends that a rounding swapped in order.
         let t = Near {
@@ -188,7 +188,7 @@ impl Certifier<'_> {
         self.hit(t, at, part, Crossing::Leave)
     }
 
-    /// Whether the line comes through the disc at `p0` first.
+    /// Whether the line comes through the disk at `p0` first.
     #[inline(always)]
     fn is_forward(&self) -> bool {
         self.slab.slope > 0.0
@@ -219,7 +219,7 @@ impl Certifier<'_> {
     }
 
     /// Where the line is at a root. A height outside of the slab is certain
-    /// only if the sign of `d·a` is: it says which disc is meant.
+    /// only if the sign of `d·a` is: it says which disk is meant.
     #[inline(always)]
     fn height(&self, t: Near) -> Option<Height> {
         let Slab {
@@ -249,9 +249,9 @@ impl Certifier<'_> {
         (y.above(0.0) & y.below(height)).then_some(Height::Inside)
     }
 
-    /// Where the line meets the plane of the disc at `p0` or at `p1`.
+    /// Where the line meets the plane of the disk at `p0` or at `p1`.
     #[inline]
-    fn disc(&self, at_p0: bool) -> Option<(Near, At, Part)> {
+    fn disk(&self, at_p0: bool) -> Option<(Near, At, Part)> {
         let (plane, at, part) = if at_p0 {
             (0.0, At::Plane0, Part::Cap0)
         } else {

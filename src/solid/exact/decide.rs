@@ -7,7 +7,7 @@
 //! - the axial position: `y |n|² = x·a |n|² - (m·n) d·a ∓ d·a √S`;
 //! - the range: `(t - t_min) |n|² = -(m·n) - t_min |n|² ∓ √S`.
 //!
-//! Discs are met at `-(x·a) / (d·a)` and `(a·a - x·a) / (d·a)`.
+//! Disks are met at `-(x·a) / (d·a)` and `(a·a - x·a) / (d·a)`.
 
 use std::cmp::Ordering::{self, Equal, Greater, Less};
 
@@ -25,9 +25,9 @@ pub(super) enum At {
     FirstRoot,
     /// The root with the plus sign.
     SecondRoot,
-    /// Where the line meets the plane of the disc at `p0`.
+    /// Where the line meets the plane of the disk at `p0`.
     Plane0,
-    /// Where the line meets the plane of the disc at `p1`.
+    /// Where the line meets the plane of the disk at `p1`.
     Plane1,
     /// The start of the range, for a line within the surface.
     Start,
@@ -187,7 +187,7 @@ impl<N: Number> Terms<N> {
         Some(Some(self.in_order(ends, lies_on)?))
     }
 
-    /// The disc that is met first, going along the axis.
+    /// The disk that is met first, going along the axis.
     fn in_order(&self, [cap0, cap1]: [End; 2], lies_on: Option<Part>) -> Certain<Ends> {
         let (enter, leave) = match self.yd.sign()? {
             Greater => (cap0, cap1),
@@ -203,7 +203,7 @@ impl<N: Number> Terms<N> {
     /// A line across the axis.
     fn perpendicular_ends(&self) -> Certain<Option<Ends>> {
         let (ya, beyond) = (&self.ya, self.ya.minus(&self.aa));
-        let disc = match (ya.sign()?, beyond.sign()?) {
+        let disk = match (ya.sign()?, beyond.sign()?) {
             (Less, _) | (_, Greater) => return Some(None),
             (Equal, _) => Some(Part::Cap0),
             (_, Equal) => Some(Part::Cap1),
@@ -211,27 +211,27 @@ impl<N: Number> Terms<N> {
         };
         let end = |at| End {
             at,
-            part: disc.unwrap_or(Part::Side),
-            on_rim: disc.is_some(),
+            part: disk.unwrap_or(Part::Side),
+            on_rim: disk.is_some(),
             touches: false,
         };
         Some(Some(Ends {
             enter: end(At::FirstRoot),
             leave: end(At::SecondRoot),
-            lies_on: disc,
+            lies_on: disk,
         }))
     }
 
-    /// Any other line: each end is on the wall or on a disc.
+    /// Any other line: each end is on the wall or on a disk.
     fn oblique_ends(&self) -> Certain<Option<Ends>> {
         let Terms {
             nn, mn, aa, ya, yd, ..
         } = self;
-        // y |n|² = p0 ∓ yd √s, and from the other disc p1 ∓ yd √s.
+        // y |n|² = p0 ∓ yd √s, and from the other disk p1 ∓ yd √s.
         let p0 = ya.times(nn).minus(&mn.times(yd));
         let p1 = p0.minus(&aa.times(nn));
         let forward = yd.sign()? == Greater;
-        // How the point at a root lies to the disc that is met first (Less is
+        // How the point at a root lies to the disk that is met first (Less is
         // outside of the solid) and to the one that is met last.
         let to_first = |root| {
             if forward {
@@ -247,15 +247,15 @@ impl<N: Number> Terms<N> {
                 Some(self.at_root(&p0, yd, root)?.reverse())
             }
         };
-        let disc0 = (At::Plane0, Part::Cap0);
-        let disc1 = (At::Plane1, Part::Cap1);
-        let (first_disc, last_disc) = if forward {
-            (disc0, disc1)
+        let disk0 = (At::Plane0, Part::Cap0);
+        let disk1 = (At::Plane1, Part::Cap1);
+        let (first_disk, last_disk) = if forward {
+            (disk0, disk1)
         } else {
-            (disc1, disc0)
+            (disk1, disk0)
         };
-        // A root outside of the disc it comes from is cut off by that disc's
-        // plane; one on the plane of either disc is on that one's rim.
+        // A root outside of the disk it comes from is cut off by that disk's
+        // plane; one on the plane of either disk is on that one's rim.
         let end = |root, outside: Ordering, (to_near, near), (to_far, far), touches| {
             let (near_plane, near_cap): (At, Part) = near;
             let (_, far_cap): (At, Part) = far;
@@ -285,15 +285,15 @@ impl<N: Number> Terms<N> {
             enter: end(
                 At::FirstRoot,
                 Less,
-                (enter_first, first_disc),
-                (enter_last, last_disc),
+                (enter_first, first_disk),
+                (enter_last, last_disk),
                 leave_first == Equal,
             ),
             leave: end(
                 At::SecondRoot,
                 Greater,
-                (leave_last, last_disc),
-                (leave_first, first_disc),
+                (leave_last, last_disk),
+                (leave_first, first_disk),
                 enter_last == Equal,
             ),
             lies_on: None,

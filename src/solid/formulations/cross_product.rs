@@ -1,6 +1,6 @@
-//! `cross-product`: cross products with the axis, from the centre.
+//! `cross-product`: cross products with the axis, from the center.
 //!
-//! With the unit axis a, `oc = o - centre`, `m = a × oc` and `n = a × d`, a
+//! With the unit axis a, `oc = o - center`, `m = a × oc` and `n = a × d`, a
 //! point of the ray is on the infinite wall where `|m + t n| = r`:
 //!
 //! ```text
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The source takes the smallest positive root i *before* it looks at the
-//! height, and a hit needs `|ci·a| <= h/2`, `ci` from the centre to i. So a
+//! height, and a hit needs `|ci·a| <= h/2`, `ci` from the center to i. So a
 //! ray whose first root is beyond an open end misses the inside of the wall
 //! behind it: [`Roots::First`]. [`Roots::Both`] goes on to the second root.
 //!
@@ -20,10 +20,10 @@
 //! radius, but not that of the length: `|m|` is the distance across the axis.
 //!
 //! Additions: "positive" is "within the ray's range" here. The source is silent
-//! about discs; they are hit where `|a × ci| <= r` in the plane of an end.
+//! about disks; they are hit where `|a × ci| <= r` in the plane of an end.
 
 use super::adapter::Solver;
-use super::textbook::{CentreRecord, Nearest, Quadratic, disc_normal};
+use super::textbook::{CenterRecord, Nearest, Quadratic, disk_normal};
 use crate::math::{RayOf, Real, RealVector};
 use crate::solid::{Cylinder, Part};
 
@@ -53,7 +53,7 @@ pub(super) struct CrossProduct {
 }
 
 impl<S: Real> Solver<S> for CrossProduct {
-    type Record = CentreRecord<S>;
+    type Record = CenterRecord<S>;
 
     fn name(&self) -> &'static str {
         match self.roots {
@@ -63,13 +63,13 @@ impl<S: Real> Solver<S> for CrossProduct {
     }
 
     fn record(&self, cylinder: &Cylinder) -> Self::Record {
-        CentreRecord::of(cylinder)
+        CenterRecord::of(cylinder)
     }
 
     #[inline(always)]
     fn first(&self, record: &Self::Record, ray: &RayOf<S>) -> Option<(S, Part)> {
         let (d, axis) = (ray.direction, record.axis);
-        let oc = ray.origin - record.centre;
+        let oc = ray.origin - record.center;
         let mut nearest = Nearest::new(ray.t_min, ray.t_max);
 
         // The wall.
@@ -84,7 +84,7 @@ impl<S: Real> Solver<S> for CrossProduct {
                 if !nearest.wants(t) {
                     continue;
                 }
-                let ci = ray.at(t) - record.centre;
+                let ci = ray.at(t) - record.center;
                 if ci.dot(axis).abs() <= record.half_height {
                     nearest.take(t, Part::Side);
                 }
@@ -94,11 +94,11 @@ impl<S: Real> Solver<S> for CrossProduct {
             }
         }
 
-        // The discs.
-        for (is_there, height, part) in record.discs() {
+        // The disks.
+        for (is_there, height, part) in record.disks() {
             let t = (height - oc.dot(axis)) / d.dot(axis);
             if is_there && nearest.wants(t) {
-                let across = axis.cross(ray.at(t) - record.centre);
+                let across = axis.cross(ray.at(t) - record.center);
                 if across.dot(across) <= record.radius * record.radius {
                     nearest.take(t, part);
                 }
@@ -109,10 +109,10 @@ impl<S: Real> Solver<S> for CrossProduct {
 
     fn normal(&self, record: &Self::Record, ray: &RayOf<S>, t: S, part: Part) -> S::Vector {
         let i = ray.at(t);
-        let ci = i - record.centre;
+        let ci = i - record.center;
         let outward = match part {
             Part::Side => (ci - record.axis * ci.dot(record.axis)) / record.radius,
-            Part::Cap0 | Part::Cap1 => disc_normal::<S>(record.axis, part),
+            Part::Cap0 | Part::Cap1 => disk_normal::<S>(record.axis, part),
             part => part.not_of_a_cylinder(),
         };
         match self.facing {

@@ -5,9 +5,9 @@
 //!
 //! | name | from |
 //! |---|---|
-//! | `centre-dot` | dot products with a unit axis, from the centre |
-//! | `centre-dot-tuned` | the same formula in the triple product's code shape |
-//! | `start-cap` | the same algebra from the middle of the first disc |
+//! | `center-dot` | dot products with a unit axis, from the center |
+//! | `center-dot-tuned` | the same formula in the triple product's code shape |
+//! | `start-cap` | the same algebra from the middle of the first disk |
 //! | `projection` | the same coefficients, another normal |
 //! | `cross-product` | cross products with a unit axis, one root only |
 //! | `cross-product-both` | the same with both roots |
@@ -18,12 +18,12 @@
 //! | `exact-rounded` | the same with `t` rounded correctly |
 //!
 //! All share a meaning: the first hit with `t_min <= t <= t_max` on the wall or
-//! on a disc that the cylinder has. Each is generic over the precision, and
+//! on a disk that the cylinder has. Each is generic over the precision, and
 //! stores a cylinder as its source does, computed in f64 and rounded.
 
 mod adapter;
-mod centre_dot;
-mod centre_dot_tuned;
+mod center_dot;
+mod center_dot_tuned;
 mod cross_product;
 mod exact;
 mod object_space;
@@ -39,8 +39,8 @@ use glam::DVec3;
 use super::{Cylinder, Part};
 use crate::math::Ray;
 use adapter::in_precision;
-use centre_dot::CentreDot;
-use centre_dot_tuned::CentreDotTuned;
+use center_dot::CenterDot;
+use center_dot_tuned::CenterDotTuned;
 use cross_product::CrossProduct;
 use exact::Exact;
 use object_space::ObjectSpace;
@@ -93,7 +93,7 @@ pub struct Problem {
 
 /// A way of intersecting a ray with a cylinder.
 pub trait Formulation: Send + Sync {
-    /// The name in tables and on the command line, such as `centre-dot`.
+    /// The name in tables and on the command line, such as `center-dot`.
     fn name(&self) -> &'static str;
 
     /// The precision it computes in.
@@ -122,8 +122,8 @@ type Maker = fn(Precision) -> Box<dyn Formulation>;
 
 /// Every formulation, in the order of tables.
 const MAKERS: [Maker; 11] = [
-    |precision| in_precision(CentreDot, precision),
-    |precision| in_precision(CentreDotTuned, precision),
+    |precision| in_precision(CenterDot, precision),
+    |precision| in_precision(CenterDotTuned, precision),
     |precision| in_precision(StartCap, precision),
     |precision| in_precision(Projection, precision),
     |precision| cross_product(Roots::First, Facing::Outward, precision),

@@ -1,6 +1,6 @@
 //! `object-space`: the ray is rotated into the cylinder's own frame.
 //!
-//! In the frame (r, s, t) with the origin at the centre and the t axis along
+//! In the frame (r, s, t) with the origin at the center and the t axis along
 //! the cylinder, the wall is `r² + s² = a²` for `-b <= t <= b`. A rotation
 //! matrix takes the ray there, `D + E λ` with D the origin and E the direction,
 //! and the infinite wall is met where
@@ -9,7 +9,7 @@
 //! A λ² + B λ + C = 0,   A = Er² + Es²,   B = 2 (Dr Er + Ds Es),   C = Dr² + Ds² - a²
 //! ```
 //!
-//! The discs are in the planes `t = ∓b`, where `r² + s² <= a²`. Roots are by the
+//! The disks are in the planes `t = ∓b`, where `r² + s² <= a²`. Roots are by the
 //! textbook formula. The frame is stored rounded, so it is not quite a
 //! rotation; C loses the square of the distance to the axis over the radius.
 //!
@@ -18,17 +18,17 @@
 //! value that is right. It stands for zero in four places here:
 //!
 //! 1. a ray with `|A| < EPSILON` is parallel to the axis and has no wall;
-//! 2. a ray with `|Et| < EPSILON` is across it and has no discs;
+//! 2. a ray with `|Et| < EPSILON` is across it and has no disks;
 //! 3. a hit is farther along the ray than its start by more than EPSILON, so
 //!    that a ray does not hit where it was spawned;
-//! 4. the ends, `|t| <= b + EPSILON`, and the discs, `r² + s² <= a² + EPSILON`,
-//!    reach beyond themselves, so that no ray slips between wall and disc.
+//! 4. the ends, `|t| <= b + EPSILON`, and the disks, `r² + s² <= a² + EPSILON`,
+//!    reach beyond themselves, so that no ray slips between wall and disk.
 //!
 //! Addition: the source leaves open where EPSILON goes and how large it is; the
 //! above are its usual places.
 
 use super::adapter::Solver;
-use super::textbook::{Nearest, Quadratic, disc_normal};
+use super::textbook::{Nearest, Quadratic, disk_normal};
 use crate::math::{RayOf, Real, RealVector};
 use crate::solid::surface::angle_frame;
 use crate::solid::{Caps, Cylinder, Part};
@@ -47,7 +47,7 @@ pub(super) struct ObjectSpace {
 /// A cylinder as its frame, radius a and half height b.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FrameRecord<S: Real> {
-    centre: S::Vector,
+    center: S::Vector,
     /// The rows of the rotation into the frame: its axes r, s and t.
     axes: [S::Vector; 3],
     a: S,
@@ -75,7 +75,7 @@ impl<S: Real> Solver<S> for ObjectSpace {
         let t = (p1 - p0).normalize();
         let (r, s) = angle_frame(t);
         FrameRecord {
-            centre: S::Vector::from_f64((p0 + p1) * 0.5),
+            center: S::Vector::from_f64((p0 + p1) * 0.5),
             axes: [r, s, t].map(S::Vector::from_f64),
             a: S::from_f64(cylinder.radius()),
             b: S::from_f64((p1 - p0).length() * 0.5),
@@ -86,7 +86,7 @@ impl<S: Real> Solver<S> for ObjectSpace {
     #[inline(always)]
     fn first(&self, record: &Self::Record, ray: &RayOf<S>) -> Option<(S, Part)> {
         let epsilon = S::from_f64(self.tolerance);
-        let [dr, ds, dt] = record.rotated(ray.origin - record.centre);
+        let [dr, ds, dt] = record.rotated(ray.origin - record.center);
         let [er, es, et] = record.rotated(ray.direction);
         let aa = record.a * record.a;
         let mut nearest = Nearest::new(ray.t_min, ray.t_max);
@@ -110,13 +110,13 @@ impl<S: Real> Solver<S> for ObjectSpace {
             }
         }
 
-        // The discs.
+        // The disks.
         if et.abs() >= epsilon {
-            let discs = [
+            let disks = [
                 (record.caps.at_p0(), -record.b, Part::Cap0),
                 (record.caps.at_p1(), record.b, Part::Cap1),
             ];
-            for (is_there, t, part) in discs {
+            for (is_there, t, part) in disks {
                 let lambda = (t - dt) / et;
                 let (r, s) = (dr + er * lambda, ds + es * lambda);
                 let within = is_there && r * r + s * s <= aa + epsilon;
@@ -132,9 +132,9 @@ impl<S: Real> Solver<S> for ObjectSpace {
     fn normal(&self, record: &Self::Record, ray: &RayOf<S>, t: S, part: Part) -> S::Vector {
         let [across, along, axis] = record.axes;
         if part != Part::Side {
-            return disc_normal::<S>(axis, part);
+            return disk_normal::<S>(axis, part);
         }
-        let [r, s, _] = record.rotated(ray.at(t) - record.centre);
+        let [r, s, _] = record.rotated(ray.at(t) - record.center);
         (across * r + along * s).normalize()
     }
 }

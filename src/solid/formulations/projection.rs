@@ -8,16 +8,16 @@
 //! |(x - c) - <x - c, a> a|² = r²
 //! ```
 //!
-//! With `x = o + t d` the coefficients of t are those of `centre-dot`, whose
-//! code it shares, discs included. What differs is the normal: the gradient of
-//! the implicit function, `(x - c) - y`, normalised where `centre-dot` divides
+//! With `x = o + t d` the coefficients of t are those of `center-dot`, whose
+//! code it shares, disks included. What differs is the normal: the gradient of
+//! the implicit function, `(x - c) - y`, normalised where `center-dot` divides
 //! by the radius, so that it has length 1 even where x is off the wall.
 //!
-//! Additions: c is the centre, and the ends are those of `centre-dot`.
+//! Additions: c is the center, and the ends are those of `center-dot`.
 
 use super::adapter::Solver;
-use super::centre_dot;
-use super::textbook::{CentreRecord, disc_normal};
+use super::center_dot;
+use super::textbook::{CenterRecord, disk_normal};
 use crate::math::{RayOf, Real, RealVector};
 use crate::solid::{Cylinder, Part};
 
@@ -26,27 +26,27 @@ use crate::solid::{Cylinder, Part};
 pub(super) struct Projection;
 
 impl<S: Real> Solver<S> for Projection {
-    type Record = CentreRecord<S>;
+    type Record = CenterRecord<S>;
 
     fn name(&self) -> &'static str {
         "projection"
     }
 
     fn record(&self, cylinder: &Cylinder) -> Self::Record {
-        CentreRecord::of(cylinder)
+        CenterRecord::of(cylinder)
     }
 
     #[inline(always)]
     fn first(&self, record: &Self::Record, ray: &RayOf<S>) -> Option<(S, Part)> {
-        centre_dot::first(record, ray)
+        center_dot::first(record, ray)
     }
 
     fn normal(&self, record: &Self::Record, ray: &RayOf<S>, t: S, part: Part) -> S::Vector {
         if part != Part::Side {
-            return disc_normal::<S>(record.axis, part);
+            return disk_normal::<S>(record.axis, part);
         }
-        let from_centre = ray.at(t) - record.centre;
-        let y = record.axis * from_centre.dot(record.axis);
-        (from_centre - y).normalize()
+        let from_center = ray.at(t) - record.center;
+        let y = record.axis * from_center.dot(record.axis);
+        (from_center - y).normalize()
     }
 }

@@ -1,6 +1,6 @@
-//! `start-cap`: dot products from the middle of the first disc.
+//! `start-cap`: dot products from the middle of the first disk.
 //!
-//! With C the middle of the disc at the start, the unit axis V and `X = O - C`,
+//! With C the middle of the disk at the start, the unit axis V and `X = O - C`,
 //! a point `P = O + D t` has the axial position `m = D·V t + X·V`, and it is on
 //! the infinite wall where `|P - C - V m| = r`:
 //!
@@ -9,14 +9,14 @@
 //! ```
 //!
 //! It is on the cylinder where `0 <= m <= length`; the normal is
-//! `P - C - V m`, normalised. The algebra is that of `centre-dot` seen from
+//! `P - C - V m`, normalised. The algebra is that of `center-dot` seen from
 //! another point, and loses the same; m is linear in t, without the point.
 //!
-//! Additions: the source names the caps but not their test. A disc is met where
+//! Additions: the source names the caps but not their test. A disk is met where
 //! m is 0 or `length`, and hit where `|P - C - V m|² <= r²`.
 
 use super::adapter::Solver;
-use super::textbook::{Nearest, Quadratic, disc_normal};
+use super::textbook::{Nearest, Quadratic, disk_normal};
 use crate::math::{RayOf, Real, RealVector};
 use crate::solid::{Caps, Cylinder, Part};
 
@@ -24,7 +24,7 @@ use crate::solid::{Caps, Cylinder, Part};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StartCap;
 
-/// A cylinder as the middle of its first disc, unit axis, radius and length.
+/// A cylinder as the middle of its first disk, unit axis, radius and length.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StartRecord<S: Real> {
     start: S::Vector,
@@ -70,12 +70,12 @@ impl<S: Real> Solver<S> for StartCap {
             }
         }
 
-        // The discs.
-        let discs = [
+        // The disks.
+        let disks = [
             (record.caps.at_p0(), S::ZERO, Part::Cap0),
             (record.caps.at_p1(), record.length, Part::Cap1),
         ];
-        for (is_there, m, part) in discs {
+        for (is_there, m, part) in disks {
             let t = (m - x_axis) / d_axis;
             if is_there && nearest.wants(t) {
                 let from_middle = ray.at(t) - record.start - axis * m;
@@ -89,7 +89,7 @@ impl<S: Real> Solver<S> for StartCap {
 
     fn normal(&self, record: &Self::Record, ray: &RayOf<S>, t: S, part: Part) -> S::Vector {
         if part != Part::Side {
-            return disc_normal::<S>(record.axis, part);
+            return disk_normal::<S>(record.axis, part);
         }
         let x = ray.origin - record.start;
         let m = ray.direction.dot(record.axis) * t + x.dot(record.axis);

@@ -38,7 +38,7 @@ fn all_answer(problem: Problem, expected: Option<(f64, Part, DVec3)>) {
 }
 
 #[test]
-fn formulations_from_outside_hit_wall_and_discs() {
+fn formulations_from_outside_hit_wall_and_disks() {
     let wall = Some((2.0, Part::Side, DVec3::X));
     all_answer(problem(Caps::Both, [3.0, 0.0, 0.5], [-1.0, 0.0, 0.0]), wall);
     all_answer(problem(Caps::None, [5.0, 0.0, 0.5], [-2.0, 0.0, 0.0]), wall);
@@ -78,7 +78,7 @@ fn formulations_from_inside_hit_on_the_way_out() {
 }
 
 #[test]
-fn formulations_parallel_to_the_axis_see_only_discs() {
+fn formulations_parallel_to_the_axis_see_only_disks() {
     let along = |caps| problem(caps, [0.5, 0.0, 5.0], [0.0, 0.0, -2.0]);
     let (cap0, cap1) = (
         Some((3.0, Part::Cap0, DVec3::NEG_Z)),
@@ -143,7 +143,7 @@ fn object_space_at_its_own_surface_drops_the_hit() {
 }
 
 /// The tolerance is larger than the whole cylinder: a miss by nine radii is
-/// taken for a hit of a disc, and a plain hit of the wall is lost.
+/// taken for a hit of a disk, and a plain hit of the wall is lost.
 #[test]
 fn object_space_in_a_small_unit_is_wrong() {
     let unit = power_of_two(-27);
@@ -166,13 +166,13 @@ fn object_space_in_a_small_unit_is_wrong() {
 /// From 10^5 radii away the dot products have lost the radius in f32:
 /// `oc·oc - (oc·a)²` is known to 2^-24 of the distance squared.
 #[test]
-fn centre_dot_from_far_away_misses_in_f32_only() {
+fn center_dot_from_far_away_misses_in_f32_only() {
     let height = 0.984375_f64;
     let far = problem(Caps::Both, [1e5, height, 0.5], [-1.0, 0.0, 0.0]);
     let x = (1.0 - height * height).sqrt();
     for (name, f32_is_right) in [
-        ("centre-dot", false),
-        ("centre-dot-tuned", false),
+        ("center-dot", false),
+        ("center-dot-tuned", false),
         ("start-cap", false),
         ("projection", false),
         ("triple-product", true),

@@ -9,10 +9,10 @@
 use crate::math::{Real, RealVector};
 use crate::solid::{Caps, Cylinder, Part};
 
-/// A cylinder as centre, unit axis, radius and half of its height.
+/// A cylinder as center, unit axis, radius and half of its height.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct CentreRecord<S: Real> {
-    pub centre: S::Vector,
+pub(super) struct CenterRecord<S: Real> {
+    pub center: S::Vector,
     /// From `p0` to `p1`, of length 1 but for rounding.
     pub axis: S::Vector,
     pub radius: S,
@@ -20,11 +20,11 @@ pub(super) struct CentreRecord<S: Real> {
     pub caps: Caps,
 }
 
-impl<S: Real> CentreRecord<S> {
+impl<S: Real> CenterRecord<S> {
     pub fn of(cylinder: &Cylinder) -> Self {
         let (p0, p1) = (cylinder.p0(), cylinder.p1());
         Self {
-            centre: S::Vector::from_f64((p0 + p1) * 0.5),
+            center: S::Vector::from_f64((p0 + p1) * 0.5),
             axis: S::Vector::from_f64((p1 - p0).normalize()),
             radius: S::from_f64(cylinder.radius()),
             half_height: S::from_f64((p1 - p0).length() * 0.5),
@@ -32,10 +32,10 @@ impl<S: Real> CentreRecord<S> {
         }
     }
 
-    /// The discs: whether the cylinder has them, and where their planes are on
-    /// the axis, counted from the centre.
+    /// The disks: whether the cylinder has them, and where their planes are on
+    /// the axis, counted from the center.
     #[inline]
-    pub fn discs(&self) -> [(bool, S, Part); 2] {
+    pub fn disks(&self) -> [(bool, S, Part); 2] {
         [
             (self.caps.at_p0(), -self.half_height, Part::Cap0),
             (self.caps.at_p1(), self.half_height, Part::Cap1),
@@ -86,8 +86,8 @@ impl<S: Real> Quadratic<S> {
 
 /// The nearest of the candidates offered so far, within a range of `t`.
 ///
-/// Of equal ones the last offered counts: solvers offer discs after the wall,
-/// since a rim belongs to the disc.
+/// Of equal ones the last offered counts: solvers offer disks after the wall,
+/// since a rim belongs to the disk.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest<S> {
     t_min: S,
@@ -126,7 +126,7 @@ impl<S: Real> Nearest<S> {
     }
 }
 
-/// The outward normal of a disc.
-pub(super) fn disc_normal<S: Real>(axis: S::Vector, part: Part) -> S::Vector {
+/// The outward normal of a disk.
+pub(super) fn disk_normal<S: Real>(axis: S::Vector, part: Part) -> S::Vector {
     if part == Part::Cap0 { -axis } else { axis }
 }

@@ -17,13 +17,13 @@ use super::{
 };
 use crate::math::Bounds;
 
-/// The surface of the convex hull of two balls: two centres and a radius each,
+/// The surface of the convex hull of two balls: two centers and a radius each,
 /// all taken as exact numbers.
 ///
 /// It is what a ball sweeps whose radius changes evenly on its way from `p0` to
 /// `p1`: two spheres and the cone that touches both, with no edge between them.
 /// Where one ball holds the other, it is that ball. A radius may be zero, and the
-/// centres may coincide.
+/// centers may coincide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundedCone {
     ends: Ends,
@@ -47,13 +47,13 @@ impl RoundedCone {
         })
     }
 
-    /// The first centre.
+    /// The first center.
     #[must_use]
     pub fn p0(&self) -> DVec3 {
         self.ends.p0
     }
 
-    /// The second centre.
+    /// The second center.
     #[must_use]
     pub fn p1(&self) -> DVec3 {
         self.ends.p1
@@ -167,7 +167,7 @@ impl ConvexSolid for RoundedCone {
     }
 
     #[inline(always)]
-    fn passes_by(&self, from_anchor: DVec3, direction: DVec3) -> bool {
+    fn rejects(&self, from_anchor: DVec3, direction: DVec3) -> bool {
         let from_p1 = from_anchor - self.ends.axis();
         self.is_passed([from_anchor, from_p1], direction)
     }
@@ -197,7 +197,7 @@ impl ConvexSolid for RoundedCone {
             radius1,
         } = self.ends;
         let balls = ball::locate(p0, radius0, point).max(ball::locate(p1, radius1, point));
-        // The discs at the seams are inside of the balls but for their rims, so that
+        // The disks at the seams are inside of the balls but for their rims, so that
         // the first need not be asked for; and where one ball holds the other, no
         // height is beyond it and not beyond the other.
         if balls == Location::Inside

@@ -6,7 +6,7 @@
 //! that ball alone. So one ball is enough for each end. The solver looks for the first entry
 //! into either ball, which is the same if the rounded parameters are in the exact
 //! order. A point of the one sphere beyond its seam is outside of the other ball: with `p`
-//! counted from the centre of the one, of radius r, and heights `p·a <= -r Δ`,
+//! counted from the center of the one, of radius r, and heights `p·a <= -r Δ`,
 //!
 //! ```text
 //! |p - a|² - r'² >= β                                                      (1)
@@ -58,12 +58,12 @@ pub(super) fn first(solid: &RoundedCone, x: DVec3, d: DVec3, range: &Range) -> Q
 /// closures are not inlined always.
 #[inline(always)]
 fn ball(taper: &Taper, x: DVec3, d: DVec3, side: &Side) -> QuickBall {
-    let (centre, radius) = if side.is_beyond {
+    let (center, radius) = if side.is_beyond {
         (taper.a, taper.radius1)
     } else {
         (DVec3::ZERO, taper.radius0)
     };
-    QuickBall::new(x - centre, d, radius, taper.a.length())
+    QuickBall::new(x - center, d, radius, taper.a.length())
 }
 
 /// (2).

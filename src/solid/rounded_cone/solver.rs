@@ -7,7 +7,7 @@
 //!
 //! A line enters the hull where it enters the wall, if that is between the seams;
 //! otherwise it enters on a sphere, and the first entry into a ball is that. It
-//! leaves alike. The discs at the seams are within the balls and never asked for.
+//! leaves alike. The disks at the seams are within the balls and never asked for.
 //!
 //! **No gap at a seam.** Whether the line meets a ball or the infinite wall and on
 //! which side of a seam are decided exactly, from the same numbers. So a line that

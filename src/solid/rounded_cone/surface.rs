@@ -1,8 +1,8 @@
 //! The point, normal and parameters of a hit on a rounded cone, with error bounds.
 //!
-//! The hull is what a ball sweeps whose centre goes from `p0` to `p1` and whose
+//! The hull is what a ball sweeps whose center goes from `p0` to `p1` and whose
 //! radius changes evenly, and the point nearest to `o + t d` is one of the sphere
-//! around some centre `p0 + v a`: for the spheres at the ends v is 0 or 1. On the wall
+//! around some center `p0 + v a`: for the spheres at the ends v is 0 or 1. On the wall
 //! the normal is `n = (outward √β - axis Δ) / |a|` with `β = |a|² - Δ²`, and going
 //! back along it from a point at height `y = x·a` and distance `ρ` from the axis one
 //! meets the axis at
@@ -11,7 +11,7 @@
 //! v = (y + ρ Δ |a| / √β) / |a|²,   q = p0 + v a + (r0 + v Δ) n
 //! ```
 //!
-//! Error (u = 2^-53, R the greater radius): as with the cylinder, the centre is off
+//! Error (u = 2^-53, R the greater radius): as with the cylinder, the center is off
 //! by `2 u |a|` and the sums round by `u (|q| + |a| + R)`. `r0 + v Δ` rounds by 3 u
 //! R; `n` is unit to 8 u. `outward` is off the perpendicular by 6 u, and `√β / |a|`
 //! is off by up to `u |a| / √β` of 1, since `a` is rounded: both turn `n` by an angle
@@ -20,7 +20,7 @@
 //! δ² / 2 is below 4 u. Together `u (|q| + 4 |a| + 16 R)`; 5 and 20 are counted. On a
 //! sphere it is `u (|q| + 6 R)`.
 //!
-//! **Centres next to each other.** The square of an `a` below 2^-484 loses bits to
+//! **Centers next to each other.** The square of an `a` below 2^-484 loses bits to
 //! underflow, below 2^-537 all of them. Radii that differ do so by 2^-202 at least,
 //! the spacing of the numbers at `Cylinder::LEAST`. So an `a` below [`SHORT`] has a
 //! wall only if the radii are the same, and the hull is then one ball but for
@@ -43,9 +43,9 @@ const SHORT: f64 = power_of_two(-400);
 /// What a short `a` is multiplied by.
 const LONGER: f64 = power_of_two(600);
 
-/// The point of `part` nearest to `p0 + from_p0`. `v` is where the centre of the
+/// The point of `part` nearest to `p0 + from_p0`. `v` is where the center of the
 /// ball is that touches the surface there, from `p0` to `p1`; `u` is a cylinder's. If
-/// the centres coincide, the axis is taken along z.
+/// the centers coincide, the axis is taken along z.
 pub(super) fn surface_point(solid: &RoundedCone, part: Part, from_p0: DVec3) -> SurfacePoint {
     let (r0, r1) = (solid.ends.radius0, solid.ends.radius1);
     let a = solid.ends.axis();
@@ -58,15 +58,15 @@ pub(super) fn surface_point(solid: &RoundedCone, part: Part, from_p0: DVec3) -> 
         a
     };
     let around = Around::new(axis, from_p0);
-    let sphere = |centre: DVec3, radius: f64, from_centre: DVec3, v| {
-        let distance = from_centre.length();
-        // The centre has no nearest point; any will do.
+    let sphere = |center: DVec3, radius: f64, from_center: DVec3, v| {
+        let distance = from_center.length();
+        // The center has no nearest point; any will do.
         let normal = if distance > 0.0 {
-            from_centre / distance
+            from_center / distance
         } else {
             around.outward
         };
-        let point = centre + normal * radius;
+        let point = center + normal * radius;
         SurfacePoint {
             point,
             error: UNIT_ROUNDOFF * (point.length() + 6.0 * radius),
@@ -106,9 +106,9 @@ mod tests {
     use super::*;
     use crate::math::Random;
 
-    /// The angle counts from the direction of the centres alone, however near they are.
+    /// The angle counts from the direction of the centers alone, however near they are.
     #[test]
-    fn centres_next_to_each_other_have_the_angles_and_heights_of_distant_ones() {
+    fn centers_next_to_each_other_have_the_angles_and_heights_of_distant_ones() {
         for index in 0..1000 {
             let mut random = Random::new(31, index);
             let axis = random.direction();
@@ -128,7 +128,7 @@ mod tests {
                 }
             }
         }
-        // On a coordinate plane the height is a number as small as the centres' distance.
+        // On a coordinate plane the height is a number as small as the centers' distance.
         for exponent in [-400, -450, -520, -530, -536] {
             let length = 1.3 * power_of_two(exponent);
             let near = RoundedCone::new(DVec3::ZERO, DVec3::Z * length, 2.0, 2.0).unwrap();

@@ -13,7 +13,7 @@ pub(super) fn vertices(cuboid: &Cuboid) -> Vec<DVec3> {
     let corner = |number: u32| {
         let side = |bit: u32| if number >> bit & 1 == 0 { -1.0 } else { 1.0 };
         let own = cuboid.half_widths() * DVec3::new(side(0), side(1), side(2));
-        cuboid.centre() + cuboid.orientation().to_world(own)
+        cuboid.center() + cuboid.orientation().to_world(own)
     };
     (0..8).map(corner).collect()
 }
@@ -36,5 +36,5 @@ pub(super) fn triangles() -> Vec<[u32; 3]> {
 /// By how much a corner may be off the true one.
 pub(super) fn corner_error(cuboid: &Cuboid) -> f64 {
     let reach = cuboid.half_widths().element_sum();
-    UNIT_ROUNDOFF * (cuboid.centre().length() + 18.0 * reach)
+    UNIT_ROUNDOFF * (cuboid.center().length() + 18.0 * reach)
 }

@@ -7,7 +7,7 @@
 //!
 //! 1. **The polyline.** The *inscribed* one has its corners on the meridian of the
 //!    solid; the segments of the *circumscribed* one touch it from without. Walls and
-//!    discs are straight, and theirs is exact. On an arc of radius r with steps of δ
+//!    disks are straight, and theirs is exact. On an arc of radius r with steps of δ
 //!    the corners of the inscribed one are at r, and its chords within
 //!    `r (1 - cos(δ/2))` of the arc; the corners of the circumscribed one are at
 //!    `r / cos(δ/2)`, `r (1/cos(δ/2) - 1)` beyond it.
@@ -21,11 +21,11 @@
 //! a circumscribed one holds a segment that touches the meridian and is square to
 //! the meridian's plane: it touches the solid, which is convex, so that the mesh
 //! holds the solid. The inscribed one is the hull of points of the solid, and in it.
-//! Both but for roundings, and but for discs that are not there.
+//! Both but for roundings, and but for disks that are not there.
 //!
 //! For convex bodies, one of which holds the other, how far a point of the outer can
 //! be from the inner is how far any point of either surface can be from the other
-//! surface; without its discs, a wall and its mesh are that far apart at each height.
+//! surface; without its disks, a wall and its mesh are that far apart at each height.
 //! So [`deviation_of`], the sum of both steps, is by how much a mesh may be off the
 //! surface and the surface off the mesh. A triangle of corners that are moved by
 //! roundings is nowhere farther from where it was than they are: [`corner_error_of`]
@@ -124,7 +124,7 @@ fn outline(solid: &AnySolid, segments: u32, fit: Fit) -> Outline {
         AnySolid::Cone(cone) => profiles::of_cone(cone),
         AnySolid::RoundedCone(cone) => profiles::of_rounded_cone(cone, segments, fit),
         AnySolid::Sphere(sphere) => {
-            profiles::of_ball(sphere.centre(), sphere.radius(), segments, fit)
+            profiles::of_ball(sphere.center(), sphere.radius(), segments, fit)
         }
         AnySolid::Disk(disk) => profiles::of_disk(disk),
         AnySolid::Cuboid(cuboid) => return Outline::Cuboid(*cuboid),
@@ -132,7 +132,7 @@ fn outline(solid: &AnySolid, segments: u32, fit: Fit) -> Outline {
 }
 
 /// The mesh of a solid with `segments` sides around its axis, in the solid's own
-/// space. It is closed where the solid is, and has the discs that the solid has; a disk
+/// space. It is closed where the solid is, and has the disks that the solid has; a disk
 /// is a polygon seen counter-clockwise from where the normal points. Balls and
 /// rounded ends have as many steps along the meridian as keep them no longer than those
 /// around. A cuboid is itself, whatever the number of segments and the fit.
@@ -217,6 +217,6 @@ pub fn corner_error_of(solid: &AnySolid, segments: u32) -> f64 {
 pub fn reach_of(solid: &AnySolid, segments: u32) -> f64 {
     match outline(solid, segments, Fit::Circumscribed) {
         Outline::Turned(profile) => profile.reach(segments),
-        Outline::Cuboid(cuboid) => cuboid.centre().length() + cuboid.half_widths().length(),
+        Outline::Cuboid(cuboid) => cuboid.center().length() + cuboid.half_widths().length(),
     }
 }

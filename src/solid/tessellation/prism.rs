@@ -12,7 +12,7 @@ pub fn sagitta(cylinder: &Cylinder, segments: u32) -> f64 {
 }
 
 /// The prism with `segments` sides whose corners lie on the rims, which is
-/// [`mesh_of`] a cylinder. It has the discs that the cylinder has.
+/// [`mesh_of`] a cylinder. It has the disks that the cylinder has.
 ///
 /// # Panics
 /// When there are fewer than 3 segments.
@@ -22,9 +22,9 @@ pub fn inscribed_prism(cylinder: &Cylinder, segments: u32) -> Mesh {
 }
 
 /// How many vertices and triangles the prism of a cylinder has: they depend on its
-/// discs alone.
+/// disks alone.
 #[must_use]
 pub fn prism_size(caps: Caps, segments: u32) -> (u64, u64) {
-    let discs = u64::from(caps.at_p0()) + u64::from(caps.at_p1());
-    turned_size(2, discs, segments)
+    let disks = u64::from(caps.at_p0()) + u64::from(caps.at_p1());
+    turned_size(2, disks, segments)
 }

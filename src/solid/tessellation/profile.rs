@@ -3,7 +3,7 @@
 //! The polyline has a *ring* for each corner off the axis and may begin and end in a
 //! *pole*, a corner on it. A ring becomes N corners at multiples of `2π/N`, two rings a
 //! band of trapezoids, and a pole with the ring next to it a fan of triangles. A flat
-//! disc is the fan of a pole in its middle.
+//! disk is the fan of a pole in its middle.
 //!
 //! **Roundings** (u = 2^-53; R is the radius of the corners). A corner is
 //! `p + (e cos φ + f sin φ) R`, p the middle of the ring:
@@ -31,7 +31,7 @@ use crate::solid::surface::angle_frame;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ring {
     /// Where its height is on the axis.
-    pub centre: DVec3,
+    pub center: DVec3,
     /// Its distance from the axis, positive.
     pub radius: f64,
 }
@@ -68,7 +68,7 @@ impl Profile {
                     Fit::Inscribed => ring.radius,
                     Fit::Circumscribed => ring.radius / factor,
                 };
-                ring.centre + outward * radius
+                ring.center + outward * radius
             }));
         }
         vertices.extend(self.start);
@@ -117,7 +117,7 @@ impl Profile {
     /// By how much a corner, as computed, may be off the one that is meant.
     pub fn corner_error(&self, segments: u32) -> f64 {
         let factor = inner_factor(segments);
-        let farthest = self.greatest(|ring| ring.centre.length());
+        let farthest = self.greatest(|ring| ring.center.length());
         UNIT_ROUNDOFF * (80.0 * (self.widest() / factor) + 2.0 * farthest) + self.error / factor
     }
 
@@ -125,7 +125,7 @@ impl Profile {
     pub fn reach(&self, segments: u32) -> f64 {
         let factor = inner_factor(segments);
         let of_poles = [self.start, self.end].map(|pole| pole.map_or(0.0, DVec3::length));
-        self.greatest(|ring| ring.centre.length() + ring.radius / factor)
+        self.greatest(|ring| ring.center.length() + ring.radius / factor)
             .max(of_poles[0])
             .max(of_poles[1])
     }

@@ -46,7 +46,7 @@ use super::profile::{Profile, Ring};
 use crate::math::{UNIT_ROUNDOFF, unit};
 use crate::solid::{Cone, Cylinder, Disk, RoundedCone};
 
-/// The wall of a cylinder with its discs.
+/// The wall of a cylinder with its disks.
 pub(super) fn of_cylinder(cylinder: &Cylinder) -> Profile {
     let (radius, caps) = (cylinder.radius(), cylinder.caps());
     of_cone(&Cone::from_valid(
@@ -58,18 +58,18 @@ pub(super) fn of_cylinder(cylinder: &Cylinder) -> Profile {
     ))
 }
 
-/// The wall of a cone with its discs or its apex.
+/// The wall of a cone with its disks or its apex.
 pub(super) fn of_cone(cone: &Cone) -> Profile {
     let ends = [(cone.p0(), cone.radius0()), (cone.p1(), cone.radius1())];
     let rings = ends.iter().filter(|(_, radius)| *radius > 0.0);
-    let pole = |end: usize, has_disc: bool| {
+    let pole = |end: usize, has_disk: bool| {
         let (point, radius) = ends[end];
-        (has_disc || radius == 0.0).then_some(point)
+        (has_disk || radius == 0.0).then_some(point)
     };
     Profile {
         axis: (cone.p1() - cone.p0()).normalize(),
         rings: rings
-            .map(|&(centre, radius)| Ring { centre, radius })
+            .map(|&(center, radius)| Ring { center, radius })
             .collect(),
         start: pole(0, cone.caps().at_p0()),
         end: pole(1, cone.caps().at_p1()),
@@ -80,23 +80,23 @@ pub(super) fn of_cone(cone: &Cone) -> Profile {
 
 /// A disk, whose rim is the beginning and whose middle is the end.
 pub(super) fn of_disk(disk: &Disk) -> Profile {
-    let (centre, radius) = (disk.centre(), disk.radius());
+    let (center, radius) = (disk.center(), disk.radius());
     Profile {
         axis: disk.normal().normalize(),
-        rings: vec![Ring { centre, radius }],
+        rings: vec![Ring { center, radius }],
         start: None,
-        end: Some(centre),
+        end: Some(center),
         deviation: 0.0,
         error: 0.0,
     }
 }
 
 /// A ball, whose axis is along z.
-pub(super) fn of_ball(centre: DVec3, radius: f64, segments: u32, fit: Fit) -> Profile {
+pub(super) fn of_ball(center: DVec3, radius: f64, segments: u32, fit: Fit) -> Profile {
     let half = |towards: DVec3| {
         let rings = rings_of(std::f64::consts::FRAC_PI_2, segments);
         let step = std::f64::consts::FRAC_PI_2 / (f64::from(rings) + 0.5);
-        Arc::new(centre, radius, towards, (rings, step), fit)
+        Arc::new(center, radius, towards, (rings, step), fit)
     };
     of_arcs(DVec3::Z, [half(DVec3::NEG_Z), half(DVec3::Z)], 0.0)
 }
@@ -107,18 +107,18 @@ pub(super) fn of_rounded_cone(cone: &RoundedCone, segments: u32, fit: Fit) -> Pr
     let wall = cone.taper().and_then(|taper| Some((taper, unit(taper.a)?)));
     let Some((taper, axis)) = wall else {
         let greater = usize::from(cone.radius1() > cone.radius0());
-        let (centre, radius) = ends[greater];
-        return of_ball(centre, radius, segments, fit);
+        let (center, radius) = ends[greater];
+        return of_ball(center, radius, segments, fit);
     };
     let delta = cone.radius1() - cone.radius0();
-    let arc = |(centre, radius): (DVec3, f64), towards: DVec3, delta: f64| {
+    let arc = |(center, radius): (DVec3, f64), towards: DVec3, delta: f64| {
         let angle = libm::atan2(taper.beta().sqrt(), delta);
         let rings = rings_of(angle, segments);
         let step = match fit {
             Fit::Inscribed => angle / f64::from(rings),
             Fit::Circumscribed => angle / (f64::from(rings) + 0.5),
         };
-        Arc::new(centre, radius, towards, (rings, step), fit)
+        Arc::new(center, radius, towards, (rings, step), fit)
     };
     let arcs = [arc(ends[0], -axis, delta), arc(ends[1], axis, -delta)];
     of_arcs(axis, arcs, 16.0 * UNIT_ROUNDOFF * taper.a.length())
@@ -141,7 +141,7 @@ struct Arc {
 impl Arc {
     /// So many rings, a step from one to the next.
     fn new(
-        centre: DVec3,
+        center: DVec3,
         radius: f64,
         towards: DVec3,
         (rings, step): (u32, f64),
@@ -155,17 +155,17 @@ impl Arc {
         let ring = |number: u32| {
             let (sin, cos) = libm::sincos(step * f64::from(number));
             Ring {
-                centre: centre + towards * (corner_radius * cos),
+                center: center + towards * (corner_radius * cos),
                 radius: corner_radius * sin,
             }
         };
         // An arc without a radius is a point.
         let rings = if radius > 0.0 { rings } else { 0 };
         Self {
-            pole: centre + towards * corner_radius,
+            pole: center + towards * corner_radius,
             rings: (1..=rings).map(ring).collect(),
             deviation,
-            error: UNIT_ROUNDOFF * (32.0 * corner_radius + 2.0 * centre.length()),
+            error: UNIT_ROUNDOFF * (32.0 * corner_radius + 2.0 * center.length()),
         }
     }
 }

@@ -16,25 +16,25 @@ use crate::solid::{Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 
 /// `max n·x` over the closed solid.
 pub(crate) fn support(solid: &AnySolid, normal: DVec3) -> f64 {
-    let disc = |centre: DVec3, axis: DVec3, radius: f64| {
-        centre.dot(normal) + radius * axis.cross(normal).length() / axis.length()
+    let disk = |center: DVec3, axis: DVec3, radius: f64| {
+        center.dot(normal) + radius * axis.cross(normal).length() / axis.length()
     };
-    let ball = |centre: DVec3, radius: f64| centre.dot(normal) + radius;
+    let ball = |center: DVec3, radius: f64| center.dot(normal) + radius;
     match solid {
         AnySolid::Cylinder(c) => {
             let axis = c.p1() - c.p0();
-            disc(c.p0(), axis, c.radius()).max(disc(c.p1(), axis, c.radius()))
+            disk(c.p0(), axis, c.radius()).max(disk(c.p1(), axis, c.radius()))
         }
         AnySolid::Cone(c) => {
             let axis = c.p1() - c.p0();
-            disc(c.p0(), axis, c.radius0()).max(disc(c.p1(), axis, c.radius1()))
+            disk(c.p0(), axis, c.radius0()).max(disk(c.p1(), axis, c.radius1()))
         }
         AnySolid::RoundedCone(c) => ball(c.p0(), c.radius0()).max(ball(c.p1(), c.radius1())),
-        AnySolid::Sphere(s) => ball(s.centre(), s.radius()),
-        AnySolid::Disk(d) => disc(d.centre(), d.normal(), d.radius()),
+        AnySolid::Sphere(s) => ball(s.center(), s.radius()),
+        AnySolid::Disk(d) => disk(d.center(), d.normal(), d.radius()),
         AnySolid::Cuboid(c) => {
             let own = c.orientation().to_object(normal).abs();
-            c.centre().dot(normal) + own.dot(c.half_widths())
+            c.center().dot(normal) + own.dot(c.half_widths())
         }
     }
 }
@@ -248,7 +248,7 @@ fn open_ends_stay_open_and_an_apex_closes_one() {
     }
 }
 
-/// Without its discs a wall has no inside; then what is asked is by heights.
+/// Without its disks a wall has no inside; then what is asked is by heights.
 #[test]
 fn corners_and_walls_keep_their_distance_from_the_axis() {
     let mut random = Random::new(3, 0);
@@ -298,7 +298,7 @@ fn balls_are_balls_and_disks_face_their_normal() {
         (held.vertices, held.triangles),
         (ball.vertices, ball.triangles)
     );
-    // Far centres that all but coincide still give the axis a direction.
+    // Far centers that all but coincide still give the axis a direction.
     let nearly = RoundedCone::new(DVec3::ZERO, DVec3::new(0.0, 1e-300, 0.0), 1.0, 1.0).unwrap();
     let mesh = mesh_of(&nearly.into(), 16, Fit::Inscribed);
     assert!(

@@ -6,9 +6,9 @@
 //! whatever any of its rays has to. Rays that start at many places are first put in an
 //! order in which neighbours have most in common. Answers depend on none of this.
 
-mod habit;
+mod normalized;
 mod order;
-mod usual;
+mod packet_heuristic;
 
 use arrayvec::ArrayVec;
 
@@ -16,9 +16,9 @@ use super::prototype::Prototype;
 use super::{FirstHit, Hit, HitFields, PartialHit, Tracer};
 use crate::embree::GREATEST_PACKET;
 use crate::math::Ray;
-use habit::Habit;
+use normalized::NormalizedRays;
 use order::{Group, order, split};
-use usual::Usual;
+use packet_heuristic::PacketHeuristic;
 
 /// Rays are alike if the cosine between each direction and the first one is at
 /// least this, which is an angle of 8 degrees: a pixel's neighbours in most
@@ -40,11 +40,11 @@ impl Tracer {
         hits.clear();
         hits.reserve(rays.len());
         let alone = |ray: &Ray| self.first_hit_and_callbacks(ray);
-        self.answer_all(rays, hits, alone, |root, usual, hits| {
-            root.search_packet(usual.all, &usual.local, &mut usual.packet);
-            for ray in usual.all {
-                let nearest = usual.packet.take_nearest(ray);
-                hits.push(nearest.map(|nearest| FirstHit::new(nearest, usual.factors[ray])));
+        self.answer_all(rays, hits, alone, |root, normalized, hits| {
+            root.search_packet(normalized.all, &normalized.local, &mut normalized.packet);
+            for ray in normalized.all {
+                let nearest = normalized.packet.take_nearest(ray);
+                hits.push(nearest.map(|nearest| FirstHit::new(nearest, normalized.factors[ray])));
             }
         });
     }
@@ -85,9 +85,10 @@ impl Tracer {
         blocked.clear();
         blocked.reserve(rays.len());
         let alone = |ray: &Ray| self.occluded_and_callbacks(ray);
-        self.answer_all(rays, blocked, alone, |root, usual, blocked| {
-            let hit = root.occluded_packet(usual.all, &usual.local, &mut usual.packet);
-            blocked.extend(usual.all.into_iter().map(|ray| hit.contains(ray)));
+        self.answer_all(rays, blocked, alone, |root, normalized, blocked| {
+            let hit =
+                root.occluded_packet(normalized.all, &normalized.local, &mut normalized.packet);
+            blocked.extend(normalized.all.into_iter().map(|ray| hit.contains(ray)));
         });
     }
 
@@ -98,21 +99,25 @@ impl Tracer {
         rays: &[Ray],
         answers: &mut Vec<T>,
         alone: impl Fn(&Ray) -> (T, u32),
-        together: impl Fn(&Prototype, &mut Usual, &mut Vec<T>),
+        together: impl Fn(&Prototype, &mut NormalizedRays, &mut Vec<T>),
     ) {
-        let mut habit = Habit::default();
-        let mut usual = Usual::new(self.device.instructions(), self.decisions());
+        let mut packet_heuristic = PacketHeuristic::default();
+        let mut normalized = NormalizedRays::new(self.device.instructions(), self.decisions());
         let mut answer = |rays: &[Ray], is_alike, answers: &mut Vec<T>| match &self.root {
             Some(root)
                 if rays.len() >= LEAST_RAYS
-                    && usual.fill(self, rays, self.are_packet(rays, is_alike, &mut habit)) =>
+                    && normalized.fill(
+                        self,
+                        rays,
+                        self.are_packet(rays, is_alike, &mut packet_heuristic),
+                    ) =>
             {
-                together(root, &mut usual, answers);
-                habit.traced(&usual);
+                together(root, &mut normalized, answers);
+                packet_heuristic.traced(&normalized);
             }
             _ => answers.extend(rays.iter().map(|ray| {
                 let (answer, callbacks) = alone(ray);
-                habit.traced_alone(1, callbacks);
+                packet_heuristic.traced_alone(1, callbacks);
                 answer
             })),
         };
@@ -166,8 +171,13 @@ impl Tracer {
 
     /// Whether the rays should be a packet. Those of a group that is alike are within twice
     /// the angle of each other.
-    fn are_packet(&self, rays: &[Ray], is_alike: bool, habit: &mut Habit) -> bool {
-        self.traces_packets && (is_alike || are_alike(rays)) && habit.wants_packet()
+    fn are_packet(
+        &self,
+        rays: &[Ray],
+        is_alike: bool,
+        packet_heuristic: &mut PacketHeuristic,
+    ) -> bool {
+        self.traces_packets && (is_alike || are_alike(rays)) && packet_heuristic.wants_packet()
     }
 }
 

@@ -10,7 +10,7 @@
 //! # What a copy must contain
 //!
 //! Write v = 2^-24, `O` for the greatest distance of the origin of Embree's rays from the
-//! centre of the frame, which is at least its radius R, and let a hit be at the parameter τ
+//! center of the frame, which is at least its radius R, and let a hit be at the parameter τ
 //! of Embree's ray `o + τ d`, in the frame. What the solver calls a hit is within the solid,
 //! and Embree's ray at τ is off from the solver's, by no more than a part of the slack `S`:
 //! [`Frame::slack`]. From the ray that enters a frame that is 3.1 v R (`docs/derivations.md`,
@@ -19,7 +19,7 @@
 //! [`Cell::near`] moves the ray to its point that is nearest to the middle of the cell, with
 //! a direction of length 1, in units of the cell; numbers are then of the cell's size, as are
 //! their roundings, wherever the ray comes from. The corner and the middle of a cell have
-//! coordinates of at most 1.01 R from the centre, so they are within 3 O of `o`; and a hit is within
+//! coordinates of at most 1.01 R from the center, so they are within 3 O of `o`; and a hit is within
 //! 2 O of it. Displacements, in the frame:
 //!
 //! | source | across the ray | along it |

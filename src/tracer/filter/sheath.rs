@@ -85,7 +85,7 @@ impl Sheathed for RoundedCone {
 impl Sheathed for Disk {
     fn sheath(&self) -> Sheath {
         Sheath {
-            anchor: self.centre(),
+            anchor: self.center(),
             axis: self.normal().normalize(),
             heights: [0.0; 2],
             radius: self.radius(),
@@ -103,7 +103,7 @@ impl Sheathed for Cuboid {
             let height = half_widths[axis] + off;
             let across = [half_widths[(axis + 1) % 3], half_widths[(axis + 2) % 3]];
             Sheath {
-                anchor: self.centre(),
+                anchor: self.center(),
                 axis: self.orientation().world_from_object().col(axis),
                 heights: [-height, height],
                 radius: libm::hypot(across[0], across[1]) + off,

@@ -7,7 +7,7 @@
 //! A point within the slack `s` of a sphere with the radius ρ is within
 //!
 //! ```text
-//! r0 = off + ρ + s,        off = |centre - c|                                        (1)
+//! r0 = off + ρ + s,        off = |center - c|                                        (1)
 //! ```
 //!
 //! of `c`. For the ray `x + T d` from `c`, with |d| = 1, the distance is least at
@@ -36,7 +36,7 @@ use crate::math::LANES;
 use crate::solid::{ConvexSolid, Sphere};
 use crate::tracer::frame::Frame;
 
-/// Steps of centres in a unit: 255 units then fill 16 bits.
+/// Steps of centers in a unit: 255 units then fill 16 bits.
 const STEPS: f64 = 256.0;
 
 /// What (2) may be off by, in units.
@@ -50,7 +50,7 @@ const OUTWARD: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SphereFilter {
     cell: Cell,
-    /// Centres, 256 to a unit.
+    /// Centers, 256 to a unit.
     c: [[u16; LANES]; 3],
     /// Radii; 0 where there is no sphere.
     r: [u8; LANES],
@@ -68,12 +68,12 @@ impl SphereFilter {
         let mut c = [[0; LANES]; 3];
         let mut radii = [0.0; LANES];
         for (lane, sphere) in spheres.iter().enumerate() {
-            let centre = cell.place(sphere.centre(), frame);
-            let kept = (centre * STEPS).round();
+            let center = cell.place(sphere.center(), frame);
+            let kept = (center * STEPS).round();
             for axis in 0..3 {
                 c[axis][lane] = kept[axis] as u16;
             }
-            let off = (centre - kept / STEPS).length();
+            let off = (center - kept / STEPS).length();
             let radius = sphere.radius() * frame.scale() * units;
             let least = (radius + off + frame.slack() * units + ROUNDED) * OUTWARD;
             radii[lane] = radius + share * (least - radius);

@@ -1,6 +1,6 @@
 //! Where f64 meets Embree's f32: a prototype's own frame, and rays in it.
 //!
-//! Each prototype's Embree scene lives in the frame `(p - centre) · 2^k` in
+//! Each prototype's Embree scene lives in the frame `(p - center) · 2^k` in
 //! which its bounding sphere has a radius R in [1, 2). The f32 ray that
 //! searches for candidates starts where the f64 ray enters that sphere (or at
 //! the start of its range, if that is inside), so that every number Embree
@@ -9,7 +9,7 @@
 //! [`BOX_GROWTH`] R are then never missed by Embree's slab test.
 //!
 //! A ray that starts farther than [`FAR`] away is moved in double-double to
-//! its point nearest to the centre and then handed on relative to the centre:
+//! its point nearest to the center and then handed on relative to the center:
 //! the solvers and placements work near the solids, and the distance costs
 //! only what f64 cannot hold of `t`.
 
@@ -32,7 +32,7 @@ use crate::math::{Bounds, DoubleDouble, UNIT_ROUNDOFF, f32_above, f32_below, pow
 pub(crate) const BOX_GROWTH: f64 = 1.0 / (1 << 19) as f64;
 
 /// Rays that start more than this many units of the frame (one to two such
-/// make a radius) from the centre are moved nearer before anything is solved.
+/// make a radius) from the center are moved nearer before anything is solved.
 /// Below it, an error of a few 2^-53 of the distance is under 2^-34 R, far
 /// inside the growth of the boxes; above it the double-double step, about as
 /// dear as one solve, is paid once a prototype.
@@ -41,7 +41,7 @@ pub(crate) const FAR: f64 = (1 << 16) as f64;
 /// The frame of a prototype's Embree scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Frame {
-    centre: DVec3,
+    center: DVec3,
     /// `2^k`.
     scale: f64,
     /// R, the radius of the bounding sphere in the frame, rounded up.
@@ -56,19 +56,19 @@ pub(crate) struct Frame {
 impl Frame {
     /// The frame of a box that is not empty and not a point.
     pub fn new(bounds: &Bounds) -> Self {
-        let centre = bounds.centre();
-        let corner = (bounds.upper - centre).max(centre - bounds.lower);
+        let center = bounds.center();
+        let corner = (bounds.upper - center).max(center - bounds.lower);
         let radius = corner.length() * (1.0 + 8.0 * UNIT_ROUNDOFF);
         let scale = 1.0 / power_of_two_below(radius);
         let radius = radius * scale;
         let growth = radius * BOX_GROWTH;
         Self {
-            centre,
+            center,
             scale,
             radius,
             growth,
-            lower: (bounds.lower - centre) * scale - growth,
-            upper: (bounds.upper - centre) * scale + growth,
+            lower: (bounds.lower - center) * scale - growth,
+            upper: (bounds.upper - center) * scale + growth,
         }
     }
 
@@ -81,8 +81,8 @@ impl Frame {
     }
 
     /// The middle of the prototype's box.
-    pub fn centre(&self) -> DVec3 {
-        self.centre
+    pub fn center(&self) -> DVec3 {
+        self.center
     }
 
     /// Units of the frame in one unit of the prototype's space.
@@ -92,7 +92,7 @@ impl Frame {
 
     /// A point of the prototype's space in the frame.
     pub fn place(&self, point: DVec3) -> DVec3 {
-        (point - self.centre) * self.scale
+        (point - self.center) * self.scale
     }
 
     /// The radius of the bounding sphere in the frame, from 1 to 2.
@@ -111,8 +111,8 @@ impl Frame {
     /// outward.
     pub fn grown_box(&self, bounds: &Bounds) -> Box32 {
         let grow = self.slack();
-        let lower = (bounds.lower - self.centre) * self.scale - grow;
-        let upper = (bounds.upper - self.centre) * self.scale + grow;
+        let lower = (bounds.lower - self.center) * self.scale - grow;
+        let upper = (bounds.upper - self.center) * self.scale + grow;
         Box32 {
             lower: lower.to_array().map(f32_below),
             upper: upper.to_array().map(f32_above),
@@ -122,7 +122,7 @@ impl Frame {
     /// Whether a ray starts so far away that it has to be moved nearer.
     #[inline(always)]
     fn is_far(&self, ray: &LocalRay) -> bool {
-        is_far(ray.origin_from(self.centre) * self.scale)
+        is_far(ray.origin_from(self.center) * self.scale)
     }
 
     /// The ray as the solvers of this prototype get it. A ray that comes to a
@@ -136,7 +136,7 @@ impl Frame {
         }
     }
 
-    /// That ray, and its point nearest to the centre.
+    /// That ray, and its point nearest to the center.
     fn approached(&self, ray: &LocalRay) -> (LocalRay, Passing) {
         debug_assert_eq!(ray.base, DVec3::ZERO, "the ray was moved before");
         let passing = self.passing(ray);
@@ -147,10 +147,10 @@ impl Frame {
         }
     }
 
-    /// How a ray passes the centre.
+    /// How a ray passes the center.
     #[inline(always)]
     fn passing(&self, ray: &LocalRay) -> Passing {
-        let origin = ray.origin_from(self.centre) * self.scale;
+        let origin = ray.origin_from(self.center) * self.scale;
         let direction = ray.direction * self.scale;
         let inverse_square = 1.0 / direction.length_squared();
         let nearest = -origin.dot(direction) * inverse_square;
@@ -182,10 +182,10 @@ impl Frame {
     fn approach_from_afar(&self, ray: &LocalRay, guess: f64) -> (LocalRay, Passing) {
         let direction = ray.direction * self.scale;
         let component = |i: usize| {
-            let from_centre = DoubleDouble::sum(ray.origin[i], -self.centre[i]);
+            let from_center = DoubleDouble::sum(ray.origin[i], -self.center[i]);
             let scaled = DoubleDouble {
-                high: from_centre.high * self.scale,
-                low: from_centre.low * self.scale,
+                high: from_center.high * self.scale,
+                low: from_center.low * self.scale,
             };
             scaled.plus(DoubleDouble::product(guess, direction[i])).high
         };
@@ -195,7 +195,7 @@ impl Frame {
         let moved = LocalRay {
             origin: nearest / self.scale,
             direction: ray.direction,
-            base: self.centre,
+            base: self.center,
             shift: ray.shift + (guess + rest),
         };
         let passing = Passing {
@@ -241,7 +241,7 @@ impl Frame {
     /// not matter. `None` where the ray starts elsewhere or is far away.
     #[inline(always)]
     fn entry_from_inside(&self, ray: &LocalRay, t_min: f64, t_max: f64) -> Option<Entry> {
-        let origin = ray.origin_from(self.centre) * self.scale;
+        let origin = ray.origin_from(self.center) * self.scale;
         let direction = ray.direction * self.scale;
         let mut window = Window {
             shift: ray.shift,
@@ -355,7 +355,7 @@ fn in_steps(component: f64) -> f32 {
 struct Passing {
     /// One over the square of the direction's length in the frame.
     inverse_square: f64,
-    /// The ray's parameter at the point nearest to the centre, or within some
+    /// The ray's parameter at the point nearest to the center, or within some
     /// roundings of it: what counts is where `place` is.
     nearest: f64,
     /// That point, in the frame.

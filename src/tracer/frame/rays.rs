@@ -13,7 +13,7 @@ use crate::solid::RayOrigin;
 pub(crate) struct LocalRay {
     pub origin: DVec3,
     pub direction: DVec3,
-    /// Zero, or the centre of the prototype for a ray that was moved.
+    /// Zero, or the center of the prototype for a ray that was moved.
     pub base: DVec3,
     pub shift: f64,
 }
@@ -58,7 +58,7 @@ impl LocalRay {
 /// How the `t` of a query becomes the `t_far` of the f32 ray in the frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Window {
-    /// The query's `t` at the point nearest to the centre is `shift + nearest`.
+    /// The query's `t` at the point nearest to the center is `shift + nearest`.
     pub(super) shift: f64,
     pub(super) nearest: f64,
     /// Where the f32 ray starts, counted from the nearest point.

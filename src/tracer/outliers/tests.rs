@@ -21,23 +21,23 @@ fn record(number: u32, p0: DVec3, p1: DVec3, radius: f64) -> CylinderRecord {
 }
 
 /// Twigs of a millimetre within 2 m of a point, each 5 cm long.
-fn twigs(centre: DVec3, count: u32) -> Vec<CylinderRecord> {
+fn twigs(center: DVec3, count: u32) -> Vec<CylinderRecord> {
     let twig = |number: u32| {
         let mut random = Random::new(SEED, u64::from(number));
-        let p0 = centre + DVec3::from_array([(); 3].map(|()| random.uniform(-2.0, 2.0)));
+        let p0 = center + DVec3::from_array([(); 3].map(|()| random.uniform(-2.0, 2.0)));
         record(number, p0, p0 + random.direction() * 0.05, 0.001)
     };
     (0..count).map(twig).collect()
 }
 
 /// The mean number of callbacks of rays at twigs, the first hits and occlusion together.
-fn callbacks(prototypes: Vec<Prototype>, centre: DVec3) -> f64 {
+fn callbacks(prototypes: Vec<Prototype>, center: DVec3) -> f64 {
     let scene = Arc::new(Scene::new(prototypes));
     let tracer = Tracer::new(scene, &Options::default()).expect("a tracer");
     let rays = 500;
     let counts = (0..rays).map(|number| {
         let mut random = Random::new(SEED, 1_000_000 + number);
-        let mut near = || centre + random.direction() * 1.5;
+        let mut near = || center + random.direction() * 1.5;
         let (origin, target) = (near(), near());
         let ray = Ray::new(origin, target - origin);
         let (first, occluded) = (
@@ -81,14 +81,14 @@ fn assert_few_more(name: &str, with: f64, without: f64) {
 
 #[test]
 fn outliers_cost_no_callbacks_for_each_solid() {
-    let centre = DVec3::ZERO;
-    let near = twigs(centre, COUNT);
-    let without = callbacks(vec![root(near.clone())], centre);
+    let center = DVec3::ZERO;
+    let near = twigs(center, COUNT);
+    let without = callbacks(vec![root(near.clone())], center);
     for distance in [1e5, 1e7, 1e12] {
         let far = DVec3::X * distance;
         let mut cylinders = near.clone();
         cylinders.push(record(COUNT, far, far + DVec3::Z, 1.0));
-        let with = callbacks(vec![root(cylinders)], centre);
+        let with = callbacks(vec![root(cylinders)], center);
         assert_few_more(&format!("far {distance:e}"), with, without);
     }
     let mut plate = root(near.clone());
@@ -98,7 +98,7 @@ fn outliers_cost_no_callbacks_for_each_solid() {
         .solids
         .cuboids
         .push(SolidRecord::new(ground, COUNT, MaterialIndex(0)));
-    assert_few_more("plate", callbacks(vec![plate], centre), without);
+    assert_few_more("plate", callbacks(vec![plate], center), without);
 
     let utm = DVec3::new(5e5, 5e6, 100.0);
     let mut cylinders = twigs(utm, COUNT);
@@ -109,16 +109,16 @@ fn outliers_cost_no_callbacks_for_each_solid() {
 
 #[test]
 fn outliers_of_placed_prototypes_and_far_placements_cost_no_callbacks_for_each_solid() {
-    let centre = DVec3::ZERO;
-    let near = twigs(centre, COUNT / 10);
+    let center = DVec3::ZERO;
+    let near = twigs(center, COUNT / 10);
     let many: Vec<DVec3> = (0..COUNT)
         .map(|number| {
             let mut random = Random::new(SEED, 2_000_000 + u64::from(number));
             random.direction() * random.uniform(0.0, 200.0)
         })
-        .chain([centre])
+        .chain([center])
         .collect();
-    let without = callbacks(vec![placing(&many), root(near.clone())], centre);
+    let without = callbacks(vec![placing(&many), root(near.clone())], center);
 
     let mut cylinders = near.clone();
     cylinders.push(record(
@@ -127,12 +127,12 @@ fn outliers_of_placed_prototypes_and_far_placements_cost_no_callbacks_for_each_s
         DVec3::X * 1e7 + DVec3::Z,
         1.0,
     ));
-    let with = callbacks(vec![placing(&many), root(cylinders)], centre);
+    let with = callbacks(vec![placing(&many), root(cylinders)], center);
     assert_few_more("in a prototype", with, without);
 
     let mut places = many;
     places.push(DVec3::Y * 1e8);
-    let with = callbacks(vec![placing(&places), root(near)], centre);
+    let with = callbacks(vec![placing(&places), root(near)], center);
     assert_few_more("a placement", with, without);
 }
 

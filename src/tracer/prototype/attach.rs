@@ -3,9 +3,9 @@
 
 use super::blocks::{Blocked, block_bytes};
 use super::cylinders::{Cylinders, KnownCylinders};
-use super::described::{Described, SolidList};
 use super::ends::{Capped, Ends, EndsKind, Mixed, Open};
 use super::members::Members;
+use super::prototype_ref::{PrototypeRef, SolidList};
 use super::solids::{Filtered, Single, Solids};
 use crate::embree::{self, SceneBuilder};
 use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
@@ -47,18 +47,18 @@ fn attach<E: Ends>(
 /// Set operations are a primitive each: what a few bytes can say of one is its box, which
 /// Embree tests as well.
 pub(super) fn attach_solids(
-    described: &Described,
+    prototype_ref: &PrototypeRef,
     members: &Members,
     layout: Layout,
     threads: usize,
     builder: &mut SceneBuilder<Query>,
 ) -> Result<(), embree::Error> {
-    attach_list::<Sphere>(described, members, layout, threads, builder)?;
-    attach_list::<Cuboid>(described, members, layout, threads, builder)?;
-    attach_list::<Cone>(described, members, layout, threads, builder)?;
-    attach_list::<RoundedCone>(described, members, layout, threads, builder)?;
-    attach_list::<Disk>(described, members, layout, threads, builder)?;
-    let composed = SolidList::<Composition>::new(described, members);
+    attach_list::<Sphere>(prototype_ref, members, layout, threads, builder)?;
+    attach_list::<Cuboid>(prototype_ref, members, layout, threads, builder)?;
+    attach_list::<Cone>(prototype_ref, members, layout, threads, builder)?;
+    attach_list::<RoundedCone>(prototype_ref, members, layout, threads, builder)?;
+    attach_list::<Disk>(prototype_ref, members, layout, threads, builder)?;
+    let composed = SolidList::<Composition>::new(prototype_ref, members);
     if composed.len() > 0 {
         builder.attach_user(Single(composed))?;
     }
@@ -66,13 +66,13 @@ pub(super) fn attach_solids(
 }
 
 fn attach_list<S: TracedSolid + HasFilter>(
-    described: &Described,
+    prototype_ref: &PrototypeRef,
     members: &Members,
     layout: Layout,
     threads: usize,
     builder: &mut SceneBuilder<Query>,
 ) -> Result<(), embree::Error> {
-    let solids = SolidList::<S>::new(described, members);
+    let solids = SolidList::<S>::new(prototype_ref, members);
     if solids.len() == 0 {
         return Ok(());
     }

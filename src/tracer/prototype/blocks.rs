@@ -169,7 +169,7 @@ impl<S: Filtered> UserGeometry for Blocked<S> {
         if near.lanes == 0 {
             return None;
         }
-        query.reach(at.instance, self.solids.described());
+        query.reach(at.instance, self.solids.prototype_ref());
         let before = query.bound();
         for record in near {
             self.solids.visit(record, query);
@@ -185,7 +185,7 @@ impl<S: Filtered> UserGeometry for Blocked<S> {
         if near.lanes == 0 {
             return false;
         }
-        query.reach(at.instance, self.solids.described());
+        query.reach(at.instance, self.solids.prototype_ref());
         for record in near {
             if self.solids.meets(record, query) {
                 return true;
@@ -209,7 +209,7 @@ impl<S: Filtered> UserGeometry for Blocked<S> {
         if near.iter().all(|rays| rays.is_empty()) {
             return RaySet::EMPTY;
         }
-        packet.reach(at.instance, self.solids.described());
+        packet.reach(at.instance, self.solids.prototype_ref());
         let mut shorter = RaySet::EMPTY;
         for (&record, near) in self.records(at.primitive).iter().zip(near) {
             if !near.is_empty() {
@@ -233,7 +233,7 @@ impl<S: Filtered> UserGeometry for Blocked<S> {
         if near.iter().all(|rays| rays.is_empty()) {
             return RaySet::EMPTY;
         }
-        packet.reach(at.instance, self.solids.described());
+        packet.reach(at.instance, self.solids.prototype_ref());
         let mut blocked = RaySet::EMPTY;
         for (&record, near) in self.records(at.primitive).iter().zip(near) {
             let near = near - blocked;

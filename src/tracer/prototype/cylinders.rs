@@ -4,10 +4,10 @@ use std::marker::PhantomData;
 
 use smallvec::SmallVec;
 
-use super::described::Described;
 use super::ends::{Ends, EndsKind};
 use super::members::{List, Members};
 use super::numbers::Numbers;
+use super::prototype_ref::PrototypeRef;
 use super::solids::{Filtered, Solids};
 use crate::embree::{Box32, GREATEST_PACKET, RaySet, prefetch};
 use crate::math::LANES;
@@ -19,29 +19,29 @@ use crate::tracer::query::{Packet, Query};
 /// The cylinders of a group, where the description keeps them.
 #[derive(Clone)]
 pub(crate) struct Cylinders {
-    described: Described,
+    prototype_ref: PrototypeRef,
     /// The positions of their records.
     numbers: Numbers,
 }
 
 impl Cylinders {
-    pub fn new(described: &Described, members: &Members) -> Self {
+    pub fn new(prototype_ref: &PrototypeRef, members: &Members) -> Self {
         Self {
-            described: described.clone(),
+            prototype_ref: prototype_ref.clone(),
             numbers: members.of(List::Solids(SolidKind::Cylinder)).clone(),
         }
     }
 
     /// Whose they are.
     #[inline(always)]
-    pub fn described(&self) -> &Described {
-        &self.described
+    pub fn prototype_ref(&self) -> &PrototypeRef {
+        &self.prototype_ref
     }
 
     /// The list of the prototype.
     #[inline(always)]
     pub fn records(&self) -> &CylinderList {
-        &self.described.prototype().cylinders
+        &self.prototype_ref.prototype().cylinders
     }
 
     /// How many there are.
@@ -69,7 +69,8 @@ impl Cylinders {
 
     /// The box of a record in the frame of the Embree scene.
     pub fn grown_box(&self, record: u32) -> Box32 {
-        self.described.grown_box(&self.cylinder(record).bounds())
+        self.prototype_ref
+            .grown_box(&self.cylinder(record).bounds())
     }
 }
 
@@ -100,8 +101,8 @@ impl<E: Ends> KnownCylinders<E> {
 
 impl<E: Ends> Solids for KnownCylinders<E> {
     #[inline(always)]
-    fn described(&self) -> &Described {
-        self.cylinders.described()
+    fn prototype_ref(&self) -> &PrototypeRef {
+        self.cylinders.prototype_ref()
     }
 
     fn len(&self) -> u32 {
@@ -161,6 +162,6 @@ impl<E: Ends> Filtered for KnownCylinders<E> {
             .iter()
             .map(|&record| self.cylinder(record))
             .collect();
-        Cylinder::filter(&cylinders, self.cylinders.described().frame())
+        Cylinder::filter(&cylinders, self.cylinders.prototype_ref().frame())
     }
 }

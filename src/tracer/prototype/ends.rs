@@ -22,7 +22,7 @@ pub(crate) trait Ends: Send + Sync + 'static {
 /// All are tubes.
 pub(crate) struct Open;
 
-/// All have both discs.
+/// All have both disks.
 pub(crate) struct Capped;
 
 /// Each as it is.

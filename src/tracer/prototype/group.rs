@@ -11,12 +11,12 @@ use std::sync::{Arc, OnceLock};
 
 use super::attach::{attach_cylinders, attach_solids, kept_blocks_bytes};
 use super::cylinders::Cylinders;
-use super::described::{Described, SolidList};
 use super::members::{List, Members};
 use super::outline::Outline;
 use super::parts::Parts;
 use super::placements::Placements;
-use super::{Children, Prototype, Workshop, stays_packet};
+use super::prototype_ref::{PrototypeRef, SolidList};
+use super::{BuildContext, Children, Prototype, stays_packet};
 use crate::embree::{self, Coherence, GREATEST_PACKET, JointCommit, RaySet, SceneBuilder};
 use crate::math::Bounds;
 use crate::scene::{PrototypeIndex, Scene};
@@ -39,7 +39,7 @@ pub(crate) struct Group {
     cylinders: Cylinders,
     /// The placements, a geometry for each group of what they place.
     placements: Vec<Arc<Placements>>,
-    workshop: Workshop,
+    context: BuildContext,
     scene: OnceLock<Result<JointCommit<Query>, embree::Error>>,
     /// Whether what it places is in the scene of a parent.
     is_opened: AtomicBool,
@@ -48,7 +48,7 @@ pub(crate) struct Group {
 impl Group {
     /// Makes a group of a prototype.
     pub fn new(
-        workshop: &Workshop,
+        context: &BuildContext,
         description: &Arc<Scene>,
         index: PrototypeIndex,
         outline: Outline,
@@ -56,8 +56,8 @@ impl Group {
     ) -> Self {
         let prototype = &description.prototypes[index.0 as usize];
         // Only in the root the rays are those of the caller.
-        let view = workshop.view.filter(|_| index == PrototypeIndex::ROOT);
-        let sight = outline.sight;
+        let view = context.view.filter(|_| index == PrototypeIndex::ROOT);
+        let placement_margin = outline.placement_margin;
         let placements = outline.members.placements().filter_map(|(group, all)| {
             let children = children.groups(group);
             (!children.is_empty()).then(|| {
@@ -65,7 +65,9 @@ impl Group {
                     all.filtered(|number| {
                         let placement = &prototype.placements[number as usize];
                         children.of(placement.of).is_some_and(|child| {
-                            view.may_reach(&sight.placement_reach(placement, &child.reach))
+                            view.may_reach(
+                                &placement_margin.placement_reach(placement, &child.reach),
+                            )
                         })
                     })
                 });
@@ -76,22 +78,23 @@ impl Group {
                     description: Arc::clone(description),
                     prototype: index,
                     frame: outline.frame.clone(),
-                    sight,
+                    placement_margin,
                     children,
                 })
             })
         });
         let placements = placements.collect();
-        let described = Described::new(description, index, &outline.frame, &outline.opened_frames);
+        let prototype_ref =
+            PrototypeRef::new(description, index, &outline.frame, &outline.opened_frames);
         Self {
             reach: outline.reach,
             parts: outline.parts,
-            cylinders: Cylinders::new(&described, &outline.members),
+            cylinders: Cylinders::new(&prototype_ref, &outline.members),
             frame: outline.frame,
             prototype: index,
             placements,
             members: outline.members,
-            workshop: workshop.clone(),
+            context: context.clone(),
             scene: OnceLock::new(),
             is_opened: AtomicBool::new(false),
         }
@@ -162,14 +165,14 @@ impl Group {
     /// Makes Embree's scene ready to be built.
     #[cold]
     fn begin(&self) -> Result<JointCommit<Query>, embree::Error> {
-        let mut builder = SceneBuilder::new(&self.workshop.device)?;
+        let mut builder = SceneBuilder::new(&self.context.device)?;
         for placements in &self.placements {
             placements.attach_instances(&mut builder)?;
         }
-        let (layout, threads) = (self.workshop.layout, self.workshop.threads);
+        let (layout, threads) = (self.context.layout, self.context.threads);
         attach_cylinders(&self.cylinders, layout, threads, &mut builder)?;
         attach_solids(
-            self.cylinders.described(),
+            self.cylinders.prototype_ref(),
             &self.members,
             layout,
             threads,
@@ -207,7 +210,7 @@ impl Group {
     /// Embree's tree.
     pub fn kept_bytes(&self) -> usize {
         let blocks = if self.is_begun() {
-            kept_blocks_bytes(&self.members, self.workshop.layout)
+            kept_blocks_bytes(&self.members, self.context.layout)
         } else {
             0
         };
@@ -240,7 +243,7 @@ impl Group {
         let before: [f64; GREATEST_PACKET] = std::array::from_fn(|ray| packet.bound(ray));
         if stays_packet(entered, packet) {
             packet.within(self.prototype, |packet| {
-                let (scene, width) = (self.scene(), self.workshop.packet_width());
+                let (scene, width) = (self.scene(), self.context.packet_width());
                 scene.closest_packet(&rays32, entered, width, self.coherence(), packet);
             });
         } else {
@@ -262,7 +265,7 @@ impl Group {
         let PacketEntry { rays32, entered } = packet.enter(&self.frame, rays);
         if stays_packet(entered, packet) {
             return packet.within(self.prototype, |packet| {
-                let (scene, width) = (self.scene(), self.workshop.packet_width());
+                let (scene, width) = (self.scene(), self.context.packet_width());
                 scene.any_packet(&rays32, entered, width, self.coherence(), packet)
             });
         }
@@ -316,7 +319,7 @@ impl Group {
 
     /// Visits every solid of one kind.
     fn visit_list<S: TracedSolid>(&self, query: &mut Query) {
-        let list = SolidList::<S>::new(self.cylinders.described(), &self.members);
+        let list = SolidList::<S>::new(self.cylinders.prototype_ref(), &self.members);
         for record in self.members.of(S::LIST).iter() {
             query.visit_solid(&list, record);
         }

@@ -54,7 +54,7 @@ const LEAST_RATIO: f64 = 16.0;
 const SAMPLE: usize = 256;
 
 /// The most cubes that are tried.
-const CENTRES: usize = 32;
+const CENTERS: usize = 32;
 
 /// The least part of a sample that is trusted: a few boxes that are close by chance
 /// would represent thousands.
@@ -82,7 +82,7 @@ pub(super) trait Boxed: Sync {
 /// A cube that contains a group.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cube {
-    centre: DVec3,
+    center: DVec3,
     half_side: f64,
 }
 
@@ -94,14 +94,14 @@ impl Cube {
 
     /// Whether a box is inside.
     pub fn contains(&self, bounds: &Bounds) -> bool {
-        reach(self.centre, bounds) <= self.half_side
+        reach(self.center, bounds) <= self.half_side
     }
 }
 
 /// Half the side of the least cube around a point that contains a box.
-fn reach(centre: DVec3, bounds: &Bounds) -> f64 {
-    (bounds.upper - centre)
-        .max(centre - bounds.lower)
+fn reach(center: DVec3, bounds: &Bounds) -> f64 {
+    (bounds.upper - center)
+        .max(center - bounds.lower)
         .max_element()
 }
 
@@ -131,9 +131,9 @@ pub(super) fn cubes(all: &impl Boxed, whole: &Bounds, first: &Bounds) -> Vec<Cub
         cubes.push(cube);
     }
     if cubes.is_empty() && first != whole && !first.is_empty() {
-        let centre = first.centre();
-        let half_side = reach(centre, first);
-        let cube = Cube { centre, half_side };
+        let center = first.center();
+        let half_side = reach(center, first);
+        let cube = Cube { center, half_side };
         if half_side <= rest.greatest() {
             cubes.push(rest.widened(cube));
         }
@@ -180,7 +180,7 @@ impl<'a, B: Boxed> Rest<'a, B> {
         }
     }
 
-    /// The greatest half side of a cube. Whatever its centre, something is outside.
+    /// The greatest half side of a cube. Whatever its center, something is outside.
     fn greatest(&self) -> f64 {
         0.5 * self.bounds.extent().max_element() / LEAST_RATIO
     }
@@ -211,8 +211,8 @@ impl<'a, B: Boxed> Rest<'a, B> {
             growth,
             greatest: self.greatest(),
         };
-        let middles = small.iter().step_by(small.len().div_ceil(CENTRES));
-        let cubes = middles.filter_map(|bounds| search.around(bounds.centre()));
+        let middles = small.iter().step_by(small.len().div_ceil(CENTERS));
+        let cubes = middles.filter_map(|bounds| search.around(bounds.center()));
         let (gain, cube) = cubes.reduce(|best, one| if one.0 > best.0 { one } else { best })?;
         (gain >= LEAST_GAIN).then(|| self.widened(cube))
     }
@@ -237,7 +237,7 @@ impl<'a, B: Boxed> Rest<'a, B> {
     fn octaves_around(&self, cube: &Cube) -> u64 {
         let positions = (0..self.len()).into_par_iter().with_min_len(1 << 10);
         let bits = positions.map(|position| {
-            let reach = reach(cube.centre, &self.all.bounds(self.number(position)));
+            let reach = reach(cube.center, &self.all.bounds(self.number(position)));
             let octave = (0..=OCTAVES).find(|&octaves| reach <= cube.side_after(octaves));
             match octave {
                 None | Some(0) => 0,
@@ -263,11 +263,11 @@ struct Search<'a> {
 impl Search<'_> {
     /// The best cube around a point with what it gains, among those that contain the
     /// nearest boxes and are half as large and smaller each time.
-    fn around(&self, centre: DVec3) -> Option<(f64, Cube)> {
+    fn around(&self, center: DVec3) -> Option<(f64, Cube)> {
         let mut near: Vec<(f64, &Bounds)> = self
             .sample
             .iter()
-            .map(|bounds| (reach(centre, bounds), bounds))
+            .map(|bounds| (reach(center, bounds), bounds))
             .collect();
         near.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
         let mut best: Option<(f64, Cube)> = None;
@@ -280,7 +280,7 @@ impl Search<'_> {
             let half_side = near[inside - 1].0;
             let gain = self.gain(half_side, &near[..inside]);
             if best.is_none_or(|(known, _)| gain > known) {
-                best = Some((gain, Cube { centre, half_side }));
+                best = Some((gain, Cube { center, half_side }));
             }
             limit = 0.5 * half_side;
         }

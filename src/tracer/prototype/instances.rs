@@ -3,10 +3,10 @@
 //!
 //! Embree maps its f32 ray into the child in f32, and the child's boxes grow by what that
 //! can displace the ray. With `L` the matrix from the child's frame to the parent's, G its
-//! inverse, P where L takes the child's centre, `g` and `l` the greatest rows of G and L, R
+//! inverse, P where L takes the child's center, `g` and `l` the greatest rows of G and L, R
 //! the radius of the parent's frame, r that of the child's, v = 2^-24: a point c of the
 //! ray in the child's sphere is the image of q = L c + P, which is within R of the
-//! parent's centre and within `l r √3` of P. Displacements of c along an axis, of the first
+//! parent's center and within `l r √3` of P. Displacements of c along an axis, of the first
 //! order:
 //!
 //! | source | in units of `v g R` |
@@ -40,9 +40,9 @@
 //! grown by the sum of a row of |L| times γ: so that divides both.
 //!
 //! What f64 rounds comes on top: the ray in the child is not quite the image of the
-//! parent's (`Sight`), and P is computed from numbers of the parent's size. Through an opened prototype
+//! parent's (`PlacementMargin`), and P is computed from numbers of the parent's size. Through an opened prototype
 //! (`opened`) L is of the product of two matrices M N, whose terms are off by 3 u of |M| |N|: with the
-//! product by the centre, 3 u, the translation M t + s, 4 u, and two sums, P and the image of
+//! product by the center, 3 u, the translation M t + s, 4 u, and two sums, P and the image of
 //! what is in the child's sphere are off by less than 12 u of the sizes. What is displaced in the opened
 //! prototype is displaced in the parent by at most the norm of M times as much.
 //!
@@ -51,7 +51,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::sight::Sight;
+use super::placement_margin::PlacementMargin;
 use crate::math::UNIT_ROUNDOFF;
 use crate::scene::Placement;
 use crate::tracer::frame::Frame;
@@ -80,20 +80,20 @@ pub(super) struct Image {
 }
 
 impl Image {
-    /// That of a placement; `sight` is the parent's.
-    pub fn new(sight: &Sight, placement: &Placement) -> Self {
+    /// That of a placement; `placement_margin` is the parent's.
+    pub fn new(placement_margin: &PlacementMargin, placement: &Placement) -> Self {
         let affine = placement.parent_from_child;
         Self {
             affine,
             size: affine.matrix3.abs(),
             shift_size: affine.translation.length(),
-            displacement: sight.slack(placement),
+            displacement: placement_margin.slack(placement),
         }
     }
 
     /// That of a placement in the opened prototype that is placed by this one; `inner_sight` is
     /// the opened prototype's.
-    pub fn through(self, inner_sight: &Sight, inner: &Placement) -> Self {
+    pub fn through(self, inner_sight: &PlacementMargin, inner: &Placement) -> Self {
         let inner = Self::new(inner_sight, inner);
         // The Frobenius norm, which is at least the greatest stretch.
         let terms = self.affine.matrix3.to_cols_array();
@@ -112,33 +112,33 @@ struct Relation {
     /// L.
     matrix: DMat3,
     /// P.
-    centre: DVec3,
+    center: DVec3,
     /// The error of P, and of L times what is in the child's sphere.
-    centre_error: f64,
+    center_error: f64,
 }
 
 impl Relation {
     fn new(parent: &Frame, image: &Image, child: &Frame) -> Self {
         let (matrix, translation) = (image.affine.matrix3, image.affine.translation);
-        let turned = matrix * child.centre();
+        let turned = matrix * child.center();
         let radius = child.radius() / child.scale();
-        let sizes = (image.size * (child.centre().abs() + radius)).length()
+        let sizes = (image.size * (child.center().abs() + radius)).length()
             + image.shift_size
-            + parent.centre().length();
+            + parent.center().length();
         Self {
             matrix: matrix * (parent.scale() / child.scale()),
-            centre: (turned + translation - parent.centre()) * parent.scale(),
-            centre_error: 12.0 * UNIT_ROUNDOFF * sizes * parent.scale(),
+            center: (turned + translation - parent.center()) * parent.scale(),
+            center_error: 12.0 * UNIT_ROUNDOFF * sizes * parent.scale(),
         }
     }
 }
 
 /// The map from the child's frame to its parent's, as Embree gets it.
 pub(super) fn instance_map(parent: &Frame, image: &Image, child: &Frame) -> [[f32; 4]; 3] {
-    let Relation { matrix, centre, .. } = Relation::new(parent, image, child);
+    let Relation { matrix, center, .. } = Relation::new(parent, image, child);
     std::array::from_fn(|axis| {
         let row = matrix.row(axis);
-        [row.x, row.y, row.z, centre[axis]].map(|x| x as f32)
+        [row.x, row.y, row.z, center[axis]].map(|x| x as f32)
     })
 }
 
@@ -157,7 +157,7 @@ fn displacement(parent: &Frame, image: &Image, child: &Frame) -> f64 {
     let (g, l) = (greatest_row(&inverse), greatest_row(&matrix));
     let (radius, own) = (parent.radius(), child.radius());
     // What f64 displaces, in the parent's frame.
-    let wide = image.displacement * parent.scale() + relation.centre_error;
+    let wide = image.displacement * parent.scale() + relation.center_error;
 
     let size = matrix.abs();
     let (x, y, z) = (size.x_axis, size.y_axis, size.z_axis);
@@ -237,10 +237,10 @@ mod tests {
     fn random_box(random: &mut Random, size: f64) -> Bounds {
         let mut side = || random.log_uniform(0.01, 1.0) * size;
         let half = DVec3::new(side(), side(), side());
-        let centre = random.direction() * random.uniform(0.0, 10.0) * size;
+        let center = random.direction() * random.uniform(0.0, 10.0) * size;
         Bounds {
-            lower: centre - half,
-            upper: centre + half,
+            lower: center - half,
+            upper: center + half,
         }
     }
 
@@ -263,14 +263,14 @@ mod tests {
         while cases < 20_000 {
             let in_child = random_box(&mut random, 1.0);
             let placement = random_placement(&mut random, 0.03);
-            let (mut sight, mut reach) = placed(&mut random, &placement, &in_child);
-            let mut image = Image::new(&sight, &placement);
+            let (mut placement_margin, mut reach) = placed(&mut random, &placement, &in_child);
+            let mut image = Image::new(&placement_margin, &placement);
             let mut map = placement.parent_from_child;
             if is_opened {
                 let outer = random_placement(&mut random, 0.3);
-                let inner_sight = sight;
-                (sight, reach) = placed(&mut random, &outer, &reach);
-                image = Image::new(&sight, &outer).through(&inner_sight, &placement);
+                let inner_sight = placement_margin;
+                (placement_margin, reach) = placed(&mut random, &outer, &reach);
+                image = Image::new(&placement_margin, &outer).through(&inner_sight, &placement);
                 map = outer.parent_from_child * map;
             }
             let (parent, child) = (Frame::new(&reach), Frame::new(&in_child));
@@ -280,7 +280,7 @@ mod tests {
             }
             cases += 1;
             let c = random.direction() * (child.radius() * random.unit());
-            let q = parent.place(map.transform_point3(child.centre() + c / child.scale()));
+            let q = parent.place(map.transform_point3(child.center() + c / child.scale()));
             let map = instance_map(&parent, &image, &child);
             let heading = random.direction();
             let heading = heading / power_of_two_below(heading.abs().max_element());
@@ -318,15 +318,19 @@ mod tests {
         }
     }
 
-    /// The sight and the reach of a prototype with a placement and something else.
-    fn placed(random: &mut Random, placement: &Placement, child: &Bounds) -> (Sight, Bounds) {
+    /// The margin and the reach of a prototype with a placement and something else.
+    fn placed(
+        random: &mut Random,
+        placement: &Placement,
+        child: &Bounds,
+    ) -> (PlacementMargin, Bounds) {
         let image = child.transformed(&placement.parent_from_child);
         let size = random.log_uniform(0.1, 1e3);
         let bounds = image.union(&random_box(random, size));
-        let sight = Sight::new(&bounds, rayon::iter::once(placement));
+        let placement_margin = PlacementMargin::new(&bounds, rayon::iter::once(placement));
         (
-            sight,
-            bounds.union(&sight.placement_reach(placement, child)),
+            placement_margin,
+            bounds.union(&placement_margin.placement_reach(placement, child)),
         )
     }
 

@@ -13,7 +13,6 @@ mod attach;
 mod blocks;
 mod clusters;
 mod cylinders;
-mod described;
 mod ends;
 mod group;
 mod grouping;
@@ -23,8 +22,9 @@ mod numbers;
 mod opened;
 mod outline;
 mod parts;
+mod placement_margin;
 mod placements;
-mod sight;
+mod prototype_ref;
 mod solids;
 
 use std::sync::Arc;
@@ -33,17 +33,17 @@ use smallvec::SmallVec;
 
 pub(crate) use blocks::block_bytes;
 pub(crate) use cylinders::Cylinders;
-pub(crate) use described::{Described, SolidList};
 pub(crate) use ends::Ends;
 pub(crate) use group::Group;
 pub(crate) use instances::MOST_INSTANCES;
 pub(crate) use members::{Boxes, List};
 pub(crate) use opened::{MOST_INNER, MOST_OUTER};
 pub(crate) use outline::{Outline, Outlines};
+pub(crate) use prototype_ref::{PrototypeRef, SolidList};
 
 use super::frame::{LocalRay, PacketRays};
 use super::options::Layout;
-use super::query::{Packet, Place, Query};
+use super::query::{Packet, Query, SolidRef};
 use crate::embree::{self, Device, PacketWidth, RaySet};
 use crate::math::Bounds;
 use crate::scene::{Placement, PrototypeIndex, Scene, ViewVolume};
@@ -61,7 +61,7 @@ const GREATEST_PACKET_DEPTH: usize = 8;
 
 /// How prototypes are built.
 #[derive(Clone)]
-pub(super) struct Workshop {
+pub(super) struct BuildContext {
     pub device: Device,
     pub layout: Layout,
     /// Threads that a prototype's blocks are made on.
@@ -72,7 +72,7 @@ pub(super) struct Workshop {
     pub packet_width: Option<PacketWidth>,
 }
 
-impl Workshop {
+impl BuildContext {
     /// The width of packets, which are only made where there is one.
     #[inline]
     fn packet_width(&self) -> PacketWidth {
@@ -160,7 +160,7 @@ impl Prototype {
     ///
     /// Returns `None` if the prototype itself contains nothing.
     pub fn new(
-        workshop: &Workshop,
+        context: &BuildContext,
         description: &Arc<Scene>,
         (index, outlines): (PrototypeIndex, Vec<Outline>),
         made: &[Option<Arc<Self>>],
@@ -171,8 +171,8 @@ impl Prototype {
         let bounds = boxes.reduce(|one, other| one.union(&other))?;
         let has_several_groups = outlines.len() > 1;
         let groups = outlines.into_iter();
-        let groups = groups
-            .map(|group| Arc::new(Group::new(workshop, description, index, group, &children)));
+        let groups =
+            groups.map(|group| Arc::new(Group::new(context, description, index, group, &children)));
         let mut placed = children.0.iter();
         Some(Arc::new(Self {
             has_several_groups: has_several_groups
@@ -182,7 +182,7 @@ impl Prototype {
             description: Arc::clone(description),
             index,
             children,
-            is_viewed: workshop.view.is_some() && index == PrototypeIndex::ROOT,
+            is_viewed: context.view.is_some() && index == PrototypeIndex::ROOT,
         }))
     }
 
@@ -247,7 +247,7 @@ impl Prototype {
     #[inline]
     pub fn along_way<'a>(
         root: &'a Arc<Self>,
-        place: &Place,
+        place: &SolidRef,
         mut step: impl FnMut(&'a Group, Option<&'a Placement>),
     ) {
         if root.has_several_groups {
@@ -267,7 +267,7 @@ impl Prototype {
 
     /// The way of [`Prototype::along_way`] where a prototype has several groups.
     #[cold]
-    fn way_through_groups<'a>(root: &'a Arc<Self>, place: &Place) -> Way<'a, &'a Group> {
+    fn way_through_groups<'a>(root: &'a Arc<Self>, place: &SolidRef) -> Way<'a, &'a Group> {
         let mut prototypes = Way::new();
         prototypes.push((root, None));
         let mut last = root;

@@ -14,7 +14,7 @@ use super::members::{Boxes, Members};
 use super::numbers::Numbers;
 use super::opened::{MOST_OUTER, OpenedFrames, inner_placements};
 use super::parts::Parts;
-use super::sight::Sight;
+use super::placement_margin::PlacementMargin;
 use crate::math::Bounds;
 use crate::scene::{Placement, PrototypeIndex, Scene};
 use crate::tracer::frame::Frame;
@@ -24,7 +24,7 @@ pub(crate) struct Outline {
     pub members: Members,
     /// The box of the members.
     pub bounds: Bounds,
-    pub(super) sight: Sight,
+    pub(super) placement_margin: PlacementMargin,
     /// Contains every point at which a query may place a hit.
     pub reach: Bounds,
     /// Boxes that together contain the members.
@@ -117,7 +117,7 @@ impl Outlines {
     /// By how much the boxes of what is placed grow if it is an instance.
     fn needed_growth(&self, placement: &Placement, parent: &Outline) -> Option<f64> {
         let child = self.of[placement.of.0 as usize].first()?;
-        let image = Image::new(&parent.sight, placement);
+        let image = Image::new(&parent.placement_margin, placement);
         needed_growth(&parent.frame, &image, &child.frame)
     }
 
@@ -134,7 +134,8 @@ impl Outlines {
         let inner = inner_placements(scene, outer.of, |index| self.is_innermost(scene, index))?;
         let growths = inner.iter().map(|inner| {
             let child = self.of[inner.of.0 as usize].first()?;
-            let image = Image::new(&parent.sight, outer).through(&opened.sight, inner);
+            let image = Image::new(&parent.placement_margin, outer)
+                .through(&opened.placement_margin, inner);
             let share = needed_growth(&parent.frame, &image, &child.frame)?;
             Some((inner.of, share))
         });
@@ -144,15 +145,16 @@ impl Outlines {
     fn of_group(&self, placements: &[Placement], members: Members, bounds: Bounds) -> Outline {
         let lists: Vec<_> = members.placements().collect();
         let placed = || self.placed(placements, &lists);
-        let sight = Sight::new(&bounds, placed().map(|(placement, _)| placement));
+        let placement_margin =
+            PlacementMargin::new(&bounds, placed().map(|(placement, _)| placement));
         let reach = placed()
-            .map(|(placement, child)| sight.placement_reach(placement, &child.reach))
+            .map(|(placement, child)| placement_margin.placement_reach(placement, &child.reach))
             .reduce(|| bounds, |one, other| one.union(&other));
         Outline {
             frame: Frame::new(&reach),
             members,
             bounds,
-            sight,
+            placement_margin,
             reach,
             parts: Parts::default(),
             instances: Vec::new(),
@@ -186,8 +188,8 @@ impl Outlines {
         });
         let lists: Vec<_> = outline.members.placements().collect();
         let placed = self.placed(placements, &lists).map(|(placement, child)| {
-            let (sight, count) = (&outline.sight, placements.len());
-            sight.tight_reach(placement, &child.reach, &child.parts, count)
+            let (placement_margin, count) = (&outline.placement_margin, placements.len());
+            placement_margin.tight_reach(placement, &child.reach, &child.parts, count)
         });
         Parts::new(&outline.bounds, solids.chain(placed))
     }

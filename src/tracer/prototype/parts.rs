@@ -46,14 +46,14 @@ impl Parts {
     pub fn new(whole: &Bounds, members: impl ParallelIterator<Item = Bounds>) -> Self {
         let rate = whole.extent().map(|extent| CELLS as f64 / extent);
         let none = || vec![Bounds::EMPTY; CELLS * CELLS * CELLS];
-        let gathered = members.fold(none, |mut cells, member| {
+        let solid_collector = members.fold(none, |mut cells, member| {
             if !member.is_empty() {
-                let cell = &mut cells[cell((member.centre() - whole.lower) * rate)];
+                let cell = &mut cells[cell((member.center() - whole.lower) * rate)];
                 *cell = cell.union(&member);
             }
             cells
         });
-        let mut cells = gathered.reduce(none, |mut cells, others| {
+        let mut cells = solid_collector.reduce(none, |mut cells, others| {
             for (cell, other) in cells.iter_mut().zip(others) {
                 *cell = cell.union(&other);
             }
@@ -105,10 +105,10 @@ impl Eight {
             })
         };
         Self {
-            middle: lanes(Bounds::centre),
+            middle: lanes(Bounds::center),
             half: lanes(|bounds| {
-                let centre = bounds.centre();
-                (bounds.upper - centre).max(centre - bounds.lower) * (1.0 + 2.0 * UNIT_ROUNDOFF)
+                let center = bounds.center();
+                (bounds.upper - center).max(center - bounds.lower) * (1.0 + 2.0 * UNIT_ROUNDOFF)
             }),
         }
     }
@@ -295,7 +295,7 @@ mod tests {
                 .into_iter()
                 .flat_map(|axis| {
                     let pole = DVec3::from_array(axis) * sphere.radius();
-                    [sphere.centre() - pole, sphere.centre() + pole]
+                    [sphere.center() - pole, sphere.center() + pole]
                 })
         });
         rims.chain(poles).collect()
@@ -335,14 +335,14 @@ mod tests {
             let order = [2, 1, 0].map(PrototypeIndex);
             let mut outlines = Outlines::new(&scene, &order);
             let (child, parent) = (outlines.take(order[1]), outlines.take(order[0]));
-            let (child, sight) = (&child[0], &parent[0].sight);
+            let (child, placement_margin) = (&child[0], &parent[0].placement_margin);
             for placement in &upper {
-                let tight = sight.tight_reach(placement, &child.reach, &child.parts, 4);
+                let tight = placement_margin.tight_reach(placement, &child.reach, &child.parts, 4);
                 for &point in &points {
                     let moved = placement.parent_from_child.transform_point3(point);
                     assert!(is_in(&tight, moved), "case {case}: {moved} in {tight:?}");
                 }
-                let loose = sight.placement_reach(placement, &child.reach);
+                let loose = placement_margin.placement_reach(placement, &child.reach);
                 share += tight.extent().element_product() / loose.extent().element_product();
             }
         }

@@ -7,7 +7,7 @@ use super::instances::{Image, instance_map};
 use super::numbers::Numbers;
 use super::opened::Through;
 use super::outline::Divided;
-use super::sight::Sight;
+use super::placement_margin::PlacementMargin;
 use super::{Children, Group};
 use crate::embree::{
     self, Box32, GREATEST_PACKET, GeometryId, Ray32, RaySet, Rays32, Reached, SceneBuilder,
@@ -30,7 +30,7 @@ pub(super) struct Placements {
     pub description: Arc<Scene>,
     pub prototype: PrototypeIndex,
     pub frame: Frame,
-    pub sight: Sight,
+    pub placement_margin: PlacementMargin,
     pub children: Children<Group>,
     /// The numbers of the placements.
     pub all: Numbers,
@@ -57,7 +57,7 @@ impl Placements {
     ) -> Result<(), E> {
         for number in self.reached.instances.iter() {
             if let Some((placement, child)) = self.get(number) {
-                let image = Image::new(&self.sight, placement);
+                let image = Image::new(&self.placement_margin, placement);
                 each(Through::One(number), &image, child)?;
             }
         }
@@ -70,7 +70,8 @@ impl Placements {
                     let Some((placed, child)) = within.get(inner) else {
                         continue;
                     };
-                    let image = Image::new(&self.sight, placement).through(&within.sight, placed);
+                    let image = Image::new(&self.placement_margin, placement)
+                        .through(&within.placement_margin, placed);
                     each(Through::Two { outer, inner }, &image, child)?;
                 }
             }
@@ -174,11 +175,11 @@ impl UserGeometry for Arc<Placements> {
     fn bounds(&self, primitive: u32) -> Box32 {
         // Where nothing is placed any box will do; the least is best.
         let reach = self.get(self.reached.called_back.number(primitive)).map_or(
-            Bounds::at(self.frame.centre()),
+            Bounds::at(self.frame.center()),
             |(placement, child)| {
                 let count = self.placements().len();
-                let (sight, reach) = (&self.sight, &child.reach);
-                sight.tight_reach(placement, reach, &child.parts, count)
+                let (placement_margin, reach) = (&self.placement_margin, &child.reach);
+                placement_margin.tight_reach(placement, reach, &child.parts, count)
             },
         );
         self.frame.grown_box(&reach)

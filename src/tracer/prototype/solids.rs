@@ -1,7 +1,7 @@
 //! The solids of one kind in a group, as user geometries see them, and the plainest of
 //! those: a primitive of Embree's for each solid.
 
-use super::described::Described;
+use super::prototype_ref::PrototypeRef;
 use crate::embree::{Box32, GREATEST_PACKET, Ray32, RaySet, Rays32, Reached, UserGeometry};
 use crate::tracer::counters;
 use crate::tracer::filter::Filter;
@@ -11,7 +11,7 @@ use crate::tracer::query::{Packet, Query};
 /// description.
 pub(super) trait Solids: Send + Sync + 'static {
     /// Whose they are.
-    fn described(&self) -> &Described;
+    fn prototype_ref(&self) -> &PrototypeRef;
 
     /// How many there are.
     fn len(&self) -> u32;
@@ -72,7 +72,7 @@ impl<S: Solids> UserGeometry for Single<S> {
     fn intersect(&self, at: Reached, _: &Ray32, query: &mut Query) -> Option<f32> {
         counters::called_back();
         query.callbacks += 1;
-        query.reach(at.instance, self.0.described());
+        query.reach(at.instance, self.0.prototype_ref());
         let before = query.bound();
         self.0.visit(self.0.record(at.primitive), query);
         (query.bound() < before).then(|| query.t_far())
@@ -82,7 +82,7 @@ impl<S: Solids> UserGeometry for Single<S> {
     fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
         counters::called_back();
         query.callbacks += 1;
-        query.reach(at.instance, self.0.described());
+        query.reach(at.instance, self.0.prototype_ref());
         self.0.meets(self.0.record(at.primitive), query)
     }
 
@@ -97,7 +97,7 @@ impl<S: Solids> UserGeometry for Single<S> {
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        packet.reach(at.instance, self.0.described());
+        packet.reach(at.instance, self.0.prototype_ref());
         let record = self.0.record(at.primitive);
         self.0.visit_packet(record, rays, t_far, packet)
     }
@@ -112,7 +112,7 @@ impl<S: Solids> UserGeometry for Single<S> {
     ) -> RaySet {
         counters::called_back();
         packet.callbacks += 1;
-        packet.reach(at.instance, self.0.described());
+        packet.reach(at.instance, self.0.prototype_ref());
         let record = self.0.record(at.primitive);
         self.0.meets_packet(record, rays, packet)
     }

@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 
 use crate::scene::PrototypeIndex;
 use crate::solid::SolidKind;
-use crate::tracer::traced::Met;
+use crate::tracer::traced::SurfaceHit;
 
 /// The placements on the way from the root to a prototype, outermost first.
 /// Scenes are rarely nested deeper than what is kept without the heap.
@@ -15,14 +15,14 @@ pub(crate) type InstancePath = SmallVec<[u32; 4]>;
 
 /// Which solid of a prototype.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Member {
+pub(crate) struct SolidSlot {
     /// Its kind, of which the prototype has a list.
     pub kind: SolidKind,
     /// The position in the list.
     pub record: u32,
 }
 
-impl Member {
+impl SolidSlot {
     #[inline(always)]
     pub fn new(kind: SolidKind, record: u32) -> Self {
         Self { kind, record }
@@ -31,16 +31,16 @@ impl Member {
 
 /// Which solid of the scene.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct SolidRef {
     pub prototype: PrototypeIndex,
-    pub member: Member,
+    pub member: SolidSlot,
     pub path: InstancePath,
 }
 
-impl Place {
+impl SolidRef {
     /// The place of a solid in the prototype that is reached along a path.
     #[inline(always)]
-    pub fn new(prototype: PrototypeIndex, member: Member, path: &InstancePath) -> Self {
+    pub fn new(prototype: PrototypeIndex, member: SolidSlot, path: &InstancePath) -> Self {
         Self {
             prototype,
             member,
@@ -54,7 +54,7 @@ impl Place {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Nearest {
     pub t: f64,
-    pub place: Place,
+    pub place: SolidRef,
 }
 
 impl Nearest {
@@ -67,8 +67,8 @@ impl Nearest {
         &self,
         t: f64,
         path: &InstancePath,
-        member: Member,
-        primitive: impl Fn(Member) -> u32,
+        member: SolidSlot,
+        primitive: impl Fn(SolidSlot) -> u32,
     ) -> bool {
         if t != self.t {
             return t < self.t;
@@ -83,10 +83,10 @@ impl Nearest {
 /// afterwards.
 #[derive(Clone, Debug)]
 pub(crate) struct Found {
-    pub met: Met,
+    pub met: SurfaceHit,
     /// The number that the user knows the solid by.
     pub primitive: u32,
-    pub place: Place,
+    pub place: SolidRef,
 }
 
 impl Found {
@@ -95,9 +95,9 @@ impl Found {
     /// and the part.
     /// No two hits of a ray are equal.
     #[inline]
-    fn order(&self, met: &Met, path: &InstancePath, primitive: u32) -> Ordering {
+    fn order(&self, met: &SurfaceHit, path: &InstancePath, primitive: u32) -> Ordering {
         let by_t = met.meeting.t.partial_cmp(&self.met.meeting.t);
-        let surface = |met: &Met| (met.rank, met.meeting.crossing, met.meeting.part);
+        let surface = |met: &SurfaceHit| (met.rank, met.meeting.crossing, met.meeting.part);
         by_t.expect("a hit's t is a number").then_with(|| {
             (path, primitive, surface(met)).cmp(&(
                 &self.place.path,
@@ -130,13 +130,13 @@ impl Eq for Found {}
 
 /// What a query is after.
 #[derive(Debug)]
-pub(crate) enum Keep {
+pub(crate) enum QueryMode {
     /// The first hit.
     First(Option<Nearest>),
     /// The next hits after one that is known.
     Next(Next),
     /// The solids that hold the ray's origin, whatever its range.
-    Holding(Vec<Place>),
+    Containing(Vec<SolidRef>),
 }
 
 /// The first `most` hits after one that is known.
@@ -149,7 +149,7 @@ pub(crate) struct Next {
     pub hits: BinaryHeap<Found>,
 }
 
-impl Keep {
+impl QueryMode {
     /// The greatest `t` of a hit that would be kept.
     #[inline]
     pub fn bound(&self, t_max: f64) -> f64 {
@@ -158,7 +158,7 @@ impl Keep {
             Self::Next(next) if next.hits.len() == next.most => {
                 next.hits.peek().map_or(t_max, |last| last.met.meeting.t)
             }
-            Self::Next(_) | Self::Holding(_) => t_max,
+            Self::Next(_) | Self::Containing(_) => t_max,
         }
     }
 }
@@ -168,10 +168,10 @@ impl Next {
     #[inline]
     pub fn offer(
         &mut self,
-        met: Met,
+        met: SurfaceHit,
         path: &InstancePath,
         primitive: u32,
-        place: impl FnOnce() -> Place,
+        place: impl FnOnce() -> SolidRef,
     ) {
         let order = |kept: &Found| kept.order(&met, path, primitive);
         if self

@@ -10,6 +10,6 @@ mod packet;
 mod row;
 mod single;
 
-pub(crate) use found::{Found, Keep, Member, Nearest, Place};
+pub(crate) use found::{Found, Nearest, QueryMode, SolidRef, SolidSlot};
 pub(crate) use packet::Packet;
 pub(crate) use single::Query;

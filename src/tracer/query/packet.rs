@@ -6,7 +6,7 @@
 //! for bit: the arithmetic is the same in every lane, and no ray's answer
 //! depends on another's.
 
-use super::found::{InstancePath, Keep, Member, Nearest, Place};
+use super::found::{InstancePath, Nearest, QueryMode, SolidRef, SolidSlot};
 use super::levels::Levels;
 use super::row;
 use super::single::Query;
@@ -19,7 +19,7 @@ use crate::tracer::decisions::Decisions;
 use crate::tracer::frame::{
     Enter, Frame, IntoChild, IntoInstance, PacketEntry, PacketRays, ROWS, Rows,
 };
-use crate::tracer::prototype::{Cylinders, Described, Ends, SolidList};
+use crate::tracer::prototype::{Cylinders, Ends, PrototypeRef, SolidList};
 use crate::tracer::traced::{RowOfPacket, TracedSolid};
 
 /// A packet on its way.
@@ -132,21 +132,21 @@ impl Packet {
 
     /// As [`Query::reach`].
     #[inline(always)]
-    pub fn reach(&mut self, instance: Option<GeometryId>, described: &Described) {
+    pub fn reach(&mut self, instance: Option<GeometryId>, prototype_ref: &PrototypeRef) {
         if instance != self.instance {
-            self.change_instance(instance, described);
+            self.change_instance(instance, prototype_ref);
         }
     }
 
     #[inline(never)]
-    fn change_instance(&mut self, instance: Option<GeometryId>, described: &Described) {
+    fn change_instance(&mut self, instance: Option<GeometryId>, prototype_ref: &PrototypeRef) {
         self.leave_instance();
         let Some(GeometryId(number)) = instance else {
             return;
         };
         counters::handed_on(1);
         self.outside = self.path.len();
-        described.along_instance(self.prototype, number, |placement, way, frame| {
+        prototype_ref.along_instance(self.prototype, number, |placement, way, frame| {
             let is_first = self.path.len() == self.outside;
             if !is_first {
                 self.between.clone_from(&self.in_instance);
@@ -193,7 +193,7 @@ impl Packet {
         );
         let answer = query.within(prototype, level, trace);
         self.callbacks += query.callbacks;
-        if let Keep::First(nearest) = query.keep {
+        if let QueryMode::First(nearest) = query.keep {
             if let Some(nearest) = &nearest {
                 set_lane(&mut self.bound, ray, nearest.t);
             }
@@ -235,7 +235,7 @@ impl Packet {
         rays: RaySet,
         t_far: &mut [f32; GREATEST_PACKET],
     ) -> RaySet {
-        let member = Member::new(SolidKind::Cylinder, record);
+        let member = SolidSlot::new(SolidKind::Cylinder, record);
         let mut shorter = RaySet::EMPTY;
         for row in 0..ROWS {
             let wanted = (rays.bits() >> (row * LANES)) as u8;
@@ -245,7 +245,7 @@ impl Packet {
             let (met, t) = self.first::<E>(cylinder, row, wanted, &self.bound[row]);
             self.offer_row(
                 (row, met, t),
-                (cylinders.described(), member),
+                (cylinders.prototype_ref(), member),
                 |packet, ray| {
                     t_far[ray] = packet.t_far(ray);
                     shorter.insert(ray);
@@ -279,7 +279,7 @@ impl Packet {
         t_far: &mut [f32; GREATEST_PACKET],
     ) -> RaySet {
         let solid = list.solid(record);
-        let member = Member::new(solid.kind(), record);
+        let member = SolidSlot::new(solid.kind(), record);
         let mut shorter = RaySet::EMPTY;
         for row in 0..ROWS {
             let wanted = (rays.bits() >> (row * LANES)) as u8;
@@ -287,10 +287,14 @@ impl Packet {
                 continue;
             }
             let (met, t) = self.first_of_solid(solid, row, wanted, &self.bound[row]);
-            self.offer_row((row, met, t), (list.described(), member), |packet, ray| {
-                t_far[ray] = packet.t_far(ray);
-                shorter.insert(ray);
-            });
+            self.offer_row(
+                (row, met, t),
+                (list.prototype_ref(), member),
+                |packet, ray| {
+                    t_far[ray] = packet.t_far(ray);
+                    shorter.insert(ray);
+                },
+            );
         }
         shorter
     }
@@ -355,7 +359,7 @@ impl Packet {
     fn offer_row(
         &mut self,
         (row, met, t): (usize, LaneMask, Lanes),
-        (described, member): (&Described, Member),
+        (prototype_ref, member): (&PrototypeRef, SolidSlot),
         mut is_shorter: impl FnMut(&Self, usize),
     ) {
         let mut met = met.bits();
@@ -363,7 +367,7 @@ impl Packet {
             let in_row = met.trailing_zeros() as usize;
             met &= met - 1;
             let ray = row * LANES + in_row;
-            if self.offer(ray, t.0[in_row], described, member) {
+            if self.offer(ray, t.0[in_row], prototype_ref, member) {
                 is_shorter(self, ray);
             }
         }
@@ -371,15 +375,21 @@ impl Packet {
 
     /// Keeps a ray's first hit if it is before the one that is known.
     #[inline(always)]
-    fn offer(&mut self, ray: usize, t: f64, described: &Described, member: Member) -> bool {
+    fn offer(
+        &mut self,
+        ray: usize,
+        t: f64,
+        prototype_ref: &PrototypeRef,
+        member: SolidSlot,
+    ) -> bool {
         let (nearest, path) = (&mut self.nearest[ray], &self.path);
         let is_first = nearest.as_ref().is_none_or(|known| {
-            known.is_after(t, path, member, |member| described.primitive(member))
+            known.is_after(t, path, member, |member| prototype_ref.primitive(member))
         });
         if is_first {
             *nearest = Some(Nearest {
                 t,
-                place: Place::new(described.index(), member, path),
+                place: SolidRef::new(prototype_ref.index(), member, path),
             });
             set_lane(&mut self.bound, ray, t);
         }

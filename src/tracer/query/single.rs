@@ -4,16 +4,16 @@ use std::collections::BinaryHeap;
 
 use glam::DVec3;
 
-use super::found::{Found, InstancePath, Keep, Member, Nearest, Next, Place};
+use super::found::{Found, InstancePath, Nearest, Next, QueryMode, SolidRef, SolidSlot};
 use crate::embree::{self, GeometryId, Ray32};
 use crate::math::Ray;
 use crate::scene::PrototypeIndex;
-use crate::solid::{ConvexSolid, Cylinder, Meeting, SolidKind, triple_product};
+use crate::solid::{ConvexSolid, Cylinder, Intersection, SolidKind, triple_product};
 use crate::tracer::counters;
 use crate::tracer::decisions::{Decisions, exact_first};
 use crate::tracer::frame::{Frame, Level, LocalRay};
-use crate::tracer::prototype::{Cylinders, Described, SolidList};
-use crate::tracer::traced::{Met, TracedSolid};
+use crate::tracer::prototype::{Cylinders, PrototypeRef, SolidList};
+use crate::tracer::traced::{SurfaceHit, TracedSolid};
 
 /// A query on its way.
 #[derive(Debug)]
@@ -32,7 +32,7 @@ pub(crate) struct Query {
     in_instance: LocalRay,
     /// The placements on the way, with those that the instance leads through.
     pub path: InstancePath,
-    pub keep: Keep,
+    pub keep: QueryMode,
     /// How often Embree has called back for it, which is what it costs.
     pub callbacks: u32,
 }
@@ -65,7 +65,7 @@ impl Query {
             outside: 0,
             in_instance: LocalRay::default(),
             path,
-            keep: Keep::First(nearest),
+            keep: QueryMode::First(nearest),
             callbacks: 0,
         }
     }
@@ -74,7 +74,7 @@ impl Query {
     pub fn next(ray: &Ray, decisions: Decisions, after: Option<Found>, most: usize) -> Self {
         let hits = BinaryHeap::new();
         Self {
-            keep: Keep::Next(Next { after, most, hits }),
+            keep: QueryMode::Next(Next { after, most, hits }),
             ..Self::first(ray, decisions)
         }
     }
@@ -83,7 +83,7 @@ impl Query {
     /// point.
     pub fn holding(ray: &Ray) -> Self {
         Self {
-            keep: Keep::Holding(Vec::new()),
+            keep: QueryMode::Containing(Vec::new()),
             ..Self::first(ray, Decisions::default())
         }
     }
@@ -95,15 +95,15 @@ impl Query {
     }
 
     /// The least `t` that can be part of the answer. The range as it was asked
-    /// for begins earlier, and stays what solids are met in: a ray within a disc
+    /// for begins earlier, and stays what solids are met in: a ray within a disk
     /// meets it where its range begins.
     #[inline]
     fn start(&self) -> f64 {
         match &self.keep {
-            Keep::Next(Next {
+            QueryMode::Next(Next {
                 after: Some(after), ..
             }) => after.met.meeting.t,
-            Keep::First(_) | Keep::Next(_) | Keep::Holding(_) => self.t_min,
+            QueryMode::First(_) | QueryMode::Next(_) | QueryMode::Containing(_) => self.t_min,
         }
     }
 
@@ -133,16 +133,16 @@ impl Query {
     /// Says which instance a callback is in, before it uses the ray or the path, and
     /// whose solids it is for.
     #[inline(always)]
-    pub fn reach(&mut self, instance: Option<GeometryId>, described: &Described) {
+    pub fn reach(&mut self, instance: Option<GeometryId>, prototype_ref: &PrototypeRef) {
         if instance != self.instance {
-            self.change_instance(instance, described);
+            self.change_instance(instance, prototype_ref);
         }
     }
 
     /// The ray in the child is made when a callback needs it; a ray that meets nothing
     /// but boxes of an instance does without.
     #[inline(never)]
-    fn change_instance(&mut self, instance: Option<GeometryId>, described: &Described) {
+    fn change_instance(&mut self, instance: Option<GeometryId>, prototype_ref: &PrototypeRef) {
         self.leave_instance();
         let Some(GeometryId(number)) = instance else {
             return;
@@ -150,7 +150,7 @@ impl Query {
         counters::handed_on(1);
         self.outside = self.path.len();
         self.in_instance = self.level().ray;
-        described.along_instance(self.prototype, number, |placement, way, frame| {
+        prototype_ref.along_instance(self.prototype, number, |placement, way, frame| {
             self.in_instance = frame.approach(&self.in_instance.in_child(way));
             self.path.push(placement);
         });
@@ -185,7 +185,7 @@ impl Query {
     /// The first point, up to `t_max`, where the ray meets a cylinder of the
     /// current prototype.
     #[inline(always)]
-    fn first_meeting(&self, cylinder: &Cylinder, t_max: f64) -> Option<Meeting> {
+    fn first_meeting(&self, cylinder: &Cylinder, t_max: f64) -> Option<Intersection> {
         counters::solved(1);
         let ray = self.ray();
         if self.decisions == Decisions::Exact {
@@ -206,10 +206,10 @@ impl Query {
     /// prototype those that are wanted. `cylinder` is that of the record.
     #[inline(always)]
     pub fn visit(&mut self, cylinder: &Cylinder, cylinders: &Cylinders, record: u32) {
-        if let Keep::First(_) = self.keep {
+        if let QueryMode::First(_) = self.keep {
             if let Some(meeting) = self.first_meeting(cylinder, self.bound()) {
-                let member = Member::new(SolidKind::Cylinder, record);
-                self.offer(meeting.t, cylinders.described(), member);
+                let member = SolidSlot::new(SolidKind::Cylinder, record);
+                self.offer(meeting.t, cylinders.prototype_ref(), member);
             }
         } else {
             self.visit_all(cylinder, cylinders, record);
@@ -219,9 +219,9 @@ impl Query {
     /// As [`Query::visit`], where all hits are asked for, or what holds the origin.
     #[cold]
     fn visit_all(&mut self, cylinder: &Cylinder, cylinders: &Cylinders, record: u32) {
-        let member = Member::new(SolidKind::Cylinder, record);
-        if let Keep::Holding(_) = self.keep {
-            return self.hold(cylinders.described(), member, |point| {
+        let member = SolidSlot::new(SolidKind::Cylinder, record);
+        if let QueryMode::Containing(_) = self.keep {
+            return self.hold(cylinders.prototype_ref(), member, |point| {
                 cylinder.contains(point)
             });
         }
@@ -231,9 +231,9 @@ impl Query {
             return;
         };
         let (bound, t_min) = (self.bound(), self.t_min);
-        let mut offer = self.next_of(cylinders.described(), member);
+        let mut offer = self.next_of(cylinders.prototype_ref(), member);
         for meeting in chord.meetings(cylinder.caps(), shift, t_min, bound) {
-            offer(Met::whole(meeting));
+            offer(SurfaceHit::whole(meeting));
         }
     }
 
@@ -242,21 +242,21 @@ impl Query {
     pub fn visit_solid<S: TracedSolid>(&mut self, list: &SolidList<S>, record: u32) {
         counters::solved(1);
         let solid = list.solid(record);
-        let member = Member::new(solid.kind(), record);
+        let member = SolidSlot::new(solid.kind(), record);
         let (decisions, bound, t_min) = (self.decisions, self.bound(), self.t_min);
         match self.keep {
-            Keep::First(_) => {
+            QueryMode::First(_) => {
                 if let Some(met) = solid.first(self.ray(), decisions, t_min, bound) {
-                    self.offer(met.meeting.t, list.described(), member);
+                    self.offer(met.meeting.t, list.prototype_ref(), member);
                 }
             }
-            Keep::Next(_) => {
+            QueryMode::Next(_) => {
                 let ray = *self.ray();
-                let offer = self.next_of(list.described(), member);
-                solid.each_meeting(&ray, decisions, t_min, bound, offer);
+                let offer = self.next_of(list.prototype_ref(), member);
+                solid.for_each_hit(&ray, decisions, t_min, bound, offer);
             }
-            Keep::Holding(_) => {
-                self.hold(list.described(), member, |point| solid.contains(point));
+            QueryMode::Containing(_) => {
+                self.hold(list.prototype_ref(), member, |point| solid.contains(point));
             }
         }
     }
@@ -264,8 +264,8 @@ impl Query {
     /// Keeps a solid if it `contains` the origin of the ray.
     fn hold(
         &mut self,
-        described: &Described,
-        member: Member,
+        prototype_ref: &PrototypeRef,
+        member: SolidSlot,
         contains: impl FnOnce(DVec3) -> bool,
     ) {
         let ray = self.ray();
@@ -274,8 +274,8 @@ impl Query {
         if is_moved || !contains(ray.origin) {
             return;
         }
-        if let Keep::Holding(places) = &mut self.keep {
-            places.push(Place::new(described.index(), member, &self.path));
+        if let QueryMode::Containing(places) = &mut self.keep {
+            places.push(SolidRef::new(prototype_ref.index(), member, &self.path));
         }
     }
 
@@ -289,12 +289,16 @@ impl Query {
 
     /// What keeps the meetings with a solid that are wanted, where all hits are asked
     /// for.
-    fn next_of(&mut self, described: &Described, member: Member) -> impl FnMut(Met) {
-        let (prototype, primitive) = (described.index(), described.primitive(member));
+    fn next_of(
+        &mut self,
+        prototype_ref: &PrototypeRef,
+        member: SolidSlot,
+    ) -> impl FnMut(SurfaceHit) {
+        let (prototype, primitive) = (prototype_ref.index(), prototype_ref.primitive(member));
         let (keep, path) = (&mut self.keep, &self.path);
         move |met| {
-            if let Keep::Next(next) = keep {
-                let place = || Place::new(prototype, member, path);
+            if let QueryMode::Next(next) = keep {
+                let place = || SolidRef::new(prototype, member, path);
                 next.offer(met, path, primitive, place);
             }
         }
@@ -302,18 +306,18 @@ impl Query {
 
     /// Keeps a first hit if it is before the one that is known.
     #[inline(always)]
-    fn offer(&mut self, t: f64, described: &Described, member: Member) {
-        let Keep::First(nearest) = &mut self.keep else {
+    fn offer(&mut self, t: f64, prototype_ref: &PrototypeRef, member: SolidSlot) {
+        let QueryMode::First(nearest) = &mut self.keep else {
             return;
         };
         let path = &self.path;
         let is_first = nearest.as_ref().is_none_or(|known| {
-            known.is_after(t, path, member, |member| described.primitive(member))
+            known.is_after(t, path, member, |member| prototype_ref.primitive(member))
         });
         if is_first {
             *nearest = Some(Nearest {
                 t,
-                place: Place::new(described.index(), member, path),
+                place: SolidRef::new(prototype_ref.index(), member, path),
             });
         }
     }

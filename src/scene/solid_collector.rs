@@ -1,0 +1,254 @@
+//! Gathers the solids of one prototype, and gives them their primitive numbers.
+
+use toml::Spanned;
+
+use super::cylinder_list::{CylinderList, Records};
+use super::description::{CylinderRecord, MaterialIndex};
+use super::error::SceneError;
+use super::origins::Origins;
+use super::solid_lists::{SolidRecord, Solids};
+use super::source::Source;
+use crate::math::Bounds;
+use crate::solid::{AnySolid, Caps, Composition, ConeError, Cylinder, CylinderError};
+
+/// What to say about rows that `degenerate = "skip"` would leave out.
+pub(super) const SKIP_HELP: &str =
+    "degenerate = \"skip\" in the scene file leaves such rows out and counts them";
+
+/// What to say about a cylinder that f32 does not hold.
+const F64_HELP: &str = "records = \"f64\", the default, keeps every number as it is stated";
+
+/// The solids of one prototype.
+#[derive(Default)]
+pub(super) struct SolidCollector {
+    pub records: CylinderList,
+    /// The solids that are no cylinders.
+    pub others: Solids,
+    /// How many primitive numbers are given away.
+    numbers: u32,
+    /// Rows that were left out, though they have a number.
+    pub skipped: u64,
+    /// At least the size of every coordinate of a point of the solids.
+    pub reach: f64,
+    /// Notes on the files for the user.
+    pub notes: Vec<String>,
+    /// The files that they come from.
+    pub origins: Origins,
+}
+
+/// What the solids of an entry have in common.
+#[derive(Clone, Copy)]
+pub(super) struct Look {
+    pub caps: Caps,
+    pub material: MaterialIndex,
+}
+
+/// Why a cylinder is not added.
+#[derive(Debug, PartialEq)]
+pub(super) enum Refusal {
+    /// No primitive number is left.
+    Numbers,
+    /// Rounded to f32 it is no cylinder.
+    Rounded(CylinderError),
+}
+
+impl Refusal {
+    /// What to say, and what to do about it.
+    pub fn message(&self) -> (String, Option<&'static str>) {
+        match self {
+            Self::Numbers => {
+                let most = u32::MAX;
+                (format!("a prototype holds at most {most} primitives"), None)
+            }
+            Self::Rounded(error) => (
+                format!("rounded to f32 this is no cylinder: {error}"),
+                Some(F64_HELP),
+            ),
+        }
+    }
+
+    /// That a row of a table which the scene file names is refused.
+    pub fn in_row(
+        &self,
+        source: &Source,
+        file: &Spanned<String>,
+        row: impl FnOnce(String, Option<&str>) -> SceneError,
+    ) -> SceneError {
+        let (message, help) = self.message();
+        match self {
+            Self::Numbers => source.error(file.span(), message),
+            Self::Rounded(_) => row(message, help),
+        }
+    }
+}
+
+/// What happens to rows that are no solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Degenerate {
+    Error,
+    Skip,
+}
+
+impl SolidCollector {
+    /// No cylinders, to be kept so.
+    pub fn new(records: Records) -> Self {
+        Self {
+            records: CylinderList::new(records),
+            ..Self::default()
+        }
+    }
+
+    /// How many primitive numbers are given away.
+    pub fn numbers(&self) -> u32 {
+        self.numbers
+    }
+
+    /// The next primitive number.
+    fn number(&mut self) -> Result<u32, Refusal> {
+        let number = self.numbers;
+        // The greatest u32 is left out: Embree's mark for "no primitive".
+        self.numbers = number.checked_add(1).ok_or(Refusal::Numbers)?;
+        Ok(number)
+    }
+
+    /// Adds a cylinder.
+    pub fn push(&mut self, cylinder: &Cylinder, material: MaterialIndex) -> Result<(), Refusal> {
+        let number = self.number()?;
+        self.records
+            .push(CylinderRecord::new(cylinder, number, material))
+            .map_err(Refusal::Rounded)?;
+        let kept = self.records.get(self.records.len() - 1).cylinder();
+        let farthest = kept.p0().abs().max(kept.p1().abs()).max_element();
+        self.reach = self.reach.max(farthest + kept.radius());
+        Ok(())
+    }
+
+    /// Adds a solid of any kind.
+    pub fn push_any(&mut self, solid: &AnySolid, material: MaterialIndex) -> Result<(), Refusal> {
+        if let AnySolid::Cylinder(cylinder) = solid {
+            return self.push(cylinder, material);
+        }
+        let primitive = self.number()?;
+        self.reach_to(&solid.bounds());
+        let others = &mut self.others;
+        match *solid {
+            AnySolid::Cylinder(_) => {}
+            AnySolid::Sphere(one) => others
+                .spheres
+                .push(SolidRecord::new(one, primitive, material)),
+            AnySolid::Cuboid(one) => others
+                .cuboids
+                .push(SolidRecord::new(one, primitive, material)),
+            AnySolid::Cone(one) => others
+                .cones
+                .push(SolidRecord::new(one, primitive, material)),
+            AnySolid::RoundedCone(one) => others
+                .rounded_cones
+                .push(SolidRecord::new(one, primitive, material)),
+            AnySolid::Disk(one) => others
+                .disks
+                .push(SolidRecord::new(one, primitive, material)),
+        }
+        Ok(())
+    }
+
+    /// Adds a composed solid.
+    pub fn push_composition(
+        &mut self,
+        solid: Composition,
+        material: MaterialIndex,
+    ) -> Result<(), Refusal> {
+        let primitive = self.number()?;
+        // What an operation leaves may be nothing: all of its parts count.
+        for part in solid.solids() {
+            self.reach_to(&part.bounds());
+        }
+        let record = SolidRecord::new(solid, primitive, material);
+        self.others.compositions.push(record);
+        Ok(())
+    }
+
+    fn reach_to(&mut self, bounds: &Bounds) {
+        let corner = bounds.lower.abs().max(bounds.upper.abs());
+        self.reach = self.reach.max(corner.max_element());
+    }
+
+    /// Adds a note, once.
+    pub fn note(&mut self, note: &str) {
+        if !self.notes.iter().any(|known| known == note) {
+            self.notes.push(note.to_owned());
+        }
+    }
+
+    /// Records that the numbers from `first` on come from a file.
+    pub fn came_from(&mut self, file: &str, is_table: bool, first: u32) {
+        self.origins.add(file, is_table, first, self.numbers);
+    }
+
+    /// Leaves a row out; it keeps its primitive number.
+    pub fn skip(&mut self) -> Result<(), Refusal> {
+        self.skipped += 1;
+        self.leave_free()
+    }
+
+    /// Leaves the next primitive number free.
+    pub fn leave_free(&mut self) -> Result<(), Refusal> {
+        self.number().map(drop)
+    }
+}
+
+/// Whether a row that gives this error counts as degenerate. Negative radii
+/// and numbers out of range are not: those are mistakes, whatever was asked.
+pub(super) fn is_degenerate(error: &CylinderError) -> bool {
+    match error {
+        CylinderError::Endpoint { .. } => false,
+        CylinderError::Radius { radius } => (0.0..Cylinder::LEAST).contains(radius),
+        CylinderError::Length { .. } => true,
+    }
+}
+
+/// [`is_degenerate`] of a cone or a rounded cone. One radius may be zero.
+pub(super) fn is_degenerate_cone(error: &ConeError) -> bool {
+    match error {
+        ConeError::Endpoint { .. } => false,
+        ConeError::Radius { radius, .. } => (0.0..Cylinder::LEAST).contains(radius),
+        ConeError::NoRadius | ConeError::Length { .. } => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    #[test]
+    fn primitive_numbers_that_run_out_are_refused() {
+        let mut solids = SolidCollector {
+            numbers: u32::MAX - 1,
+            ..SolidCollector::default()
+        };
+        let cylinder = Cylinder::new(DVec3::ZERO, DVec3::X, 1.0, Caps::Both).expect("valid");
+        assert_eq!(solids.push(&cylinder, MaterialIndex(0)), Ok(()));
+        assert_eq!(solids.records.primitive(0), u32::MAX - 1);
+        let refusal = solids.skip().expect_err("no number is left");
+        assert_eq!(refusal, Refusal::Numbers);
+        let (message, _) = refusal.message();
+        assert!(
+            message.contains("at most 4294967295 primitives"),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn degenerate_rows_are_those_without_extent_only() {
+        let error = |p1, radius| {
+            Cylinder::new(DVec3::ZERO, p1, radius, Caps::Both).expect_err("not a cylinder")
+        };
+        assert!(is_degenerate(&error(DVec3::X, 0.0)));
+        assert!(is_degenerate(&error(DVec3::ZERO, 1.0)));
+        assert!(!is_degenerate(&error(DVec3::X, -1.0)));
+        assert!(!is_degenerate(&error(DVec3::X, 1e60)));
+        assert!(!is_degenerate(&error(DVec3::splat(1e60), 1.0)));
+    }
+}
