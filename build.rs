@@ -64,8 +64,6 @@ const CONSTANTS: [&str; 33] = [
 fn main() {
     println!("cargo::rerun-if-changed=src/embree/shim.h");
     println!("cargo::rerun-if-changed=src/embree/shim.c");
-    println!("cargo::rerun-if-changed=src/bench/c_rival.h");
-    println!("cargo::rerun-if-changed=src/bench/c_rival.c");
     println!("cargo::rerun-if-changed=build/locate.rs");
     for variable in VARIABLES {
         println!("cargo::rerun-if-env-changed={variable}");
@@ -113,11 +111,10 @@ impl ParseCallbacks for UsedConstants {
 fn bind(embree: &Embree) {
     let builder = bindgen::Builder::default()
         .header("src/embree/shim.h")
-        .header("src/bench/c_rival.h")
         .clang_arg(format!("-I{}", embree.include.display()))
         .clang_arg(format!("-DCYLTRACE_EMBREE_MAJOR={}", embree.major))
         .allowlist_function(FUNCTIONS)
-        .allowlist_type("cyltrace_context|cyltrace_c_(cylinder|geometry|query)|RTCRayHit(4|8|16)?|RTCBounds|RTC(Bounds|Intersect|Occluded|Filter)Function(N?)Arguments")
+        .allowlist_type("cyltrace_context|RTCRayHit(4|8|16)?|RTCBounds|RTC(Bounds|Intersect|Occluded|Filter)Function(N?)Arguments")
         .allowlist_var("RTC_VERSION_(MAJOR|MINOR|PATCH)")
         .default_enum_style(bindgen::EnumVariation::NewType {
             is_bitfield: false,
@@ -156,9 +153,6 @@ fn bind(embree: &Embree) {
 fn compile_c(embree: &Embree) {
     cc::Build::new()
         .file("src/embree/shim.c")
-        // The rival of Rust callbacks is compiled for speed in every profile.
-        .file("src/bench/c_rival.c")
-        .opt_level(3)
         .include(&embree.include)
         .define("CYLTRACE_EMBREE_MAJOR", embree.major.to_string().as_str())
         // A fused multiply-add would make results depend on the compiler.
@@ -179,5 +173,7 @@ fn link(embree: &Embree) {
     let windows = env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "windows");
     if !loader_looks_there && !windows {
         println!("cargo::rustc-link-arg=-Wl,-rpath,{directory}");
+        // For `build/rpath.rs`.
+        println!("cargo::metadata=runtime_dir={directory}");
     }
 }

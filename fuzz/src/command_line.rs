@@ -11,9 +11,9 @@ use cyltrace::solid::tessellation::{GREATEST_SEGMENTS, LEAST_SEGMENTS};
     unused_imports,
     reason = "most of it is about memory, not numbers"
 )]
-#[path = "../../src/cli/memory.rs"]
+#[path = "../../crates/cli/src/memory.rs"]
 mod memory;
-#[path = "../../src/cli/arguments/numbers.rs"]
+#[path = "../../crates/cli/src/arguments/numbers.rs"]
 mod numbers;
 
 /// A number, as each kind of argument reads it: it is one within its limits, which reads

@@ -7,10 +7,10 @@
 //! each operand.
 
 use cyltrace::math::{Ray, UNIT_ROUNDOFF, power_of_two};
-use cyltrace::oracle::{ComposedTruth, to_f64};
 use cyltrace::scene::CompositionRecord;
 use cyltrace::solid::{AnySolid, Composition, Crossing, Location, Part, RoundedCone};
 use cyltrace::tracer::{Containing, Hit};
+use cyltrace_oracle::{ComposedTruth, to_f64};
 use glam::DVec3;
 
 use super::drawn_scene::DrawnScene;

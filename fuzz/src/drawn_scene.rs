@@ -6,11 +6,11 @@ use std::sync::Arc;
 use arbitrary::{Result, Unstructured};
 use cyltrace::embree::MaxIsa;
 use cyltrace::math::Ray;
-use cyltrace::oracle::ExactAffine;
 use cyltrace::scene::{
     CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, SolidRecord,
 };
 use cyltrace::solid::{AnySolid, Composition};
+use cyltrace_oracle::ExactAffine;
 use glam::{DAffine3, DVec3};
 
 use super::drawing::{Drawing, Style};

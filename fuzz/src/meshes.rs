@@ -1,6 +1,6 @@
 //! Meshes of other programs: OBJ, PLY and STL.
 
-use cyltrace::mesh_file::{MeshError, MeshFile, MeshPlace, parse_obj, parse_ply, parse_stl};
+use cyltrace::meshes::{MeshError, MeshFile, MeshPlace, parse_obj, parse_ply, parse_stl};
 use cyltrace::scene::GREATEST_MESH_COORDINATE;
 
 /// A mesh in OBJ.

@@ -11,12 +11,12 @@
 //! ray is within 4 Δ of the surface there.
 
 use cyltrace::math::{Orientation, Ray, UNIT_ROUNDOFF, frobenius_norm, power_of_two};
-use cyltrace::oracle::{
+use cyltrace::solid::{AnySolid, Caps, Cone, Crossing, Cylinder, Part};
+use cyltrace::tracer::{Containing, Hit};
+use cyltrace_oracle::{
     ExactAffine, TrueHit, cone_holds, cuboid_holds, disk_holds, placed_hits_of_any,
     rounded_cone_holds, sphere_holds,
 };
-use cyltrace::solid::{AnySolid, Caps, Cone, Crossing, Cylinder, Part};
-use cyltrace::tracer::{Containing, Hit};
 use glam::{DAffine3, DVec3};
 
 use super::drawn_scene::{DrawnScene, PlacedSolid};

@@ -2,8 +2,7 @@
 //! meshes, straight curves, spheres, disks and instances, queries of single rays and of packets of
 //! up to sixteen, and all hits of a ray with triangles or curves.
 //!
-//! This layer knows neither cylinders nor scene files, but for the layout that
-//! the C rival of `bench` gives to cylinders (`c_callback`). A geometry written in
+//! This layer knows neither solids nor scene files. A geometry written in
 //! Rust implements [`UserGeometry`]; its answers travel in a [`Query`], a value
 //! of the caller's own type that every callback of one ray receives, or in the
 //! like of a packet. Embree 3 and 4 look the same from here: `shim.c` owns their
@@ -69,7 +68,6 @@
 )]
 
 mod abort;
-mod c_callback;
 mod callback;
 mod collect;
 mod device;
@@ -90,7 +88,6 @@ mod scene;
 mod sys;
 mod user;
 
-pub(crate) use c_callback::{CCylinder, CQuery};
 pub use collect::MeshHit;
 pub use device::{Device, DeviceOptions, Version};
 pub use error::Error;

@@ -132,9 +132,11 @@ impl Cylinder {
         point.is_finite() && point.abs().max_element() <= Self::GREATEST
     }
 
-    /// The cylinder of numbers that [`Cylinder::new`] accepted before.
+    /// The cylinder of numbers that [`Cylinder::new`] accepts, without the check. Other
+    /// numbers make a cylinder whose answers mean nothing.
     #[inline]
-    pub(crate) fn from_valid(p0: DVec3, p1: DVec3, radius: f64, caps: Caps) -> Self {
+    #[must_use]
+    pub fn from_valid(p0: DVec3, p1: DVec3, radius: f64, caps: Caps) -> Self {
         Self {
             p0,
             p1,
@@ -145,7 +147,8 @@ impl Cylinder {
 
     /// The same cylinder with other caps.
     #[inline]
-    pub(crate) fn with_caps(self, caps: Caps) -> Self {
+    #[must_use]
+    pub fn with_caps(self, caps: Caps) -> Self {
         Self { caps, ..self }
     }
 

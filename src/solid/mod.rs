@@ -10,14 +10,13 @@ mod cuboid;
 mod cylinder;
 mod disk;
 pub mod exact;
-pub mod formulations;
 pub mod lanes;
 mod linear;
 mod passing;
 pub mod quick;
 mod rounded_cone;
 pub mod settled;
-mod slab;
+pub mod slab;
 mod spawn;
 mod sphere;
 mod surface;
@@ -36,7 +35,7 @@ pub use disk::{Disk, DiskError};
 pub use rounded_cone::{RoundedCone, RoundedConeError};
 pub use spawn::{SpawnMargin, spawned_ray};
 pub use sphere::{Sphere, SphereError};
-pub use surface::{SurfacePoint, surface_point};
+pub use surface::{SurfacePoint, angle_frame, surface_point};
 pub use way::RayOrigin;
 
 /// The kinds of solids; [`SolidKind::name`] is the `solid` column of `trace`.

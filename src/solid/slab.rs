@@ -18,7 +18,7 @@ use crate::math::Real;
 
 /// A line as seen along the axis.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Slab<S> {
+pub struct Slab<S> {
     /// The axial position of the disk at `p1`; that at `p0` is at 0.
     pub height: S,
     /// The axial position at `t = 0`.
@@ -29,7 +29,7 @@ pub(super) struct Slab<S> {
 
 /// Where a line is inside the infinite wall; either end is computed when asked
 /// for.
-pub(super) trait Wall<S> {
+pub trait Wall<S> {
     /// The `t` at which it comes in.
     fn enter(&self) -> S;
     /// The `t` at which it goes out.
@@ -37,14 +37,14 @@ pub(super) trait Wall<S> {
 }
 
 /// A slab and a wall: a chord of which an end is computed when asked for.
-pub(super) struct Overlap<S, W> {
+pub struct Overlap<S, W> {
     slab: Slab<S>,
     wall: W,
 }
 
 /// What is asked of a chord. A type, not a closure: its methods are inlined,
 /// so that nothing of the chord has to be kept in memory.
-pub(super) trait Question<S> {
+pub trait Question<S> {
     /// What is answered if there is a chord.
     type Answer;
 
@@ -57,10 +57,14 @@ pub(super) trait Question<S> {
 
 /// Asks for [`Chord::first`]. The end at which the line leaves is computed only
 /// if the one at which it enters is no hit.
-pub(super) struct FirstMeeting<S> {
+pub struct FirstMeeting<S> {
+    /// The closed ends.
     pub caps: Caps,
+    /// The `t` of the whole ray where the line's is 0.
     pub shift: S,
+    /// The least `t` of the whole ray.
     pub t_min: S,
+    /// The greatest `t` of the whole ray.
     pub t_max: S,
 }
 
@@ -83,7 +87,7 @@ impl<S: Real> Question<S> for FirstMeeting<S> {
 }
 
 /// Asks for the chord.
-pub(super) struct WholeChord;
+pub struct WholeChord;
 
 impl<S: Real> Question<S> for WholeChord {
     type Answer = Chord<S>;
@@ -173,7 +177,7 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
 
     /// Asks for the end at which the line leaves only if the other is no hit.
     #[inline(always)]
-    pub fn first(
+    pub(super) fn first(
         &self,
         disks: &Disks<S>,
         caps: Caps,
@@ -194,7 +198,7 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
 
     /// Whether the line enters the solid, and where.
     #[inline(always)]
-    pub fn enter(&self, disks: &Disks<S>) -> (bool, ChordEnd<S>) {
+    pub(super) fn enter(&self, disks: &Disks<S>) -> (bool, ChordEnd<S>) {
         let slab = &self.slab;
         let t = self.wall.enter();
         let height = slab.beyond_near(disks, t);
@@ -218,7 +222,7 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
 
     /// Where the line that enters at `enter` leaves the solid.
     #[inline(always)]
-    pub fn leave(&self, disks: &Disks<S>, enter: S) -> ChordEnd<S> {
+    pub(super) fn leave(&self, disks: &Disks<S>, enter: S) -> ChordEnd<S> {
         let slab = &self.slab;
         let t = self.wall.leave();
         let height = slab.beyond_near(disks, t);

@@ -167,7 +167,7 @@ fn turn(outward: DVec3, reference: DVec3, across: DVec3) -> f64 {
 
 /// The two unit vectors perpendicular to `axis` from which angles are counted:
 /// direction 0 and direction a quarter turn on.
-pub(super) fn angle_frame(axis: DVec3) -> (DVec3, DVec3) {
+pub fn angle_frame(axis: DVec3) -> (DVec3, DVec3) {
     let size = axis.abs();
     let coordinate_axis = if size.x <= size.y && size.x <= size.z {
         DVec3::X

@@ -72,7 +72,7 @@ const LEAST_CONSTANT_TERM: f64 = power_of_two(-20);
 
 /// What the solver reads of a cylinder: its axis `a`, its radius, and products
 /// of them that may be kept or computed when asked for.
-pub(super) trait Axis<S: Real>: Copy {
+pub trait Axis<S: Real>: Copy {
     /// `a = p1 - p0`.
     fn a(&self) -> S::Vector;
     /// The radius.
@@ -94,7 +94,7 @@ pub(super) trait Axis<S: Real>: Copy {
 
 /// An axis of which nothing is kept that can be computed.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct StatedAxis<S: Real> {
+pub struct StatedAxis<S: Real> {
     /// `p1 - p0`.
     pub a: S::Vector,
     /// The radius.
@@ -176,7 +176,7 @@ pub fn chord(cylinder: &Cylinder, from_p0: DVec3, direction: DVec3) -> Option<Ch
 /// The answer to what is asked of that chord, for any form of the cylinder and
 /// either precision. `None` if there is no chord.
 #[inline(always)]
-pub(super) fn answer<S: Real, A: Axis<S>, Q: Question<S>>(
+pub fn answer<S: Real, A: Axis<S>, Q: Question<S>>(
     axis: &A,
     from_p0: S::Vector,
     direction: S::Vector,

@@ -38,7 +38,7 @@ use estimate::INSTANCE_BYTES;
 pub use estimate::MemoryEstimate;
 pub use filter::FilterLosses;
 pub use first_hit::FirstHit;
-pub(crate) use frame::{Frame, LocalRay};
+pub(crate) use frame::LocalRay;
 pub use hit::Hit;
 pub use options::{BuildTime, Layout, Options};
 pub use outliers::{Outlier, outliers};

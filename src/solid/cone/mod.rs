@@ -71,6 +71,12 @@ impl Cone {
         Self { ends, caps }
     }
 
+    /// The same cone with other caps.
+    #[must_use]
+    pub fn with_caps(self, caps: Caps) -> Self {
+        Self { caps, ..self }
+    }
+
     /// The first endpoint.
     #[must_use]
     pub fn p0(&self) -> DVec3 {

@@ -36,8 +36,6 @@ mod cuboid;
 mod prism;
 mod profile;
 mod profiles;
-#[cfg(test)]
-pub(crate) mod tests;
 
 pub use prism::{inscribed_prism, prism_size, sagitta};
 

@@ -149,7 +149,8 @@ impl Tracer {
     }
 
     /// The positions of a batch's rays in the order in which the batch traces them.
-    pub(crate) fn batch_order(&self, rays: &[Ray]) -> Vec<u32> {
+    #[must_use]
+    pub fn batch_order(&self, rays: &[Ray]) -> Vec<u32> {
         let mut positions = Vec::with_capacity(rays.len());
         let mut rest = rays;
         while !rest.is_empty() {

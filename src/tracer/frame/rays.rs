@@ -68,12 +68,6 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    /// What [`Window::t_far`] needs beside the shift of the ray: the nearest
-    /// point, the start and the rate, for callbacks that are not in Rust.
-    pub fn terms(&self) -> [f64; 3] {
-        [self.nearest, self.start, self.rate]
-    }
-
     /// `t` counted from the nearest point, moved by `outward` times the
     /// rounding of the differences.
     #[inline(always)]

@@ -1,0 +1,143 @@
+//! The hulls of all solids of a window as one mesh, and what it takes.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::hull::{Hull, hull};
+use super::mesh_frame::MeshFrame;
+use super::mesh_map::MeshMap;
+use super::window::Window;
+use cyltrace::solid::tessellation::Fit;
+
+/// Solids that a thread builds at a time.
+const CHUNK: usize = 256;
+
+/// Bytes that a triangle takes, with its share of the corners, in our lists and
+/// with Embree. Measured with Embree 3.13.5 on struts of `scenes/lattice.toml`:
+/// 96 with 16 sides, 94 with 64 and 90 with 512.
+const BYTES_PER_TRIANGLE: u64 = 93;
+
+/// Hulls as one mesh; every one is verified.
+#[derive(Debug, Default)]
+pub(crate) struct HullList {
+    /// All of them, one after another.
+    pub hull: Hull,
+    /// The number in the window of the solid of each hull, rising.
+    pub solid_of: Vec<u32>,
+    /// How many triangles there are up to the end of each hull.
+    pub triangles_up_to: Vec<u32>,
+    /// Solids without an inscribed hull: f32 leaves nothing of it.
+    pub empty: Vec<u32>,
+    /// Solids without a circumscribed hull: f32 does not resolve them.
+    pub unbounded: Vec<u32>,
+}
+
+impl HullList {
+    fn add_triangles(&mut self, hull: &Hull) {
+        let first = self.hull.vertices.len() as u32;
+        let triangles = hull.triangles.iter();
+        let shifted = triangles.map(|&corners| corners.map(|i| first + i));
+        self.hull.triangles.extend(shifted);
+        self.hull.vertices.extend_from_slice(&hull.vertices);
+    }
+
+    fn append(&mut self, other: &Self) {
+        let triangles = self.hull.triangles.len() as u32;
+        self.add_triangles(&other.hull);
+        self.solid_of.extend_from_slice(&other.solid_of);
+        let ends = other.triangles_up_to.iter();
+        self.triangles_up_to.extend(ends.map(|end| triangles + end));
+        self.empty.extend_from_slice(&other.empty);
+        self.unbounded.extend_from_slice(&other.unbounded);
+    }
+
+    fn push(&mut self, solid: u32, hull: &Hull) {
+        self.add_triangles(hull);
+        self.solid_of.push(solid);
+        self.triangles_up_to.push(self.hull.triangles.len() as u32);
+    }
+
+    /// The hull that a triangle belongs to.
+    pub fn hull_of(&self, triangle: u32) -> usize {
+        self.triangles_up_to.partition_point(|&end| end <= triangle)
+    }
+
+    /// Whether a triangle is in the first half of those of its hull: of the sheets of a
+    /// disk, in the one over it.
+    pub fn is_in_first_half(&self, triangle: u32) -> bool {
+        let all = self.triangles_of(self.hull_of(triangle));
+        2 * (triangle as usize - all.start) < all.len()
+    }
+
+    /// The triangles of a hull.
+    pub fn triangles_of(&self, hull: usize) -> Range<usize> {
+        let end = |hull: usize| self.triangles_up_to[hull] as usize;
+        let start = hull.checked_sub(1).map_or(0, end);
+        start..end(hull)
+    }
+}
+
+/// The hulls with so many sides of all solids of a window, at least 3 each and
+/// fewer than 2^32 corners in all.
+pub(crate) fn hulls(window: &Window, frame: &MeshFrame, segments: u32, side: Fit) -> HullList {
+    assert!(segments >= 3, "a hull has at least 3 sides, not {segments}");
+    let parts: Vec<HullList> = window
+        .solids
+        .par_chunks(CHUNK)
+        .enumerate()
+        .map(|(chunk, solids)| {
+            let mut part = HullList::default();
+            let mut maps = None;
+            for (placed, number) in solids.iter().zip((chunk * CHUNK) as u32..) {
+                // Solids of one place follow each other.
+                let (_, map) = match &mut maps {
+                    Some((place, map)) if Arc::ptr_eq(place, &placed.frame) => (place, map),
+                    other => {
+                        let map = MeshMap::new(frame, &placed.frame);
+                        let (place, map) = other.insert((Arc::clone(&placed.frame), map));
+                        (place, map)
+                    }
+                };
+                match (hull(frame, map, placed, segments, side), side) {
+                    (Some(hull), _) => part.push(number, &hull),
+                    (None, Fit::Inscribed) => part.empty.push(number),
+                    (None, Fit::Circumscribed) => part.unbounded.push(number),
+                }
+            }
+            part
+        })
+        .collect();
+    let count = |of: fn(&HullList) -> usize| parts.iter().map(of).sum::<usize>();
+    let corners = count(|part| part.hull.vertices.len());
+    assert!(
+        corners <= u32::MAX as usize,
+        "{corners} corners are too many for a mesh"
+    );
+    let mut all = HullList::default();
+    all.hull.vertices.reserve_exact(corners);
+    all.hull
+        .triangles
+        .reserve_exact(count(|part| part.hull.triangles.len()));
+    for part in parts {
+        all.append(&part);
+    }
+    all
+}
+
+/// Bytes that both meshes of a window take with so many triangles each, with Embree's
+/// trees over them. While the second tree is built, Embree holds up to a third more of
+/// its own.
+pub(crate) fn bytes_needed(triangles: u64) -> u64 {
+    triangles.saturating_mul(2 * BYTES_PER_TRIANGLE)
+}
+
+/// The triangles of either mesh that fit into so many bytes, and that Embree can count:
+/// no mesh has more corners than twice its triangles.
+pub(crate) fn triangles_within(bytes: u64) -> u64 {
+    (bytes / (2 * BYTES_PER_TRIANGLE)).min(u64::from(u32::MAX / 2))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,353 @@
+//! The scene without its placements: windows of it, as lists of placed solids.
+//!
+//! Placements are composed in exact numbers, by the oracle's code, and boxes
+//! follow the composed map: what the tracer does on its way down has no part in
+//! it.
+//!
+//! A scene is one window if all its solids may be checked at a time and f32
+//! resolves them. An f32 mesh about a point `c` knows a coordinate at distance
+//! `d` from `c` to `2^-24 d`; with `w` the least half width of a solid (radius or
+//! half length, in the world), prisms lose `2^-24 d / w` of it. A window is
+//! resolved if `d / w` is bounded for half of all solids, so that half of them lose less than a
+//! thousandth. Other windows are boxes about a random solid, at most
+//! [`WIDEST`] times as wide as its half width, with all solids that meet them.
+
+use std::sync::Arc;
+
+use cyltrace::math::{Bounds, Random, power_of_two};
+use cyltrace::scene::{PrototypeIndex, Scene};
+use cyltrace::solid::{AnySolid, Composition};
+
+use super::hull::triangles_needed;
+use super::window::{PlacedComposition, PlacedFrame, PlacedSolid, Window};
+
+/// The width of a window in half widths of the solid in its middle.
+const WIDEST: f64 = (1 << 12) as f64;
+
+/// Windows of a scene that is not checked at once.
+const WINDOWS: u64 = 8;
+
+/// How often a window is made smaller by half before it is given up: 2^-40 of
+/// the widest is far below the solid in its middle, where all solids left share
+/// a point.
+const MOST_HALVINGS: u32 = 40;
+
+/// The least half width of a window, as a share of its farthest coordinate. The origins of
+/// rays are on a grid of at most 2^-49 of it (`mesh_frame`), which so divides a window into 64
+/// steps or more: what is aimed at the window hits it. A solid so far out that this is wider
+/// than [`WIDEST`] is beyond f32 in any window, and its row reports no witness.
+const LEAST_REACH: f64 = power_of_two(-44);
+
+/// What the meshes of a window may take.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Budget {
+    /// Triangles of the meshes of either side.
+    pub triangles: u64,
+    /// Sides of each prism.
+    pub segments: u32,
+}
+
+/// The whole scene as one window where that is sound, or else several of at
+/// most an eighth of the triangles each; none if the scene is empty or has more
+/// solids than that in one point wherever it was looked at.
+pub(crate) fn windows(scene: &Scene, budget: Budget, seed: u64) -> Vec<Window> {
+    let tree = Tree::new(scene);
+    if tree.root().count == 0 {
+        return Vec::new();
+    }
+    if let Some(whole) = tree.window_of(None, budget)
+        && whole.is_resolved()
+    {
+        return vec![whole];
+    }
+    let part = Budget {
+        triangles: budget.triangles / WINDOWS,
+        ..budget
+    };
+    let about_random = |number| {
+        let (middle, half_width) = tree.pick(&mut Random::new(seed, number));
+        tree.window_about(middle, half_width, part)
+    };
+    (0..WINDOWS).filter_map(about_random).collect()
+}
+
+/// What is known of a prototype and all that is placed in it.
+struct Node {
+    /// Solids with every placement counted; stays at the greatest number.
+    count: u64,
+    /// Holds all of them, in the prototype's space.
+    bounds: Bounds,
+    /// The boxes of the placements, in the prototype's space.
+    placed: Vec<Bounds>,
+    /// Its compositions, to be shared by all places.
+    compositions: Vec<Arc<Composition>>,
+}
+
+/// A scene with boxes about everything that is placed.
+struct Tree<'a> {
+    scene: &'a Scene,
+    nodes: Vec<Option<Node>>,
+}
+
+/// Solids that meet a region, as they are found.
+struct Found {
+    triangles_left: u64,
+    segments: u32,
+    window: Window,
+}
+
+impl Found {
+    fn meets(&self, bounds: &Bounds) -> bool {
+        let region = self.window.bounds.as_ref();
+        region.is_none_or(|region| region.meets(bounds))
+    }
+
+    /// Adds a solid, single or as its leaves; false if it is too much.
+    fn add(&mut self, solids: &[AnySolid], frame: &Arc<PlacedFrame>, primitive: u32) -> bool {
+        for &solid in solids {
+            let triangles = triangles_needed(&solid, self.segments);
+            let Some(left) = self.triangles_left.checked_sub(triangles) else {
+                return false;
+            };
+            self.triangles_left = left;
+            self.window.solids.push(PlacedSolid {
+                solid,
+                frame: Arc::clone(frame),
+                primitive,
+            });
+        }
+        true
+    }
+}
+
+impl<'a> Tree<'a> {
+    fn new(scene: &'a Scene) -> Self {
+        let nodes = scene.prototypes.iter().map(|_| None).collect();
+        let mut tree = Self { scene, nodes };
+        tree.add(PrototypeIndex::ROOT);
+        tree
+    }
+
+    /// Fills in the node of a prototype, after those that it places.
+    fn add(&mut self, index: PrototypeIndex) {
+        if self.nodes[index.0 as usize].is_some() {
+            return;
+        }
+        let scene = self.scene;
+        let prototype = &scene.prototypes[index.0 as usize];
+        let (cylinders, solids) = (&prototype.cylinders, &prototype.solids);
+        let boxes = cylinders.iter().map(|record| record.cylinder().bounds());
+        let compositions = solids.compositions.iter();
+        let mut node = Node {
+            count: (cylinders.len() + solids.len()) as u64,
+            bounds: boxes.fold(solids.bounds(), |all, bounds| all.union(&bounds)),
+            placed: Vec::with_capacity(prototype.placements.len()),
+            compositions: compositions
+                .map(|record| Arc::new(record.solid.clone()))
+                .collect(),
+        };
+        for placement in &prototype.placements {
+            self.add(placement.of);
+            let child = self.node(placement.of);
+            let bounds = child.bounds.transformed(&placement.parent_from_child);
+            node.count = node.count.saturating_add(child.count);
+            node.bounds = node.bounds.union(&bounds);
+            node.placed.push(bounds);
+        }
+        self.nodes[index.0 as usize] = Some(node);
+    }
+
+    fn node(&self, index: PrototypeIndex) -> &Node {
+        let node = &self.nodes[index.0 as usize];
+        node.as_ref().expect("what is placed was added first")
+    }
+
+    fn root(&self) -> &Node {
+        self.node(PrototypeIndex::ROOT)
+    }
+
+    /// All solids that meet the region, or `None` if they take more than the budget.
+    fn window_of(&self, region: Option<Bounds>, budget: Budget) -> Option<Window> {
+        let mut found = Found {
+            triangles_left: budget.triangles,
+            segments: budget.segments,
+            window: Window {
+                bounds: region,
+                ..Window::default()
+            },
+        };
+        let root = Arc::new(PlacedFrame::root());
+        let all_fit = self.find(PrototypeIndex::ROOT, &root, &mut found);
+        all_fit.then_some(found.window)
+    }
+
+    /// Adds what meets the region in one place of a prototype; false as soon as
+    /// it is too much.
+    fn find(&self, index: PrototypeIndex, frame: &Arc<PlacedFrame>, found: &mut Found) -> bool {
+        let prototype = &self.scene.prototypes[index.0 as usize];
+        let node = self.node(index);
+        for (primitive, solid) in prototype.singles() {
+            let bounds = solid.bounds().transformed(&frame.world_from_object);
+            if found.meets(&bounds) && !found.add(&[solid], frame, primitive) {
+                return false;
+            }
+        }
+        let records = prototype.solids.compositions.iter();
+        for (record, composition) in records.zip(&node.compositions) {
+            let bounds = composition.bounds().transformed(&frame.world_from_object);
+            if !found.meets(&bounds) {
+                continue;
+            }
+            let first = found.window.solids.len() as u32;
+            if !found.add(&composition.solids(), frame, record.primitive) {
+                return false;
+            }
+            found.window.compositions.push(PlacedComposition {
+                leaves: first..found.window.solids.len() as u32,
+                composition: Arc::clone(composition),
+            });
+        }
+        let placed = prototype.placements.iter().zip(&node.placed).zip(0..);
+        for ((placement, bounds), number) in placed {
+            // The box is in this prototype's space: no map is composed for
+            // what is elsewhere.
+            if !found.meets(&bounds.transformed(&frame.world_from_object)) {
+                continue;
+            }
+            let inner = Arc::new(frame.within(number, placement));
+            if !self.find(placement.of, &inner, found) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// The center and the half width of a solid of the scene, each with the same
+    /// chance.
+    fn pick(&self, random: &mut Random) -> (Bounds, f64) {
+        let mut index = PrototypeIndex::ROOT;
+        let mut frame = PlacedFrame::root();
+        let mut number = random.below(self.root().count);
+        loop {
+            let prototype = &self.scene.prototypes[index.0 as usize];
+            let (cylinders, solids) = (&prototype.cylinders, &prototype.solids);
+            let own = (cylinders.len() + solids.len()) as u64;
+            if number < own {
+                let (primitive, solid) = if number < cylinders.len() as u64 {
+                    let record = cylinders.get(number as usize);
+                    (record.primitive(), record.cylinder().into())
+                } else {
+                    // A composition is picked by its first leaf.
+                    let compositions = solids.compositions.iter();
+                    let compositions = compositions.filter_map(|record| {
+                        let leaf = record.solid.solids().first().copied()?;
+                        Some((record.primitive, leaf))
+                    });
+                    let others = number as usize - cylinders.len();
+                    let mut all = solids.singles().chain(compositions);
+                    all.nth(others).expect("a solid of the prototype")
+                };
+                let frame = Arc::new(frame);
+                let placed = PlacedSolid {
+                    solid,
+                    frame,
+                    primitive,
+                };
+                return (Bounds::at(placed.bounds().center()), placed.half_width());
+            }
+            number -= own;
+            let mut placements = prototype.placements.iter().zip(0..);
+            let (placement, place) = placements
+                .find(|(placement, _)| {
+                    let count = self.node(placement.of).count;
+                    let is_here = number < count;
+                    if !is_here {
+                        number -= count;
+                    }
+                    is_here
+                })
+                .expect("the counts add up");
+            frame = frame.within(place, placement);
+            index = placement.of;
+        }
+    }
+
+    /// The largest window about a point that fits the budget, of those
+    /// that are as wide as [`WIDEST`] allows or half, a quarter, ... of it.
+    fn window_about(&self, center: Bounds, half_width: f64, budget: Budget) -> Option<Window> {
+        let mut reach = WIDEST / 2.0 * half_width;
+        let least = LEAST_REACH * center.lower.abs().max_element();
+        for _ in 0..MOST_HALVINGS {
+            let bounds = center.grown(reach.max(least)).rounded_outward();
+            if let Some(window) = self.window_of(Some(bounds), budget) {
+                return Some(window);
+            }
+            if reach <= least {
+                return None;
+            }
+            reach /= 2.0;
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    fn load(name: &str) -> Scene {
+        let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+            .join("scenes")
+            .join(name);
+        cyltrace::scene::load(&path).expect("the scene is there")
+    }
+
+    /// What so many cylinders take as prisms of 8 sides.
+    fn of_cylinders(count: u64) -> Budget {
+        Budget {
+            triangles: 32 * count,
+            segments: 8,
+        }
+    }
+
+    #[test]
+    fn lattice_is_one_window_with_every_solid() {
+        let scene = load("lattice.toml");
+        let all = windows(&scene, of_cylinders(1 << 17), 0);
+        assert_eq!(all.len(), 1);
+        assert_eq!(all[0].bounds, None);
+        assert_eq!(all[0].solids.len(), 61_061);
+        assert_eq!(all[0].solids[0].frame.instance, Vec::<u32>::new());
+        assert_eq!(all[0].solids[61_060].frame.instance, [0, 5]);
+    }
+
+    /// The windows of the lattice against all solids, one by one.
+    #[test]
+    fn windows_hold_exactly_the_solids_that_meet_them() {
+        let scene = load("lattice.toml");
+        let whole = windows(&scene, of_cylinders(1 << 17), 0).remove(0);
+        for window in windows(&scene, of_cylinders(20_000), 3) {
+            let bounds = window.bounds.expect("a part of the scene");
+            let meets = |solid: &&PlacedSolid| solid.bounds().meets(&bounds);
+            let name = |solid: &PlacedSolid| (solid.frame.instance.clone(), solid.primitive);
+            let expected: Vec<_> = whole.solids.iter().filter(meets).map(name).collect();
+            let found: Vec<_> = window.solids.iter().map(name).collect();
+            assert!(!found.is_empty() && found.len() <= 2_500);
+            assert_eq!(found, expected);
+        }
+    }
+
+    #[test]
+    fn forest_has_windows_that_f32_resolves() {
+        let all = windows(&load("forest.toml"), of_cylinders(400_000), 1);
+        assert_eq!(all.len(), 8);
+        for window in &all {
+            assert!((1_000..=50_000).contains(&window.solids.len()));
+            let bounds = window.bounds.expect("a part of the scene");
+            assert!(bounds.extent().max_element() < 20.0, "{bounds:?}");
+            assert!(window.is_resolved());
+        }
+    }
+}

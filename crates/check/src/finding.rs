@@ -1,0 +1,52 @@
+//! What is checked: anything that finds the first hit of a ray.
+
+use glam::DVec3;
+
+use cyltrace::math::Ray;
+use cyltrace::solid::Part;
+use cyltrace::tracer::{HitFields, Tracer};
+
+/// Finds the first hit of a ray with the scene that it is checked against, from
+/// any number of threads.
+pub trait Intersector: Sync {
+    /// The hit with the least `t` in the ray's range; `None` for a miss.
+    fn closest(&self, ray: &Ray) -> Option<ReportedHit>;
+}
+
+/// A hit as an intersector tells it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReportedHit {
+    /// The ray's parameter, in lengths of its direction.
+    pub t: f64,
+    /// The outward unit normal, if it is told.
+    pub normal: Option<DVec3>,
+    /// What is hit, if it is told. It allows a stricter check: of the very solid.
+    pub place: Option<Place>,
+}
+
+/// A part of a solid in the scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The placements from the root to the solid's prototype, outermost first.
+    pub instance: Vec<u32>,
+    /// The solid's number within its prototype.
+    pub primitive: u32,
+    /// The part of its surface.
+    pub part: Part,
+}
+
+impl Intersector for Tracer {
+    fn closest(&self, ray: &Ray) -> Option<ReportedHit> {
+        let first = self.first_hit(ray)?;
+        let hit = self.hit_with(ray, &first, HitFields::NORMAL);
+        Some(ReportedHit {
+            t: hit.t(),
+            normal: hit.normal(),
+            place: Some(Place {
+                instance: first.instance().to_vec(),
+                primitive: hit.primitive(),
+                part: hit.part(),
+            }),
+        })
+    }
+}

@@ -1,0 +1,351 @@
+//! The scene from both representations, and where they differ.
+//!
+//! The mesh is of inscribed prisms of the solids that the picture's own rays
+//! meet. An inscribed prism is inside its solid, so that a ray can meet the
+//! prisms of no others, and the picture is that of the whole scene's mesh
+//! (beyond the first [`DEPTHS`] solids on a ray nothing is looked for).
+//! Compositions have no mesh of their own: where one is met first, it is shown in its
+//! own picture alone.
+//!
+//! A difference in `t` is shown in units of the chord error. In the solid's own
+//! space, a wall met with the unit normal `n` by a direction `d` that is
+//! displaced by the sagitta `s` shifts the hit by `s/|n·d|`; `t` means the same
+//! there as in the world, so the unit is `s/|n·d|` whatever the placement. A cuboid is
+//! its own mesh, without any.
+
+use std::collections::HashMap;
+
+use glam::{DAffine3, DVec2, DVec3};
+use rayon::prelude::*;
+
+use crate::external::user_mesh::{TracedMesh, TriangleHit};
+use cyltrace::math::Ray;
+use cyltrace::scene::{AimedCamera, Film, MaterialIndex, Placement, PrototypeIndex, Scene};
+use cyltrace::solid::tessellation::{Fit, Mesh, deviation_of, mesh_of, mesh_size_of};
+use cyltrace::solid::{AnySolid, SolidKind};
+use cyltrace::tracer::{DEFAULT_BATCH, HitFields, PartialHit, Tracer};
+use cyltrace_output::{png_bytes, srgb_encode};
+
+/// Solids along a ray that the mesh may hold: as many of these as the memory
+/// allows.
+const DEPTHS: [usize; 4] = [8, 4, 2, 1];
+
+/// Hits along a ray among which solids are looked for.
+const MOST_HITS: usize = 64;
+
+/// Bytes of a triangle with its share of vertices and of Embree's tree, on the
+/// safe side.
+const TRIANGLE_BYTES: u64 = 200;
+
+/// Pictures as the bytes of PNG files.
+#[derive(Clone, Debug)]
+pub struct Pictures {
+    /// The solids.
+    pub analytic: Vec<u8>,
+    /// The prisms.
+    pub mesh: Vec<u8>,
+    /// The mesh's `t` minus the exact one, in units of the chord error: blue
+    /// before, red behind.
+    pub distance: Vec<u8>,
+    /// The angle between the normals, in units of π/N.
+    pub normal: Vec<u8>,
+    /// Sides of the prisms.
+    pub segments: u32,
+    /// Prisms in the mesh.
+    pub prisms: usize,
+    /// Pixels in which both are hit, in which the solids alone are, and the mesh
+    /// alone.
+    pub counts: [u64; 3],
+    /// Pixels in which a composition is hit first, which has no mesh.
+    pub composed: u64,
+}
+
+/// Why there are no pictures.
+#[derive(Debug, thiserror::Error)]
+pub enum PicturesError {
+    /// The encoder refused.
+    #[error("cannot encode a picture: {0}")]
+    Encoding(String),
+}
+
+/// A solid by its path and its number.
+type Key = (Vec<u32>, u32);
+
+/// A solid where it is placed.
+struct Placed {
+    solid: AnySolid,
+    object_from_world: DAffine3,
+    world_from_object: DAffine3,
+    color: DVec3,
+}
+
+/// Draws the scene of `tracer` from its own camera, in the rayon pool that this is
+/// called in.
+///
+/// # Errors
+/// When the encoder refuses.
+pub fn pictures(
+    tracer: &Tracer,
+    segments: u32,
+    film: Film,
+    max_memory: u64,
+) -> Result<Option<Pictures>, PicturesError> {
+    let camera = AimedCamera::new(&tracer.scene().camera, &tracer.bounds(), film);
+    let pixels: Vec<(Ray, Vec<Seen>)> = (0..film.width * film.height)
+        .into_par_iter()
+        .map(|pixel| {
+            let at = DVec2::new(
+                f64::from(pixel % film.width) + 0.5,
+                f64::from(pixel / film.width) + 0.5,
+            );
+            let ray = camera.ray(at);
+            (ray, first_of_each_solid(tracer, &ray))
+        })
+        .collect();
+    let Some(solids) = chosen(tracer.scene(), &pixels, segments, max_memory) else {
+        return Ok(None);
+    };
+    let mut mesh = Mesh::default();
+    let mut solid_of = Vec::new();
+    let mut ordered: Vec<(&Key, &Placed)> = solids.iter().collect();
+    ordered.sort_by_key(|(key, _)| *key);
+    for (_, solid) in &ordered {
+        let mut prism = mesh_of(&solid.solid, segments, Fit::Inscribed);
+        for vertex in &mut prism.vertices {
+            *vertex = solid.world_from_object.transform_point3(*vertex);
+        }
+        solid_of.extend(prism.triangles.iter().map(|_| *solid));
+        mesh.append(&prism);
+    }
+    let traced = TracedMesh::new(&mesh);
+    let shown: Vec<Shown> = pixels
+        .par_iter()
+        .map(|(ray, hits)| {
+            if let Some(hit) = hits.first().filter(|hit| hit.is_composed()) {
+                let color = color_of(tracer.scene(), hit);
+                return Shown::composition(shade(color, hit.normal, ray));
+            }
+            let exact = hits.first().and_then(|hit| {
+                let solid = solids.get(&hit.key)?;
+                Some((hit, solid))
+            });
+            let found = traced.closest(ray);
+            let color = |hit: &TriangleHit| solid_of[hit.triangle as usize].color;
+            Shown::of(ray, exact, found.map(|hit| (hit, color(&hit))), segments)
+        })
+        .collect();
+    let encode = |of: fn(&Shown) -> [u8; 4]| {
+        let pixels: Vec<[u8; 4]> = shown.iter().map(of).collect();
+        png_bytes(film.width, film.height, &pixels)
+            .map_err(|error| PicturesError::Encoding(error.to_string()))
+    };
+    let count = |case: usize| {
+        shown
+            .iter()
+            .filter(|shown| shown.case == Some(case))
+            .count() as u64
+    };
+    Ok(Some(Pictures {
+        analytic: encode(|shown| shown.analytic)?,
+        mesh: encode(|shown| shown.mesh)?,
+        distance: encode(|shown| shown.distance)?,
+        normal: encode(|shown| shown.normal)?,
+        segments,
+        prisms: ordered.len(),
+        counts: [0, 1, 2].map(count),
+        composed: count(COMPOSED),
+    }))
+}
+
+/// What the pictures need of a hit.
+struct Seen {
+    t: f64,
+    normal: DVec3,
+    key: Key,
+    kind: SolidKind,
+    material: MaterialIndex,
+}
+
+impl Seen {
+    const FIELDS: HitFields = HitFields::NORMAL.union(HitFields::PATH);
+
+    /// Of a hit that has these fields.
+    fn new(hit: &PartialHit) -> Option<Self> {
+        Some(Self {
+            t: hit.t(),
+            normal: hit.normal()?,
+            key: (hit.instance()?.to_vec(), hit.primitive()),
+            kind: hit.solid(),
+            material: hit.material(),
+        })
+    }
+
+    fn is_composed(&self) -> bool {
+        use SolidKind::{Difference, Intersection, Union};
+        matches!(self.kind, Union | Intersection | Difference)
+    }
+}
+
+/// The first hit with each of the first solids that a ray meets.
+fn first_of_each_solid(tracer: &Tracer, ray: &Ray) -> Vec<Seen> {
+    let mut hits: Vec<Seen> = Vec::new();
+    let all = tracer.all_hits(ray, DEFAULT_BATCH).with(Seen::FIELDS);
+    for hit in all.take(MOST_HITS).filter_map(|hit| Seen::new(&hit)) {
+        if hits.iter().all(|known| known.key != hit.key) {
+            hits.push(hit);
+            if hits.len() == DEPTHS[0] {
+                break;
+            }
+        }
+    }
+    hits
+}
+
+/// The solids of the mesh; `None` when there are none, or even the first on each
+/// ray take more than `max_memory`.
+fn chosen(
+    scene: &Scene,
+    pixels: &[(Ray, Vec<Seen>)],
+    segments: u32,
+    max_memory: u64,
+) -> Option<HashMap<Key, Placed>> {
+    let most = max_memory / TRIANGLE_BYTES;
+    DEPTHS.into_iter().find_map(|depth| {
+        let mut solids = HashMap::new();
+        for (_, hits) in pixels {
+            for hit in hits.iter().take(depth).filter(|hit| !hit.is_composed()) {
+                solids
+                    .entry(hit.key.clone())
+                    .or_insert_with(|| placed(scene, hit));
+            }
+        }
+        let sizes = solids
+            .values()
+            .map(|placed| mesh_size_of(&placed.solid, segments).1);
+        let triangles: u64 = sizes.sum();
+        (!solids.is_empty() && triangles <= most).then_some(solids)
+    })
+}
+
+/// The solid of a hit.
+fn placed(scene: &Scene, hit: &Seen) -> Placed {
+    let (instance, number) = &hit.key;
+    let (world_from_object, prototype) = place(scene, instance);
+    let (_, solid) = scene.prototypes[prototype.0 as usize]
+        .singles()
+        .find(|(primitive, _)| primitive == number)
+        .expect("a hit names a solid of its prototype");
+    Placed {
+        solid,
+        object_from_world: world_from_object.inverse(),
+        world_from_object,
+        color: color_of(scene, hit),
+    }
+}
+
+fn color_of(scene: &Scene, hit: &Seen) -> DVec3 {
+    scene.materials[usize::from(hit.material.0)].color
+}
+
+/// The prototype at the end of a path and its placement in the world, rounded.
+fn place(scene: &Scene, path: &[u32]) -> (DAffine3, PrototypeIndex) {
+    let start = (DAffine3::IDENTITY, PrototypeIndex::ROOT);
+    path.iter().fold(start, |(world, prototype), &number| {
+        let placements = &scene.prototypes[prototype.0 as usize].placements;
+        let Placement {
+            of,
+            parent_from_child,
+        } = placements[number as usize];
+        (world * parent_from_child, of)
+    })
+}
+
+const NOTHING: [u8; 4] = [0; 4];
+/// The mesh is missed where a solid is hit.
+const SOLID_ALONE: [u8; 4] = [0xe6, 0x9f, 0x00, 0xff];
+/// The mesh is hit where nothing is.
+const MESH_ALONE: [u8; 4] = [0x9b, 0x30, 0xff, 0xff];
+
+/// A composition is hit first.
+const COMPOSED: usize = 3;
+
+/// A pixel of each picture.
+struct Shown {
+    analytic: [u8; 4],
+    mesh: [u8; 4],
+    distance: [u8; 4],
+    normal: [u8; 4],
+    /// 0: both hit; 1: the solid alone; 2: the mesh alone; or [`COMPOSED`].
+    case: Option<usize>,
+}
+
+impl Shown {
+    /// Of a solid that has no mesh.
+    fn composition(analytic: [u8; 4]) -> Self {
+        Self {
+            analytic,
+            mesh: NOTHING,
+            distance: NOTHING,
+            normal: NOTHING,
+            case: Some(COMPOSED),
+        }
+    }
+
+    fn of(
+        ray: &Ray,
+        exact: Option<(&Seen, &Placed)>,
+        found: Option<(TriangleHit, DVec3)>,
+        segments: u32,
+    ) -> Self {
+        let mesh = found.map_or(NOTHING, |(hit, color)| shade(color, hit.normal, ray));
+        let analytic = exact.map_or(NOTHING, |(hit, solid)| shade(solid.color, hit.normal, ray));
+        let (distance, normal, case) = match (exact, found) {
+            (None, None) => (NOTHING, NOTHING, None),
+            (Some(_), None) => (SOLID_ALONE, SOLID_ALONE, Some(1)),
+            (None, Some(_)) => (MESH_ALONE, MESH_ALONE, Some(2)),
+            (Some((hit, solid)), Some((triangle, _))) => {
+                let chord = chord_error(ray, hit, solid, segments);
+                let chords = if chord > 0.0 {
+                    (triangle.t - hit.t) / chord
+                } else {
+                    0.0
+                };
+                let cos = hit.normal.dot(triangle.normal).abs().min(1.0);
+                let angles = libm::acos(cos) * f64::from(segments) / std::f64::consts::PI;
+                (
+                    heat(chords, [0xd7, 0x30, 0x27], [0x1f, 0x66, 0xc8]),
+                    heat(angles, [0xb0, 0x3a, 0x9d], [0xb0, 0x3a, 0x9d]),
+                    Some(0),
+                )
+            }
+        };
+        Self {
+            analytic,
+            mesh,
+            distance,
+            normal,
+            case,
+        }
+    }
+}
+
+/// By how much `t` may differ to first order, as the head of this file has it.
+fn chord_error(ray: &Ray, hit: &Seen, solid: &Placed, segments: u32) -> f64 {
+    let direction = solid.object_from_world.transform_vector3(ray.direction);
+    let normal = solid.world_from_object.matrix3.transpose() * hit.normal;
+    deviation_of(&solid.solid, segments, Fit::Inscribed) / normal.normalize().dot(direction).abs()
+}
+
+/// A colour under a lamp at the eye.
+fn shade(color: DVec3, normal: DVec3, ray: &Ray) -> [u8; 4] {
+    let light = 0.1 + 0.9 * normal.dot(ray.direction.normalize()).abs();
+    let [r, g, b] = (color * light).to_array().map(|x| srgb_encode(x as f32));
+    [r, g, b, 0xff]
+}
+
+/// A value from -1 to 1 as a colour's opacity, which shows on light and on dark.
+fn heat(value: f64, above: [u8; 3], below: [u8; 3]) -> [u8; 4] {
+    let [r, g, b] = if value < 0.0 { below } else { above };
+    let opacity = 24.0 + 231.0 * value.abs().min(1.0);
+    [r, g, b, opacity as u8]
+}

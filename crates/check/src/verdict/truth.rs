@@ -1,0 +1,217 @@
+//! Answers against the exact oracle, on a sample.
+//!
+//! An intersector computes in f64 and cannot be right to the last digit. It is
+//! taken to be right if it answers for the scene with every solid displaced by
+//! at most `δ` in its own space: [`LEEWAY`] times what taking the ray to that
+//! space rounds (`surface`), at the farthest point of the solid. The solid
+//! grown by `δ` holds everything within `δ` of it, the one shrunk by `δ` is held by
+//! whatever is displaced by `δ` (`hull::displaced`). So they stand for the outer and the
+//! inner mesh, with exact crossings in place of triangles, and the same bounds follow
+//! (`sandwich`, `composed`). In place of the sheets of a disk are the disks `δ` over and under it,
+//! smaller by `δ`.
+//!
+//! A crossing of a tube is certain if its height is more than `2 δ` from the
+//! missing disks. A ray that comes in through one and goes out through another
+//! has no upper bound: that it misses is not certain to the sandwich.
+
+use std::ops::Range;
+
+use glam::{DAffine3, DVec3};
+
+use cyltrace::math::Ray;
+use cyltrace::solid::{AnySolid, Crossing, Disk};
+use cyltrace_oracle::ExactAffine;
+
+use super::composed::composed_bounds;
+use super::open_ends::ends_of;
+use super::sandwich::{Crossings, Interval, sheet_bounds, solid_bounds};
+use super::surface::LocalRay;
+use crate::bounding_meshes::hull::displaced;
+use crate::bounding_meshes::meshes::{LeafCrossings, may_meet};
+use crate::bounding_meshes::window::{PlacedSolid, Window, half_width};
+use crate::finding::ReportedHit;
+use crate::report::words::instance_text;
+
+/// Roundings of the ray that an intersector may make up for one of ours: a
+/// solver has some 30 operations from the ray to `t`.
+const LEEWAY: f64 = 32.0;
+
+/// The bounds of the scene's first hit; `None` if a solid is too small for its
+/// distance to be displaced.
+pub(crate) fn bounds(window: &Window, ray: &Ray) -> Option<Interval> {
+    let mut first = Interval::NOTHING;
+    for leaves in candidates(window, ray) {
+        first = first.first(displaced_bounds(window, leaves, ray)?);
+    }
+    Some(first)
+}
+
+/// The true answer, in words.
+pub(crate) fn in_words(window: &Window, ray: &Ray) -> String {
+    let hits = candidates(window, ray).filter_map(|leaves| {
+        let placed = &window.solids[leaves.start as usize];
+        let (t, what) = match window.composition_of(leaves.start) {
+            None => {
+                let hits =
+                    cyltrace_oracle::placed_hits_of_any(&placed.solid, &placed.frame.exact, ray);
+                let hit = hits.into_iter().next()?;
+                let (kind, part) = (placed.solid.kind().name(), hit.part.name());
+                (hit.t_f64(), format!("{part} of {kind}"))
+            }
+            Some(found) => {
+                let endless = endless(ray);
+                let leaves: Vec<LeafCrossings> = window.solids
+                    [leaves.start as usize..leaves.end as usize]
+                    .iter()
+                    .map(|leaf| {
+                        let crossings = crossings(&leaf.solid, &leaf.frame.exact, &endless);
+                        LeafCrossings {
+                            outer: crossings,
+                            inner: crossings,
+                        }
+                    })
+                    .collect();
+                let bounds = composed_bounds(&found.composition, &leaves, ray.t_min);
+                // Where it is inside over a length: two faces that coincide are no hit.
+                let t = bounds.interval.high;
+                (t <= ray.t_max && t < f64::INFINITY).then_some(())?;
+                (t, String::from(found.composition.kind().name()))
+            }
+        };
+        let instance = instance_text(&placed.frame.instance);
+        Some((t, format!("{what} {} of {instance}", placed.primitive)))
+    });
+    match hits.min_by(|(one, _), (other, _)| one.total_cmp(other)) {
+        None => String::from("truly a miss"),
+        Some((t, what)) => format!("truly t {t:?} on {what}"),
+    }
+}
+
+/// Whether bounds allow an answer.
+pub(crate) fn allows(bounds: &Interval, ray: &Ray, answer: Option<&ReportedHit>) -> bool {
+    bounds.allows(answer.map(|finding| finding.t), ray.t_max)
+}
+
+/// The leaves of each solid that the ray may meet.
+fn candidates<'a>(window: &'a Window, ray: &'a Ray) -> impl Iterator<Item = Range<u32>> + 'a {
+    // A ray that passes this near to a box may, displaced, meet its solid.
+    const NEAR: f64 = 1e-12;
+    let farthest = ray.origin.abs().max_element();
+    let may_meet = move |solid: &PlacedSolid| {
+        let bounds = solid.bounds();
+        let size = bounds.lower.abs().max(bounds.upper.abs()).max_element() + farthest;
+        may_meet(&bounds.grown(NEAR * size), ray)
+    };
+    window.leaves().filter(move |leaves| {
+        let mut leaves = window.solids[leaves.start as usize..leaves.end as usize].iter();
+        leaves.any(may_meet)
+    })
+}
+
+fn endless(ray: &Ray) -> Ray {
+    Ray {
+        t_max: f64::INFINITY,
+        ..*ray
+    }
+}
+
+fn displaced_bounds(window: &Window, leaves: Range<u32>, ray: &Ray) -> Option<Interval> {
+    let endless = endless(ray);
+    let crossings: Option<Vec<LeafCrossings>> = leaves
+        .clone()
+        .map(|leaf| displaced_crossings(&window.solids[leaf as usize], &endless))
+        .collect();
+    let crossings = crossings?;
+    let placed = &window.solids[leaves.start as usize];
+    let LeafCrossings { outer, inner } = &crossings[0];
+    let bounds = if let Some(found) = window.composition_of(leaves.start) {
+        composed_bounds(&found.composition, &crossings, ray.t_min)
+    } else if let AnySolid::Disk(_) = placed.solid {
+        sheet_bounds(outer, inner, ray.t_min)
+    } else {
+        let local = LocalRay::new(placed, ray);
+        let margin = 2.0 * LEEWAY * local.rounding_at_solid();
+        solid_bounds(outer, inner, ray.t_min, |t| {
+            is_between_ends(placed, &local, t, margin)
+        })
+    };
+    // The parameters were rounded to nearest.
+    let Interval { low, high } = bounds.interval;
+    Some(Interval {
+        low: if low.is_finite() {
+            low.next_down()
+        } else {
+            low
+        },
+        high: high.next_up(),
+    })
+}
+
+/// Whether the point at a parameter is farther than `margin` from the planes
+/// of the disks that the solid does not have, on its side of them.
+fn is_between_ends(placed: &PlacedSolid, local: &LocalRay, t: f64, margin: f64) -> bool {
+    let Some([(p0, is_open0), (p1, is_open1)]) = ends_of(&placed.solid) else {
+        return true;
+    };
+    if !is_open0 && !is_open1 {
+        return true;
+    }
+    let (axis, length) = ((p1 - p0).normalize(), (p1 - p0).length());
+    let height = local.at(t).dot(axis);
+    t.is_finite() && (!is_open0 || height > margin) && (!is_open1 || height < length - margin)
+}
+
+/// The crossings of a solid grown and shrunk by the leeway; `None` if it is too small.
+fn displaced_crossings(placed: &PlacedSolid, ray: &Ray) -> Option<LeafCrossings> {
+    let leeway = LEEWAY * LocalRay::new(placed, ray).rounding_at_solid();
+    if leeway > 0.5 * half_width(&placed.solid) {
+        return None;
+    }
+    let placement = &placed.frame.exact;
+    if let AnySolid::Disk(disk) = &placed.solid {
+        return displaced_disk(disk, leeway, placement, ray);
+    }
+    let of = |outward: f64| {
+        let solid = displaced(&placed.solid, outward)?;
+        Some(crossings(&solid, placement, ray))
+    };
+    Some(LeafCrossings {
+        outer: of(leeway)?,
+        inner: of(-leeway)?,
+    })
+}
+
+/// A disk is moved to the origin, and the placement with it: what is as thin as the
+/// leeway would tilt by what its ends round elsewhere.
+fn displaced_disk(
+    disk: &Disk,
+    leeway: f64,
+    placement: &ExactAffine,
+    ray: &Ray,
+) -> Option<LeafCrossings> {
+    let center = DAffine3::from_translation(disk.center());
+    let placement = placement.after(&ExactAffine::new(&center));
+    let own = Disk::new(DVec3::ZERO, disk.normal(), disk.radius()).ok()?;
+    let mut inner = Crossings::NONE;
+    for side in [-1.0, 1.0] {
+        let up = own.normal().normalize() * (side * leeway);
+        let sheet = Disk::new(up, own.normal(), own.radius() - leeway).ok()?;
+        let hits = cyltrace_oracle::placed_hits_of_any(&sheet.into(), &placement, ray);
+        if let Some(hit) = hits.first() {
+            inner.add(hit.t_f64(), side > 0.0);
+        }
+    }
+    Some(LeafCrossings {
+        outer: crossings(&displaced(&own.into(), leeway)?, &placement, ray),
+        inner,
+    })
+}
+
+/// Where the ray enters a closed solid and where it leaves it.
+fn crossings(solid: &AnySolid, placement: &ExactAffine, ray: &Ray) -> Crossings {
+    let mut crossings = Crossings::NONE;
+    for hit in cyltrace_oracle::placed_hits_of_any(solid, placement, ray) {
+        crossings.add(hit.t_f64(), hit.crossing == Crossing::Enter);
+    }
+    crossings
+}

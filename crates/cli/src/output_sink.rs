@@ -1,0 +1,97 @@
+//! Where a table goes: standard output, or a file that is whole or absent.
+
+use std::io::{self, BufWriter, Stdout, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use cyltrace_output::{FileError, NewFile};
+
+use super::print::StandardOutputError;
+
+/// Standard output, or a new file.
+pub enum OutputSink {
+    StandardOutput(BufWriter<Stdout>),
+    File(NewFile, PathBuf),
+}
+
+impl OutputSink {
+    /// Says before any work whether `path` could be written.
+    pub fn check(path: &Path) -> Result<(), FileError> {
+        if is_standard_stream(path) {
+            return Ok(());
+        }
+        NewFile::check(path)
+    }
+
+    /// Opens `path`; `-` is standard output.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
+        if is_standard_stream(path) {
+            return Ok(Self::StandardOutput(BufWriter::new(io::stdout())));
+        }
+        Ok(Self::File(NewFile::create(path)?, path.into()))
+    }
+
+    /// Whether what has been written so far can be seen before the end.
+    pub fn shows_parts(&self) -> bool {
+        match self {
+            Self::StandardOutput(_) => true,
+            Self::File(file, _) => !file.is_replacing(),
+        }
+    }
+
+    /// Writes what is buffered and moves the file to its place.
+    pub fn finish(self) -> anyhow::Result<()> {
+        match self {
+            Self::StandardOutput(mut writer) => {
+                Ok(writer.flush().map_err(|e| StandardOutputError::of(&e))?)
+            }
+            Self::File(file, _) => Ok(file.finish()?),
+        }
+    }
+}
+
+impl Write for OutputSink {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::StandardOutput(writer) => writer
+                .write(bytes)
+                .map_err(|error| StandardOutputError::of(&error)),
+            Self::File(file, path) => file.write(bytes).map_err(|error| unwritten(path, error)),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::StandardOutput(writer) => writer
+                .flush()
+                .map_err(|error| StandardOutputError::of(&error)),
+            Self::File(file, path) => file.flush().map_err(|error| unwritten(path, error)),
+        }
+    }
+}
+
+/// An error of the same kind that names the file as the user stated it, not the temporary one.
+fn unwritten(path: &Path, source: io::Error) -> io::Error {
+    let (kind, path) = (source.kind(), path.into());
+    io::Error::new(kind, FileError::System { path, source })
+}
+
+/// Writes a text file that is whole or absent.
+pub fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
+    let mut file = NewFile::create(path)?;
+    file.write_all(text.as_bytes())
+        .with_context(|| format!("cannot write {}", path.display()))?;
+    Ok(file.finish()?)
+}
+
+/// Makes the directory of a report where it is not there yet.
+pub fn make_directory(directory: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(directory)
+        .with_context(|| format!("cannot make the directory {}", directory.display()))
+}
+
+/// Whether a file's name stands for standard output, or for standard input
+/// where a file is read.
+pub fn is_standard_stream(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}

@@ -1,0 +1,23 @@
+//! The program as users run it.
+
+mod arguments;
+mod bad_input;
+mod bench;
+mod check;
+mod check_meshes;
+mod exact;
+mod fuzz_corpus;
+mod hit_rows;
+mod info;
+mod limits;
+mod memory;
+mod outputs;
+mod points;
+mod program;
+mod render;
+mod signals;
+mod stress;
+mod tables;
+mod tessellate;
+mod tessellated_scenes;
+mod trace;

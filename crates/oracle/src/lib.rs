@@ -1,0 +1,47 @@
+//! Exact truth about rays and solids.
+//!
+//! Everything here is computed in exact binary arithmetic of any length, with
+//! formulas that the solvers do not use, and shares no code with them. It is
+//! some thousand times slower than a solver and decides what is right.
+
+mod affine;
+mod any;
+pub mod cases;
+mod change;
+mod chord;
+mod composed;
+mod cone;
+mod cuboid;
+mod cylinder;
+mod disk;
+mod distance;
+mod ends;
+mod gap;
+mod normal;
+mod number;
+mod ray;
+mod rounded_cone;
+mod sphere;
+mod taper;
+mod taper_points;
+
+pub use affine::{ExactAffine, ExactMatrix};
+pub use any::{
+    first_hit_of_any, gap_of_any, hits_of_any, outward_normal_of_any, placed_hits_of_any,
+};
+pub use chord::TrueChord;
+pub use composed::{ComposedHit, ComposedTruth, Face};
+pub use cone::{cone_gap, cone_hits};
+pub use cuboid::{cuboid_chord, cuboid_gap, cuboid_holds};
+pub use cylinder::{CylinderTruth, TrueHit, first_hit, placed_first_hit};
+pub use disk::{disk_chord, disk_gap, disk_holds};
+pub use distance::distance_to_part;
+pub use gap::gap;
+pub use normal::outward_normal;
+pub use number::{Exact, ExactVector, exact, to_f64};
+pub use ray::ExactRay;
+pub use rounded_cone::{rounded_cone_gap, rounded_cone_hits};
+pub use sphere::{sphere_chord, sphere_gap, sphere_holds};
+pub use taper_points::{
+    cone_holds, distance_to_cone, distance_to_rounded_cone, rounded_cone_holds,
+};

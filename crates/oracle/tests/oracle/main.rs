@@ -1,0 +1,5 @@
+//! The oracle and the families of hard cases.
+
+mod cases;
+mod composed;
+mod placed;

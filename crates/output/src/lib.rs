@@ -1,0 +1,24 @@
+//! What cyltrace writes: files that are never left half written, pictures, and figures,
+//! tables and pages as text.
+
+mod base64;
+mod csv;
+mod figure;
+mod film;
+mod html;
+mod label;
+mod new_file;
+mod picture;
+mod srgb;
+mod table;
+mod unfinished;
+
+pub use csv::csv;
+pub use figure::{Figure, Mark, Series, Symbol};
+pub use film::Film;
+pub use html::{Page, escape};
+pub use new_file::{FileError, NewFile, followed};
+pub use picture::{Format, Output, OutputError, png_bytes};
+pub use srgb::encode as srgb_encode;
+pub use table::{Table, figure, readable};
+pub use unfinished::{UnfinishedGuard, remove_unfinished};

@@ -1,0 +1,159 @@
+//! From a scene to a picture: camera, samples, light and image files.
+//!
+//! [`render`] makes a [`Film`] of linear colours, [`Output`] writes it. The
+//! same scene, settings and seed give the same bytes for any number of
+//! threads.
+
+mod integrator;
+mod lights;
+mod sampler;
+mod tiles;
+
+use std::sync::atomic::AtomicBool;
+
+use cyltrace_output::Film;
+use rayon::ThreadPool;
+
+pub use cyltrace::scene::GREATEST_PIXELS;
+pub use integrator::RayCounts;
+pub use lights::{Lights, SunLight};
+pub use sampler::PixelSampler;
+
+use cyltrace::scene::{self, AimedCamera, Integrator, Scene, ViewVolume};
+use cyltrace::tracer::Tracer;
+use integrator::View;
+
+/// What to render, where the scene leaves a choice.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Size of the picture; at least 1 x 1.
+    pub film: scene::Film,
+    /// Samples a pixel, at least 1. The first `n` are the same for any number
+    /// of samples; powers of two are spread most evenly.
+    pub spp: u32,
+    /// What a pixel shows.
+    pub integrator: Integrator,
+    /// Chooses the random numbers.
+    pub seed: u64,
+}
+
+impl Settings {
+    /// What the scene asks for, with seed 0.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        Self {
+            film: scene.film,
+            spp: scene.render.spp,
+            integrator: scene.render.integrator,
+            seed: 0,
+        }
+    }
+
+    /// The part of space that all rays of the picture will be in, where that is
+    /// known before the scene is built: rays of the camera stay in its view,
+    /// and with normals there are no others.
+    #[must_use]
+    pub fn view(&self, scene: &Scene) -> Option<ViewVolume> {
+        let camera = match self.integrator {
+            Integrator::Normal => AimedCamera::stated(&scene.camera, self.film)?,
+            Integrator::Ao | Integrator::Sun => return None,
+        };
+        Some(camera.view_volume())
+    }
+
+    /// Says whether a picture can be made with these settings.
+    ///
+    /// # Errors
+    /// When there is no pixel, no sample, or there are too many pixels.
+    pub fn check(&self) -> Result<(), RenderError> {
+        let scene::Film { width, height } = self.film;
+        let pixels = u64::from(width) * u64::from(height);
+        if pixels == 0 || pixels > GREATEST_PIXELS {
+            return Err(RenderError::Size { width, height });
+        }
+        if self.spp == 0 {
+            return Err(RenderError::NoSamples);
+        }
+        Ok(())
+    }
+}
+
+/// A picture and what it took.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// The colours.
+    pub film: Film,
+    /// The rays traced.
+    pub rays: RayCounts,
+    /// What was not done because the scene has no need of it.
+    pub skipped: Vec<String>,
+}
+
+/// Why there is no picture.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RenderError {
+    /// The size is zero or too large.
+    #[error(
+        "a picture of {width} x {height} pixels cannot be made: it needs at least 1 x 1 and at most {GREATEST_PIXELS} pixels in all"
+    )]
+    Size {
+        /// Pixels across.
+        width: u32,
+        /// Pixels down.
+        height: u32,
+    },
+    /// There are no samples to take.
+    #[error("a picture needs at least 1 sample a pixel")]
+    NoSamples,
+    /// The caller asked to stop.
+    #[error("the rendering was cancelled")]
+    Cancelled,
+}
+
+/// Renders the scene of `tracer` on the threads of `workers` (see
+/// [`cyltrace::tracer::workers`]).
+///
+/// `progress` is told the number of pixels done since the last call, from any
+/// of the threads. The rendering ends within some hundred samples of every
+/// thread when `cancelled` becomes true.
+///
+/// # Errors
+/// When the settings are unusable (see [`Settings::check`]), or the rendering
+/// was cancelled.
+pub fn render(
+    tracer: &Tracer,
+    settings: &Settings,
+    workers: &ThreadPool,
+    progress: &(dyn Fn(u64) + Sync),
+    cancelled: &AtomicBool,
+) -> Result<Picture, RenderError> {
+    settings.check()?;
+    let scene = tracer.scene();
+    let view = View {
+        tracer,
+        materials: &scene.materials,
+        camera: AimedCamera::new(&scene.camera, &tracer.bounds(), settings.film),
+        lights: Lights::of(scene),
+        integrator: settings.integrator,
+    };
+    let (film, rays) = workers.install(|| tiles::render(&view, settings, progress, cancelled))?;
+    Ok(Picture {
+        film,
+        rays,
+        skipped: skipped(settings.integrator, &view.lights),
+    })
+}
+
+/// The kinds of rays that the integrator or the lights have no need of.
+fn skipped(integrator: Integrator, lights: &Lights) -> Vec<String> {
+    let reasons: &[(bool, &str)] = match integrator {
+        Integrator::Normal => &[(true, "normals only: no shadow rays and no sky rays")],
+        Integrator::Ao => &[(true, "ambient occlusion only: no shadow rays")],
+        Integrator::Sun => &[
+            (lights.sun().is_none(), "no sun: no shadow rays"),
+            (lights.sky().is_none(), "no sky: no sky rays"),
+        ],
+    };
+    let holding = reasons.iter().filter(|(holds, _)| *holds);
+    holding.map(|(_, reason)| (*reason).to_owned()).collect()
+}

@@ -1,0 +1,11 @@
+//! Scene files, the formats that they name, and meshes of scenes.
+
+mod generated_scenes;
+mod keys;
+mod lattices;
+mod nesting;
+mod real_data;
+mod sample_scenes;
+mod solids;
+mod tessellate;
+mod tessellate_kinds;

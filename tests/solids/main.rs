@@ -1,0 +1,10 @@
+//! Solvers, the exact ones beside them, lanes and filters.
+
+mod cone;
+mod exact_solver;
+mod filters;
+mod flat;
+mod lanes;
+mod passing_lines;
+mod pose;
+mod tessellation;

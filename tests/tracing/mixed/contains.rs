@@ -1,0 +1,115 @@
+//! Which solids hold a point: as exact arithmetic says, also on the surface, and as
+//! the exhaustive search says, through placements.
+
+use cyltrace::math::Random;
+use cyltrace::solid::{AnySolid, Caps, Cuboid, Sphere};
+use cyltrace::tracer::{Containing, Tracer};
+use cyltrace::{math::Orientation, solid::Cylinder};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::{SEED, traced, tracer_of};
+use test_support::solids::{crowd, prototype_of, ray_through, truly_holds};
+use test_support::{self, nested_placements};
+
+fn numbers(found: &[Containing]) -> Vec<u32> {
+    found.iter().map(|one| one.primitive).collect()
+}
+
+/// A point of the unit cube, or on a surface within the rounding.
+fn point(random: &mut Random, tracer: &Tracer) -> DVec3 {
+    let any = DVec3::new(random.unit(), random.unit(), random.unit());
+    match random.below(3) {
+        0 => tracer
+            .closest(&ray_through(random))
+            .map_or(any, |hit| hit.point),
+        _ => any,
+    }
+}
+
+#[test]
+fn points_are_held_by_what_exact_arithmetic_says() {
+    let solids = crowd(SEED + 4, 200);
+    let prototype = prototype_of(&solids);
+    for options in test_support::ways_to_trace() {
+        let tracer = traced(vec![prototype.clone()], &options);
+        let held: usize = (0..500_u64)
+            .into_par_iter()
+            .map(|number| {
+                let mut random = Random::new(SEED, 600_000 + number);
+                let point = point(&mut random, &tracer);
+                let truth: Vec<u32> = (0..)
+                    .zip(&solids)
+                    .filter(|(_, solid)| truly_holds(solid, point))
+                    .map(|(number, _)| number)
+                    .collect();
+                let found = tracer.contains(point);
+                assert_eq!(numbers(&found), truth, "{options:?}, {point:?}");
+                for one in &found {
+                    assert_eq!(one.solid, solids[one.primitive as usize].kind());
+                }
+                truth.len()
+            })
+            .sum();
+        assert!(held > 150, "{held}");
+    }
+}
+
+#[test]
+fn points_of_the_surface_are_held_and_their_neighbours_are_not() {
+    let solids: [AnySolid; 3] = [
+        Cuboid::new(DVec3::ZERO, DVec3::splat(0.5), Orientation::IDENTITY)
+            .unwrap()
+            .into(),
+        Sphere::new(DVec3::new(3.0, 0.0, 0.0), 0.625)
+            .unwrap()
+            .into(),
+        // A tube: its ends are open, but what it surrounds is the solid.
+        Cylinder::new(DVec3::ZERO, DVec3::Z, 0.25, Caps::None)
+            .unwrap()
+            .into(),
+    ];
+    let tracer = tracer_of(vec![prototype_of(&solids)]);
+    let out = 0.5_f64.next_up();
+    for (point, expected) in [
+        (DVec3::splat(0.5), &[0][..]),
+        (DVec3::new(-0.5, 0.5, -0.5), &[0]),
+        (DVec3::new(out, 0.5, 0.5), &[]),
+        (DVec3::new(0.0, -out, 0.0), &[]),
+        (DVec3::new(0.0, 0.0, 0.5), &[0, 2]),
+        (DVec3::new(0.0, 0.0, 1.0), &[2]),
+        (DVec3::new(0.0, 0.0, 1.0_f64.next_up()), &[]),
+        (DVec3::new(0.25, 0.0, 0.0), &[0, 2]),
+        (DVec3::new(3.625, 0.0, 0.0), &[1]),
+        (DVec3::new(3.625_f64.next_up(), 0.0, 0.0), &[]),
+        (DVec3::new(3.0, 0.375, 0.5), &[1]),
+        (DVec3::new(3.0, 0.375, out), &[]),
+        (DVec3::new(1e300, 0.0, 0.0), &[]),
+        (DVec3::new(f64::NAN, 0.0, 0.0), &[]),
+        (DVec3::new(0.0, f64::INFINITY, 0.0), &[]),
+    ] {
+        assert_eq!(numbers(&tracer.contains(point)), expected, "{point:?}");
+    }
+}
+
+#[test]
+fn nested_placements_lose_no_point() {
+    for nested in nested_placements(SEED + 5) {
+        let mut prototypes = nested.scene.prototypes.clone();
+        prototypes[3] = prototype_of(&crowd(SEED + 6, 100));
+        let tracer = tracer_of(prototypes);
+        let held: usize = (0..test_support::ray_count() / 50)
+            .into_par_iter()
+            .map(|number| {
+                let mut random = Random::new(SEED, 700_000 + number);
+                let inside = DVec3::new(random.unit(), random.unit(), random.unit());
+                let point = nested.any_image(&mut random).transform_point3(inside);
+                let found = tracer.contains(point);
+                assert_eq!(found, tracer.contains_exhaustive(point), "{point:?}");
+                assert!(found.is_sorted());
+                found.len()
+            })
+            .sum();
+        assert!(held > 300, "{held} at {}", nested.translation);
+    }
+}
