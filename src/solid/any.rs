@@ -81,17 +81,10 @@ impl AnySolid {
         with_solid!(self, solid => solid.locate(point))
     }
 
-    /// Whether a point of the boundary is on the surface of a part, exactly. A point on an
-    /// edge is on that of several.
+    /// As [`ConvexSolid::is_on`].
     #[must_use]
-    pub(super) fn is_on(&self, part: Part, point: DVec3) -> bool {
-        match self {
-            Self::Cylinder(cylinder) => cylinder.as_cone().is_on(part, point),
-            Self::Cone(cone) => cone.is_on(part, point),
-            Self::RoundedCone(cone) => cone.is_on(part, point),
-            Self::Cuboid(cuboid) => cuboid.is_on(part, point),
-            Self::Sphere(_) | Self::Disk(_) => part == Part::Side,
-        }
+    pub fn is_on(&self, part: Part, point: DVec3) -> bool {
+        with_solid!(self, solid => solid.is_on(part, point))
     }
 
     /// As [`ConvexSolid::size`].

@@ -11,7 +11,7 @@ use std::fmt::Debug;
 use glam::DVec3;
 
 use super::quick::{Quick, Range};
-use super::{Caps, Chord, Intersection, RayOrigin, SolidKind, SurfacePoint};
+use super::{Caps, Chord, Intersection, Part, RayOrigin, SolidKind, SurfacePoint};
 use crate::math::Bounds;
 
 /// A kind of solid, which is a row of [`for_each_solid!`](crate::for_each_solid).
@@ -110,13 +110,17 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
 
     /// The point of a part of the surface that is nearest to `anchor +
     /// from_anchor`, its outward unit normal, parameters and error bound.
-    fn surface_point(&self, part: super::Part, from_anchor: DVec3) -> SurfacePoint;
+    fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint;
 
     /// Where a point is. Exact: the point's numbers and the solid's are taken as
     /// they are.
     fn locate(&self, point: DVec3) -> Location;
 
-    /// Whether the closed solid holds a point, as exactly.
+    /// Whether a point of the boundary is on the surface of a part, as exactly. A point on
+    /// an edge is on that of several.
+    fn is_on(&self, part: Part, point: DVec3) -> bool;
+
+    /// Whether the closed solid contains a point, as exactly.
     fn contains(&self, point: DVec3) -> bool {
         self.locate(point).is_held()
     }

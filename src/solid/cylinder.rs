@@ -245,6 +245,10 @@ impl ConvexSolid for Cylinder {
         self.as_cone().locate(point)
     }
 
+    fn is_on(&self, part: Part, point: DVec3) -> bool {
+        self.as_cone().is_on(part, point)
+    }
+
     fn size(&self) -> f64 {
         (self.p1 - self.p0).length() + 2.0 * self.radius
     }

@@ -211,6 +211,10 @@ impl ConvexSolid for Disk {
         }
     }
 
+    fn is_on(&self, part: Part, _: DVec3) -> bool {
+        part == Part::Side
+    }
+
     fn size(&self) -> f64 {
         2.0 * self.radius
     }

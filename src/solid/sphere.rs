@@ -144,6 +144,10 @@ impl ConvexSolid for Sphere {
         ball::locate(self.center, self.radius, point)
     }
 
+    fn is_on(&self, part: Part, _: DVec3) -> bool {
+        part == Part::Side
+    }
+
     fn size(&self) -> f64 {
         2.0 * self.radius
     }

@@ -108,24 +108,6 @@ impl RoundedCone {
             & from_p1.passes_ball(radius1)
             & from_p0.passes_wall(&self.ends.taper(Fit::Balls))
     }
-
-    /// Whether a point of the boundary is on the surface of a part, exactly: a seam is on
-    /// that of its sphere and of the wall. Neither ball contains the other.
-    pub(super) fn is_on(&self, part: Part, point: DVec3) -> bool {
-        let beyond = |limit| {
-            let solid = self;
-            exact::sign(&Beyond {
-                solid,
-                point,
-                limit,
-            })
-        };
-        match part {
-            Part::Cap0 => beyond(Limit::Seam0).is_ge(),
-            Part::Cap1 => beyond(Limit::Seam1).is_ge(),
-            _ => beyond(Limit::Seam0).is_le() && beyond(Limit::Seam1).is_le(),
-        }
-    }
 }
 
 impl ConvexSolid for RoundedCone {
@@ -219,6 +201,24 @@ impl ConvexSolid for RoundedCone {
         match between {
             Location::Outside => balls,
             _ => balls.max(between.min(within(Limit::Wall))),
+        }
+    }
+
+    /// A seam is on the surface of its sphere and of the wall. Neither ball contains the
+    /// other.
+    fn is_on(&self, part: Part, point: DVec3) -> bool {
+        let beyond = |limit| {
+            let solid = self;
+            exact::sign(&Beyond {
+                solid,
+                point,
+                limit,
+            })
+        };
+        match part {
+            Part::Cap0 => beyond(Limit::Seam0).is_ge(),
+            Part::Cap1 => beyond(Limit::Seam1).is_ge(),
+            _ => beyond(Limit::Seam0).is_le() && beyond(Limit::Seam1).is_le(),
         }
     }
 
