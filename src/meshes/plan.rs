@@ -208,7 +208,7 @@ fn whole(
 impl Whole {
     /// The solids of a prototype alone.
     fn of_solids(prototype: &Prototype, segments: u32, fit: Fit) -> Self {
-        let is_group = !prototype.has_no_solids();
+        let is_group = !prototype.solids.is_empty();
         let mut whole = Self {
             groups: u128::from(is_group),
             names: u128::from(is_group) * prototype.name.len() as u128,

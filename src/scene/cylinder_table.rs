@@ -33,10 +33,10 @@ pub(super) fn add_table(
     let layout = Layout::new(source, &table, columns)?;
     table.note_unread(&layout.all());
     let before = solids.numbers();
-    solids.records.reserve(table.most_rows());
+    solids.solids.cylinders.reserve(table.most_rows());
     while let Some(row) = table.next_row(size_of::<CylinderRecord>())? {
         match layout.cylinder(&row, look.caps) {
-            Ok(cylinder) => solids.push(&cylinder, look.material),
+            Ok(cylinder) => solids.push(cylinder, look.material),
             Err(Fault::Degenerate { .. }) if degenerate == Degenerate::Skip => solids.skip(),
             Err(fault) => return Err(row.refused_with_help(fault, Some(SKIP_HELP))),
         }

@@ -5,6 +5,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::set_operations::Operation;
 use super::solid_keys::{
     BeamLatticeKeys, CompositionKeys, CylinderTableKeys, RotationKeys, SwcKeys,
 };
@@ -12,7 +13,7 @@ use super::solids::SceneSolid;
 use super::table::ColumnKey;
 use super::values::{ColumnOrList, Keys, List, Number, NumberOrList, Whole};
 use crate::for_each_solid;
-use crate::solid::{Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
+use crate::solid::{Cone, Cuboid, Cylinder, Disk, RoundedCone, SolidKind, Sphere};
 
 /// Three numbers and their place.
 pub(super) type Triple = Spanned<List<Number, 3>>;
@@ -112,6 +113,30 @@ impl Document {
         let prototypes = self.prototype.iter();
         let prototypes = prototypes.map(|Keys(keys)| keys.body(keys.name.get_ref()));
         std::iter::once(self.body("")).chain(prototypes)
+    }
+}
+
+macro_rules! body_solids {
+    ($({ $type:ident $name:ident $($rest:tt)* })*) => {
+        impl Body<'_> {
+            /// How many solids of each kind have a table.
+            pub fn solids(&self) -> impl Iterator<Item = (SolidKind, usize)> {
+                [$((SolidKind::$type, self.$name.len())),*].into_iter()
+            }
+        }
+    };
+}
+
+for_each_solid!(body_solids);
+
+impl<'a> Body<'a> {
+    /// The tables of set operations, in the order of their numbers.
+    pub fn operations(&self) -> [(Operation, &'a [Keys<CompositionKeys>]); 3] {
+        [
+            (Operation::Union, self.union),
+            (Operation::Intersection, self.intersection),
+            (Operation::Difference, self.difference),
+        ]
     }
 }
 

@@ -173,9 +173,9 @@ impl Loader<'_> {
         let source = self.source;
         let mut solids = SolidCollector::new(self.records);
         for_each_solid!(add_in_order self solids body;);
-        self.add_compositions(&mut solids, Operation::Union, body.union)?;
-        self.add_compositions(&mut solids, Operation::Intersection, body.intersection)?;
-        self.add_compositions(&mut solids, Operation::Difference, body.difference)?;
+        for (operation, tables) in body.operations() {
+            self.add_compositions(&mut solids, operation, tables)?;
+        }
 
         let mut placements = Placements::default();
         let mut placement_origins = Origins::default();
@@ -194,15 +194,13 @@ impl Loader<'_> {
         });
         placements.add_scatters(source, &scatters.collect::<Result<Vec<_>, _>>()?)?;
 
-        solids.records.trim();
-        solids.records.arrange();
-        solids.others.trim();
+        solids.solids.trim();
+        solids.solids.cylinders.arrange();
         placements.list.shrink_to_fit();
         Ok(Lowered {
             prototype: Prototype {
                 name: body.name.to_owned(),
-                cylinders: solids.records,
-                solids: solids.others,
+                solids: solids.solids,
                 placements: placements.list,
                 solid_origins: solids.origins,
                 placement_origins,

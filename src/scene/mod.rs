@@ -57,7 +57,7 @@ mod view_volume;
 
 pub use aimed_camera::AimedCamera;
 pub use beam_lattice::beams_of_model;
-pub use contents::{ExpectedCounts, OtherSolids, PlacedCount};
+pub use contents::{ExpectedCounts, ExpectedSolids, PlacedCount};
 pub(crate) use cylinder_list::SharedRecords;
 pub use cylinder_list::{CylinderList, CylinderRecord32, Iter as CylinderIter, Records};
 pub use description::{
@@ -72,7 +72,7 @@ pub use number_table::{NumberColumns, NumberRow, NumberTable};
 pub use origins::{Origin, Origins};
 pub use scene_file::SceneFile;
 pub use scene_stats::SceneStats;
-pub use solid_lists::{CompositionRecord, Listed, SolidRecord, Solids};
+pub use solid_lists::{CompositionRecord, Listed, SolidList, SolidRecord, Solids, Stored};
 pub use swc::check_swc;
 pub use table::{
     Block, Column, ColumnKey, Decimal, Delimiter, Fault, Layout, Row, Rows, Table, TableFormat,

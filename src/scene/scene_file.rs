@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 
-use super::beam_lattice::counted;
-use super::contents::{ExpectedCounts, OtherSolids, mark_used};
+use super::beam_lattice::count;
+use super::contents::{ExpectedCounts, ExpectedSolids, mark_used, placed_counts};
+use super::cylinder_list::Records;
 use super::description::{PrototypeIndex, Scene};
 use super::document::{Body, Document, ThreeColumns};
 use super::error::SceneError;
@@ -14,10 +15,10 @@ use super::lines::lines;
 use super::load::{lower, records};
 use super::set_operations::operand_count;
 use super::source::Source;
-use super::swc::{Joints, SAMPLE_BYTES, Shape, most_balls};
+use super::swc::{SAMPLE_BYTES, Shape, most_balls};
 use super::table::ColumnKey;
 use super::values::Keys;
-use crate::solid::{Cone, Cuboid, Disk, RoundedCone, Sphere};
+use crate::solid::SolidKind;
 
 /// A scene file that has been read; the files that it names have not.
 pub struct SceneFile {
@@ -97,8 +98,12 @@ impl SceneFile {
             let placed = placed
                 .into_iter()
                 .filter_map(|(of, count)| Some((of?, count)));
-            let (cylinders, others) = self.solids(&body);
-            ExpectedCounts::new(body.name, cylinders, records, others, placed)
+            ExpectedCounts {
+                name: body.name.to_owned(),
+                solids: self.solids(&body, records),
+                placed: placed_counts(placed),
+                is_used: false,
+            }
         };
         let mut contents: Vec<_> = self.document.bodies().map(count).collect();
         mark_used(&mut contents);
@@ -129,50 +134,39 @@ impl SceneFile {
         lines.map_or(0, |lines| lines.saturating_sub(1))
     }
 
-    /// How many cylinders and other solids a prototype holds itself.
-    fn solids(&self, body: &Body) -> (u64, OtherSolids) {
-        let mut cylinders = body.cylinder.len() as u64;
-        let mut others = OtherSolids::default()
-            .and::<Sphere>(body.sphere.len() as u64)
-            .and::<Cuboid>(body.cuboid.len() as u64)
-            .and::<Cone>(body.cone.len() as u64)
-            .and::<RoundedCone>(body.rounded_cone.len() as u64)
-            .and::<Disk>(body.disk.len() as u64);
+    /// How many solids a prototype contains itself.
+    fn solids(&self, body: &Body, records: Records) -> ExpectedSolids {
+        let mut solids = ExpectedSolids::default();
+        for (kind, stated) in body.solids() {
+            solids.add(kind, stated as u64, records);
+        }
         for Keys(keys) in body.cylinder_table {
             let Keys(columns) = keys.columns.get_ref();
             let rows = self.table_rows(&keys.file, &columns.p0);
-            cylinders = cylinders.saturating_add(rows);
+            solids.add(SolidKind::Cylinder, rows, records);
         }
         for Keys(keys) in body.swc {
-            let rows = self.rows(&keys.file);
             // Loading makes nothing of what is stated wrongly.
             let Ok(shape) = Shape::new(&self.source, keys) else {
                 continue;
             };
-            match shape.joints {
-                Joints::Steps => cylinders = cylinders.saturating_add(rows),
-                Joints::Flat => others = others.and::<Cone>(rows),
-                Joints::Round => others = others.and::<RoundedCone>(rows),
-            }
+            solids.add(shape.joints.kind(), self.rows(&keys.file), records);
             if shape.has_soma {
                 let path = self.source.resolve(keys.file.get_ref());
-                others = others.and::<Sphere>(most_balls(&path));
+                solids.add(SolidKind::Sphere, most_balls(&path), records);
             }
         }
         for Keys(keys) in body.beam_lattice {
-            if let Ok(lattice) = counted(&self.source, &keys.file) {
-                cylinders = cylinders.saturating_add(lattice.0);
-                others = others.plus(lattice.1);
+            // Neither does it of what cannot be read.
+            let _ = count(&self.source, &keys.file, records, &mut solids);
+        }
+        for (operation, tables) in body.operations() {
+            for Keys(keys) in tables {
+                solids.add(operation.kind(), 1, records);
+                solids.add_operands(operand_count(keys));
             }
         }
-        for Keys(keys) in [body.union, body.intersection, body.difference]
-            .into_iter()
-            .flatten()
-        {
-            let operands = operand_count(keys);
-            others = others.and_composed(1, operands);
-        }
-        (cylinders, others)
+        solids
     }
 
     /// Reads the files that the scene names, and checks everything.

@@ -20,6 +20,15 @@ pub(super) enum Operation {
 }
 
 impl Operation {
+    /// What its solids are called.
+    pub fn kind(self) -> SolidKind {
+        match self {
+            Self::Union => SolidKind::Union,
+            Self::Intersection => SolidKind::Intersection,
+            Self::Difference => SolidKind::Difference,
+        }
+    }
+
     /// The solid that a table of this operation states.
     pub fn of(self, source: &Source, keys: &CompositionKeys) -> Result<Composition, SceneError> {
         let operands = keys.of().get_ref().iter();

@@ -10,9 +10,10 @@ use std::fmt::Debug;
 
 use glam::DVec3;
 
-use super::quick::{Quick, Range};
-use super::{Caps, Chord, Intersection, Part, RayOrigin, SolidKind, SurfacePoint};
-use crate::math::Bounds;
+use super::lanes::RayLanes;
+use super::quick::{self, Quick, QuickLanes, Range};
+use super::{Caps, Chord, Intersection, Part, RayOrigin, SolidKind, SpawnMargin, SurfacePoint};
+use crate::math::{Bounds, LaneMask};
 
 /// A kind of solid, which is a row of [`for_each_solid!`](crate::for_each_solid).
 ///
@@ -108,6 +109,23 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
         Quick::OPEN
     }
 
+    /// [`ConvexSolid::first`] of eight rays that are seen from the anchor, for those that are
+    /// `active`. Rays that take exact numbers are left open.
+    #[inline(always)]
+    fn first_in_lanes(&self, rays: &RayLanes, active: &LaneMask) -> QuickLanes {
+        quick::first(self, rays, active)
+    }
+
+    /// [`ConvexSolid::exact_first`] likewise, for rays whose origins f64 has.
+    #[inline(always)]
+    fn exact_first_in_lanes(&self, rays: &RayLanes, active: &LaneMask) -> QuickLanes {
+        if Self::QUICK_IS_EXACT {
+            quick::first(self, rays, active)
+        } else {
+            QuickLanes::all_open(quick::near(self, rays, active))
+        }
+    }
+
     /// The point of a part of the surface that is nearest to `anchor +
     /// from_anchor`, its outward unit normal, parameters and error bound.
     fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint;
@@ -127,6 +145,11 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
 
     /// Bounds the distance of any two of its points.
     fn size(&self) -> f64;
+
+    /// What a query that starts at a point of the surface may be displaced by.
+    fn spawn_margin(&self, surface: &SurfacePoint) -> SpawnMargin {
+        SpawnMargin::of_solid(self, surface)
+    }
 }
 
 /// Where a point is, seen from a closed solid; in the order of how far in.

@@ -78,6 +78,35 @@ macro_rules! with_solid {
     };
 }
 
+/// Evaluates an expression with the type of a [`SolidKind`](crate::solid::SolidKind);
+/// that of every set operation is [`Composition`](crate::solid::Composition).
+///
+/// ```
+/// use cyltrace::solid::SolidKind;
+///
+/// let bytes = cyltrace::with_solid_kind!(SolidKind::Sphere, S => size_of::<S>());
+/// assert_eq!(bytes, size_of::<cyltrace::solid::Sphere>());
+/// ```
+#[macro_export]
+macro_rules! with_solid_kind {
+    (@arms $kind:expr, $name:ident => $what:expr; $({ $type:ident $($rest:tt)* })*) => {
+        match $kind {
+            $($crate::solid::SolidKind::$type => {
+                type $name = $crate::solid::$type;
+                $what
+            })*
+            // The set operations.
+            _ => {
+                type $name = $crate::solid::Composition;
+                $what
+            }
+        }
+    };
+    ($kind:expr, $name:ident => $what:expr) => {
+        $crate::for_each_solid!(@ [$crate::with_solid_kind] @arms $kind, $name => $what;)
+    };
+}
+
 macro_rules! kinds {
     ($({ $type:ident $name:ident $list:ident $code:literal $description:literal })*) => {
         /// The kinds of solids; [`SolidKind::name`] is the `solid` column of `trace`.
@@ -95,6 +124,8 @@ macro_rules! kinds {
         impl SolidKind {
             /// The kinds that are not composed of others.
             pub const SIMPLE: &[Self] = &[$(Self::$type),*];
+            /// The kinds that lists are known by: all set operations are in one list.
+            pub const LISTS: &[Self] = &[$(Self::$type,)* Self::Union];
             /// The set operations.
             pub const OPERATIONS: &[Self] = &[Self::Union, Self::Intersection, Self::Difference];
 

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use cyltrace::math::{ChildFromParent, PlacementErrors, Random, UNIT_ROUNDOFF};
 use cyltrace::meshes::{self, Format, MeshFileError, Plan};
 use cyltrace::scene::{
-    CylinderList, CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene,
+    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, Solids,
 };
 use cyltrace::solid::tessellation::{Fit, prism_size};
 use cyltrace::solid::{Caps, Cylinder, Part, surface_point};
@@ -129,7 +129,7 @@ fn random_scene(seed: u64) -> Scene {
     let mut random = Random::new(seed, 0);
     let mut prototype = |name: &str, cylinders, places: &[u32]| Prototype {
         name: name.into(),
-        cylinders: records(&mut random, cylinders).into(),
+        solids: Solids::of_cylinders(records(&mut random, cylinders)),
         placements: places
             .iter()
             .map(|&of| placement(&mut random, of))
@@ -154,7 +154,7 @@ fn placed(scene: &Scene, index: u32, world_from_here: DAffine3, path: &str) -> V
     let here = &scene.prototypes[index as usize];
     let name = here.name.replace([' ', '/'], "_");
     let name = if index == 0 { "scene" } else { &name };
-    let own = here.cylinders.iter().map(|record| Placed {
+    let own = here.solids.cylinders.iter().map(|record| Placed {
         cylinder: record.cylinder(),
         world_from_solid: world_from_here,
         group: format!("{name}{path}"),
@@ -342,13 +342,13 @@ fn deviation_of_unplaced_solids_is_the_sagitta_and_of_placed_ones_stretched() {
     let record = CylinderRecord::new(&cylinder, 0, MaterialIndex(0));
     let leaf = Prototype {
         name: "leaf".into(),
-        cylinders: vec![record].into(),
+        solids: Solids::of_cylinders(vec![record]),
         placements: Vec::new(),
         ..Prototype::default()
     };
     let root = |of: u32, factors: DVec3| Prototype {
         name: String::new(),
-        cylinders: CylinderList::default(),
+        solids: Solids::default(),
         placements: vec![Placement {
             of: PrototypeIndex(of),
             parent_from_child: DAffine3::from_scale(factors),
@@ -405,7 +405,7 @@ fn meshes_too_large_or_interrupted_are_refused() {
     let mut prototypes: Vec<Prototype> = (1..=40)
         .map(|next| Prototype {
             name: format!("level {next}"),
-            cylinders: CylinderList::default(),
+            solids: Solids::default(),
             placements: vec![
                 Placement {
                     of: PrototypeIndex(next),
@@ -418,7 +418,7 @@ fn meshes_too_large_or_interrupted_are_refused() {
         .collect();
     prototypes.push(Prototype {
         name: "leaf".into(),
-        cylinders: records(&mut Random::new(1, 1), 1).into(),
+        solids: Solids::of_cylinders(records(&mut Random::new(1, 1), 1)),
         placements: Vec::new(),
         ..Prototype::default()
     });

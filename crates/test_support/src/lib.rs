@@ -10,7 +10,9 @@ use std::sync::Arc;
 
 use cyltrace::embree::MaxIsa;
 use cyltrace::math::{Random, Ray};
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene};
+use cyltrace::scene::{
+    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, Solids,
+};
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{BuildTime, Layout, Options};
 use glam::{DAffine3, DMat3, DVec3};
@@ -113,7 +115,7 @@ pub struct Nested {
 impl Nested {
     /// The cylinders that are placed.
     pub fn cylinders(&self) -> Vec<CylinderRecord> {
-        self.scene.prototypes[3].cylinders.iter().collect()
+        self.scene.prototypes[3].solids.cylinders.iter().collect()
     }
 
     /// Where they are placed.
@@ -143,7 +145,7 @@ pub fn nested_placements(seed: u64) -> Vec<Nested> {
     let mut place =
         |of: u32, translation: f64| placed(of, random_placement(&mut random, translation));
     let leaf = Prototype {
-        cylinders: cylinders_in_a_box(seed, 100).into(),
+        solids: Solids::of_cylinders(cylinders_in_a_box(seed, 100)),
         ..Default::default()
     };
     let middle = placing((0..5).map(|_| place(3, 3.0)).collect());

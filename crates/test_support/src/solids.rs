@@ -1,7 +1,7 @@
 //! Solids of all kinds, mixed, and their truth.
 
 use cyltrace::math::{Orientation, Random, Ray};
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Prototype, SolidRecord};
+use cyltrace::scene::{MaterialIndex, Prototype, SolidRecord};
 use cyltrace::solid::{
     AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, SolidKind, Sphere,
 };
@@ -43,23 +43,10 @@ pub fn any_solid(random: &mut Random, kind: u64, caps: Caps, is_turned: bool) ->
 /// Solids in their order, as a prototype holds them; their numbers count from 0.
 pub fn prototype_of(solids: &[AnySolid]) -> Prototype {
     let mut prototype = Prototype::default();
-    let (mut cylinders, others) = (Vec::new(), &mut prototype.solids);
     for (number, solid) in (0..).zip(solids) {
-        let material = MaterialIndex(0);
-        match *solid {
-            AnySolid::Cylinder(one) => cylinders.push(CylinderRecord::new(&one, number, material)),
-            AnySolid::Cone(one) => others.cones.push(SolidRecord::new(one, number, material)),
-            AnySolid::RoundedCone(one) => {
-                others
-                    .rounded_cones
-                    .push(SolidRecord::new(one, number, material));
-            }
-            AnySolid::Sphere(one) => others.spheres.push(SolidRecord::new(one, number, material)),
-            AnySolid::Cuboid(one) => others.cuboids.push(SolidRecord::new(one, number, material)),
-            AnySolid::Disk(one) => others.disks.push(SolidRecord::new(one, number, material)),
-        }
+        let record = SolidRecord::new(*solid, number, MaterialIndex(0));
+        prototype.solids.push(record).expect("f64 keeps it");
     }
-    prototype.cylinders = cylinders.into();
     prototype
 }
 

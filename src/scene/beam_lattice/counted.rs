@@ -1,4 +1,4 @@
-//! What a beam lattice will hold, counted before a solid of it is made.
+//! The number of solids of a beam lattice, before any is made.
 //!
 //! The model is read for it and forgotten: an object stands in the file once and may be
 //! placed many times, so that only the model as a whole says how many solids there will be.
@@ -11,32 +11,38 @@ use super::element::Element;
 use super::lattice::{End, Lattice};
 use super::model::Model;
 use super::package;
-use crate::scene::contents::OtherSolids;
+use crate::scene::contents::ExpectedSolids;
+use crate::scene::cylinder_list::Records;
 use crate::scene::error::SceneError;
 use crate::scene::source::Source;
-use crate::solid::{Cone, Sphere};
+use crate::solid::SolidKind;
 
-/// The cylinders and the other solids of a `[[beam_lattice]]`. Half a ball counts also
-/// where a greater ball at its vertex will hold it.
-pub(in crate::scene) fn counted(
+/// Counts the solids of a `[[beam_lattice]]`. Half a ball counts also if a greater ball at its
+/// vertex will contain it.
+pub(in crate::scene) fn count(
     source: &Source,
     file: &Spanned<String>,
-) -> Result<(u64, OtherSolids), SceneError> {
+    records: Records,
+    solids: &mut ExpectedSolids,
+) -> Result<(), SceneError> {
     let part = package::model_part(source, file)?;
     let document = package::parsed(&part)?;
     // Meshes make no solids, whether they are an error or not.
     let model = Model::new(&Element::root(&part.path, &document), true)?;
-    let (mut cylinders, mut others) = (0, OtherSolids::default());
     for placed in &model.placed {
         let kinds = Kinds::of(&placed.lattice);
         let times = |count: u64| count.saturating_mul(placed.places.len() as u64);
-        cylinders += times(kinds.cylinders);
-        others = others
-            .and::<Cone>(times(kinds.cones))
-            .and::<Sphere>(times(kinds.balls))
-            .and_composed(times(kinds.halves), times(2 * kinds.halves));
+        for (kind, more) in [
+            (SolidKind::Cylinder, kinds.cylinders),
+            (SolidKind::Cone, kinds.cones),
+            (SolidKind::Sphere, kinds.balls),
+            (SolidKind::Intersection, kinds.halves),
+        ] {
+            solids.add(kind, times(more), records);
+        }
+        solids.add_operands(times(2 * kinds.halves));
     }
-    Ok((cylinders, others))
+    Ok(())
 }
 
 /// The solids of a lattice in one place, by kind.

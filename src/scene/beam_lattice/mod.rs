@@ -32,7 +32,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use toml::Spanned;
 
-pub(super) use self::counted::counted;
+pub(super) use self::counted::count;
 use self::element::{Element, Similarity};
 use self::lattice::{Beam, End, Lattice};
 use self::model::Model;

@@ -10,6 +10,7 @@ use crate::scene::error::SceneError;
 use crate::scene::pose::RigidMotion;
 use crate::scene::settings::vector;
 use crate::scene::solid_keys::solid_table;
+use crate::scene::solid_lists::{SolidRecord, Stored};
 use crate::scene::source::Source;
 use crate::scene::values::Number;
 use crate::solid::{AnySolid, Cone, ConeError};
@@ -42,6 +43,10 @@ impl ConePlaces<'_> {
             ConeError::Radius { .. } => radius1.span(),
         }
     }
+}
+
+impl Stored for Cone {
+    type List = Vec<SolidRecord<Self>>;
 }
 
 impl SceneSolid for Cone {

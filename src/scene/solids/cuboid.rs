@@ -11,6 +11,7 @@ use crate::scene::error::SceneError;
 use crate::scene::pose::RigidMotion;
 use crate::scene::settings::vector;
 use crate::scene::solid_keys::solid_table;
+use crate::scene::solid_lists::{SolidRecord, Stored};
 use crate::scene::source::Source;
 use crate::solid::{AnySolid, Cuboid, CuboidError};
 
@@ -20,6 +21,10 @@ solid_table! {
         center: Option<Triple>,
         half_widths: Triple,
     }
+}
+
+impl Stored for Cuboid {
+    type List = Vec<SolidRecord<Self>>;
 }
 
 impl SceneSolid for Cuboid {

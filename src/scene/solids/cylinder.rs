@@ -5,11 +5,13 @@ use std::ops::Range;
 use toml::Spanned;
 
 use super::{SceneSolid, SolidKeys, caps, with_span};
+use crate::scene::cylinder_list::CylinderList;
 use crate::scene::document::Triple;
 use crate::scene::error::SceneError;
 use crate::scene::pose::RigidMotion;
 use crate::scene::settings::vector;
 use crate::scene::solid_keys::solid_table;
+use crate::scene::solid_lists::Stored;
 use crate::scene::source::Source;
 use crate::scene::values::Number;
 use crate::solid::{AnySolid, Cylinder, CylinderError};
@@ -22,6 +24,10 @@ solid_table! {
         radius: Spanned<Number>,
         caps: Option<Spanned<String>>,
     }
+}
+
+impl Stored for Cylinder {
+    type List = CylinderList;
 }
 
 impl SceneSolid for Cylinder {

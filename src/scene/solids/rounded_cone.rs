@@ -11,6 +11,7 @@ use crate::scene::error::SceneError;
 use crate::scene::pose::RigidMotion;
 use crate::scene::settings::vector;
 use crate::scene::solid_keys::solid_table;
+use crate::scene::solid_lists::{SolidRecord, Stored};
 use crate::scene::source::Source;
 use crate::scene::values::Number;
 use crate::solid::{AnySolid, RoundedCone, RoundedConeError};
@@ -23,6 +24,10 @@ solid_table! {
         radius0: Spanned<Number>,
         radius1: Spanned<Number>,
     }
+}
+
+impl Stored for RoundedCone {
+    type List = Vec<SolidRecord<Self>>;
 }
 
 impl SceneSolid for RoundedCone {

@@ -10,6 +10,7 @@ use crate::scene::error::SceneError;
 use crate::scene::pose::RigidMotion;
 use crate::scene::settings::vector;
 use crate::scene::solid_keys::solid_table;
+use crate::scene::solid_lists::{SolidRecord, Stored};
 use crate::scene::source::Source;
 use crate::scene::values::Number;
 use crate::solid::{AnySolid, Sphere, SphereError};
@@ -20,6 +21,10 @@ solid_table! {
         center: Triple,
         radius: Spanned<Number>,
     }
+}
+
+impl Stored for Sphere {
+    type List = Vec<SolidRecord<Self>>;
 }
 
 impl SceneSolid for Sphere {

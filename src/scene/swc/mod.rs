@@ -24,7 +24,8 @@ use super::solid_keys::SwcKeys;
 use super::source::Source;
 use super::table::input;
 use crate::solid::{
-    AnySolid, Caps, Cone, ConeError, Cylinder, CylinderError, RoundedCone, Sphere, SphereError,
+    AnySolid, Caps, Cone, ConeError, Cylinder, CylinderError, RoundedCone, SolidKind, Sphere,
+    SphereError,
 };
 use samples::{Sample, SwcFile};
 use soma::Somata;
@@ -83,6 +84,15 @@ struct Fault {
 }
 
 impl Joints {
+    /// The kind of the segments.
+    pub fn kind(self) -> SolidKind {
+        match self {
+            Self::Steps => SolidKind::Cylinder,
+            Self::Flat => SolidKind::Cone,
+            Self::Round => SolidKind::RoundedCone,
+        }
+    }
+
     /// The segment between a sample and its parent.
     fn segment(self, parent: &Sample, sample: &Sample, look: Look) -> Result<AnySolid, Fault> {
         let (p0, p1) = (parent.point, sample.point);

@@ -10,7 +10,6 @@ use glam::{DAffine3, DVec3};
 use crate::target::any_point_of;
 use cyltrace::math::{Bounds, Random, Ray};
 use cyltrace::scene::{Prototype, PrototypeIndex, Scene};
-use cyltrace::solid::AnySolid;
 use cyltrace::tracer::Tracer;
 
 /// The rays of class `around`: from a sphere of twice the scene's radius to points of its box
@@ -50,8 +49,6 @@ struct Targets<'a> {
 
 /// What a prototype contains.
 struct Members {
-    /// Solids that are no cylinders.
-    others: Vec<AnySolid>,
     /// The boxes of set operations.
     composed: Vec<Bounds>,
     /// After each placement, the number of solids of it and of all before it. Rounding
@@ -62,7 +59,7 @@ struct Members {
 impl Members {
     /// The solids that are the prototype's own.
     fn own(&self, prototype: &Prototype) -> usize {
-        prototype.cylinders.len() + self.others.len() + self.composed.len()
+        prototype.solids.len()
     }
 
     /// All solids, with those of what is placed.
@@ -96,10 +93,8 @@ impl<'a> Targets<'a> {
             sum
         });
         let placed = placed.collect();
-        let others = prototype.solids.singles().map(|(_, solid)| solid);
         let composed = prototype.solids.compositions.iter();
         let members = Members {
-            others: others.collect(),
             composed: composed.map(|record| record.solid.bounds()).collect(),
             placed,
         };
@@ -141,14 +136,11 @@ fn own_point(
     chosen: usize,
     random: &mut Random,
 ) -> DVec3 {
-    let cylinders = prototype.cylinders.len();
-    if chosen < cylinders {
-        let cylinder = prototype.cylinders.get(chosen).cylinder();
-        return any_point_of(&cylinder.into(), random);
-    }
-    let chosen = chosen - cylinders;
-    match members.others.get(chosen) {
-        Some(solid) => any_point_of(solid, random),
-        None => random_point(&members.composed[chosen - members.others.len()], random),
+    match prototype.solids.nth_simple(chosen) {
+        Some((_, solid)) => any_point_of(&solid, random),
+        None => {
+            let simple = prototype.solids.len() - members.composed.len();
+            random_point(&members.composed[chosen - simple], random)
+        }
     }
 }

@@ -61,6 +61,8 @@ pub fn figures(
             })
         })
     });
+    let statistics = tracer.statistics();
+    let solids = json::Solids::of(&statistics);
     json!({
         "scene": arguments.scene,
         "violations": outcome.violation_count() + disagreements,
@@ -70,7 +72,8 @@ pub fn figures(
         "listed": listed.chain(told_listed).collect::<Vec<_>>(),
         "windows": outcome.windows,
         "seed": arguments.seed,
-        "cylinders": json::cylinders(&tracer.statistics()),
+        "solids": solids.by_kind(),
+        "cylinders": solids.cylinders(),
         "embree": tracer.statistics().embree_version,
         "isa": tracer.statistics().isa,
         // Hits from elsewhere are compared in f64.

@@ -24,7 +24,7 @@ use super::memory::readable;
 use super::output_sink::{make_directory, write_text};
 use super::outputs::Files;
 use super::print::print;
-use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene, text};
+use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
 use external_input::ExternalInput;
 use figures::figures;
 
@@ -278,10 +278,8 @@ fn sentence(arguments: &CheckArguments, tracer: &Tracer, found: &Found) -> Strin
     };
     let statistics = tracer.statistics();
     format!(
-        "{rays}; {} cylinders; Embree {} with {}.",
-        text::count(statistics.cylinders_instanced),
-        statistics.embree_version,
-        statistics.isa
+        "{rays}; {}; Embree {} with {}.",
+        statistics.instanced, statistics.embree_version, statistics.isa
     )
 }
 
