@@ -1,34 +1,45 @@
-//! The keys of a scene file, as they stand there: types are checked, meaning
-//! is not. Where a value may turn out wrong later it keeps its place in the
+//! The keys of a scene file, as written: types are checked, meaning
+//! is not. A value that may turn out wrong later keeps its place in the
 //! file ([`Spanned`]).
 
 use serde::Deserialize;
 use toml::Spanned;
 
 use super::solid_keys::{
-    BeamLatticeKeys, CompositionKeys, ConeKeys, CuboidKeys, CylinderKeys, CylinderTableKeys,
-    DiskKeys, RotationKeys, RoundedConeKeys, SphereKeys, SwcKeys,
+    BeamLatticeKeys, CompositionKeys, CylinderTableKeys, RotationKeys, SwcKeys,
 };
+use super::solids::SceneSolid;
 use super::table::ColumnKey;
 use super::values::{ColumnOrList, Keys, List, Number, NumberOrList, Whole};
+use crate::for_each_solid;
+use crate::solid::{Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 
 /// Three numbers and their place.
 pub(super) type Triple = Spanned<List<Number, 3>>;
 /// Three columns, each with its place.
 pub(super) type ThreeColumns = List<Spanned<ColumnKey>, 3>;
 
-/// Declares the tables that hold solids and placements, each with the lists of
+/// Declares the tables that contain solids and placements, each with the lists of
 /// those behind its own keys, because serde cannot refuse unknown keys in a flattened
 /// struct; and [`Body`], which borrows the lists.
 macro_rules! holders {
-    ($lists:tt $($(#[$meta:meta])* $name:ident $keys:tt)*) => {
+    (
+        [$($others:tt)*], $($(#[$meta:meta])* $name:ident $keys:tt)*;
+        $({ $type:ident $solid:ident $($rest:tt)* })*
+    ) => {
+        holders! {
+            @ [$($solid: <$type as SceneSolid>::Keys,)* $($others)*]
+            $($(#[$meta])* $name $keys)*
+        }
+    };
+    (@ $lists:tt $($(#[$meta:meta])* $name:ident $keys:tt)*) => {
         $(holder!($lists $(#[$meta])* $name $keys);)*
         body!($lists);
     };
 }
 
 macro_rules! holder {
-    ([$($list:ident: $entry:ident,)*]
+    ([$($list:ident: $entry:ty,)*]
      $(#[$meta:meta])* $name:ident {
         $($(#[$attribute:meta])* pub $key:ident: $kind:ty,)*
      }) => {
@@ -41,7 +52,7 @@ macro_rules! holder {
         }
 
         impl $name {
-            /// What it holds, under a name.
+            /// What it contains, under a name.
             fn body<'a>(&'a self, name: &'a str) -> Body<'a> {
                 Body { name, $($list: &self.$list,)* }
             }
@@ -50,8 +61,8 @@ macro_rules! holder {
 }
 
 macro_rules! body {
-    ([$($list:ident: $entry:ident,)*]) => {
-        /// What the root and every prototype hold.
+    ([$($list:ident: $entry:ty,)*]) => {
+        /// What the root and every prototype contain.
         #[derive(Clone, Copy)]
         pub(super) struct Body<'a> {
             pub name: &'a str,
@@ -60,24 +71,19 @@ macro_rules! body {
     };
 }
 
-holders! {
+for_each_solid! {
+    holders
     [
-        cylinder: CylinderKeys,
         cylinder_table: CylinderTableKeys,
         swc: SwcKeys,
         beam_lattice: BeamLatticeKeys,
-        sphere: SphereKeys,
-        cuboid: CuboidKeys,
-        cone: ConeKeys,
-        rounded_cone: RoundedConeKeys,
-        disk: DiskKeys,
         union: CompositionKeys,
         intersection: CompositionKeys,
         difference: CompositionKeys,
         instance: InstanceKeys,
         instance_table: InstanceTableKeys,
         scatter: ScatterKeys,
-    ]
+    ],
 
     /// The whole file.
     Document {
@@ -97,7 +103,7 @@ holders! {
     /// `[[prototype]]`
     PrototypeKeys {
         pub name: Spanned<String>,
-    }
+    };
 }
 
 impl Document {

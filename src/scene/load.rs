@@ -29,6 +29,7 @@ use super::source::Source;
 use super::swc::{Shape, add_swc};
 use super::transform::GREATEST_ENTRY;
 use super::values::{Keys, NumberOrList};
+use crate::for_each_solid;
 
 /// Reads a scene file and the tables it names, and checks everything.
 ///
@@ -152,16 +153,26 @@ impl Lowered {
     }
 }
 
+/// Adds the solids of each kind. Those of files are numbered behind the first kind, the
+/// cylinders.
+macro_rules! add_in_order {
+    (
+        $loader:ident $solids:ident $body:ident;
+        { $first_type:ident $first:ident $($first_rest:tt)* }
+        $({ $type:ident $name:ident $($rest:tt)* })*
+    ) => {
+        $loader.add_solids(&mut $solids, $body.$first)?;
+        $loader.add_files(&mut $solids, $body)?;
+        $($loader.add_solids(&mut $solids, $body.$name)?;)*
+    };
+}
+
 impl Loader<'_> {
     /// The solids and placements, in the order of their numbers.
     fn body(&self, body: &Body) -> Result<Lowered, SceneError> {
         let source = self.source;
-        let mut solids = self.files_and_cylinders(body)?;
-        self.add_solids(&mut solids, body.sphere)?;
-        self.add_solids(&mut solids, body.cuboid)?;
-        self.add_solids(&mut solids, body.cone)?;
-        self.add_solids(&mut solids, body.rounded_cone)?;
-        self.add_solids(&mut solids, body.disk)?;
+        let mut solids = SolidCollector::new(self.records);
+        for_each_solid!(add_in_order self solids body;);
         self.add_compositions(&mut solids, Operation::Union, body.union)?;
         self.add_compositions(&mut solids, Operation::Intersection, body.intersection)?;
         self.add_compositions(&mut solids, Operation::Difference, body.difference)?;
@@ -203,16 +214,14 @@ impl Loader<'_> {
         })
     }
 
-    /// The cylinders and what comes from files, in the order of their numbers.
-    fn files_and_cylinders(&self, body: &Body) -> Result<SolidCollector, SceneError> {
+    /// Adds the solids that come from files.
+    fn add_files(&self, solids: &mut SolidCollector, body: &Body) -> Result<(), SceneError> {
         let source = self.source;
-        let mut solids = SolidCollector::new(self.records);
-        self.add_solids(&mut solids, body.cylinder)?;
         for Keys(keys) in body.cylinder_table {
             let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
             let degenerate = self.degenerate(keys.degenerate.as_ref())?;
             let first = solids.numbers();
-            add_table(&mut solids, self.tables, keys, look, degenerate)?;
+            add_table(solids, self.tables, keys, look, degenerate)?;
             solids.came_from(keys.file.get_ref(), true, first);
         }
         for Keys(keys) in body.swc {
@@ -220,16 +229,16 @@ impl Loader<'_> {
             let degenerate = self.degenerate(keys.degenerate.as_ref())?;
             let shape = Shape::new(source, keys)?;
             let first = solids.numbers();
-            add_swc(&mut solids, self.tables, keys, look, shape, degenerate)?;
+            add_swc(solids, self.tables, keys, look, shape, degenerate)?;
             solids.came_from(keys.file.get_ref(), false, first);
         }
         for Keys(keys) in body.beam_lattice {
             let lattice = self.beam_lattice(keys)?;
             let first = solids.numbers();
-            add_beam_lattice(&mut solids, source, &keys.file, &lattice)?;
+            add_beam_lattice(solids, source, &keys.file, &lattice)?;
             solids.came_from(keys.file.get_ref(), false, first);
         }
-        Ok(solids)
+        Ok(())
     }
 
     /// Adds solids of one kind.
@@ -258,7 +267,7 @@ impl Loader<'_> {
             let solid = operation.of(self.source, keys)?;
             let material = self.materials.find(self.source, keys.material())?;
             let pushed = solids.push_composition(solid, material);
-            pushed.map_err(|refusal| self.refused(keys.of.span(), &refusal))?;
+            pushed.map_err(|refusal| self.refused(keys.of().span(), &refusal))?;
         }
         Ok(())
     }
