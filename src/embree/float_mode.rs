@@ -9,7 +9,7 @@
 //!
 //! Embree's manual advises its callers to flush denormal numbers too, so that
 //! the solvers may well run in that mode in another's renderer:
-//! `tests/invariance.rs` holds that they answer the same.
+//! `crates/bench/tests/bench/invariance.rs` holds that they answer the same.
 
 use std::hint::black_box;
 
