@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::ops::ControlFlow;
 
 use cyltrace::math::{ChildFromParent, PlacementErrors, Random, UNIT_ROUNDOFF};
-use cyltrace::meshes::{self, Format, MeshFileError, Plan};
+use cyltrace::meshes::{Format, MeshFileError, Plan};
 use cyltrace::scene::{
     CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, Solids,
 };
@@ -88,11 +88,12 @@ fn read_ply(bytes: &[u8]) -> Mesh {
 fn written(scene: &Scene, plan: &Plan, format: Format) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut items = 0;
-    meshes::write(scene, plan, format, "a scene", &mut bytes, &mut |more| {
-        items += more;
-        ControlFlow::Continue(())
-    })
-    .unwrap();
+    format
+        .write(scene, plan, "a scene", &mut bytes, &mut |more| {
+            items += more;
+            ControlFlow::Continue(())
+        })
+        .unwrap();
     assert_eq!(u128::from(items), plan.vertices() + plan.triangles());
     bytes
 }
@@ -281,10 +282,10 @@ fn meshes_read_back_are_prisms_of_the_placed_solids() {
         let ply = written(&scene, &plan, Format::Ply);
         assert_eq!(
             ply.len() as u128,
-            plan.file_bytes(Format::Ply, "a scene"),
+            Format::Ply.file_bytes(&plan, "a scene"),
             "seed {seed}"
         );
-        let most = plan.file_bytes(Format::Obj, "a scene");
+        let most = Format::Obj.file_bytes(&plan, "a scene");
         assert!((most / 2..=most).contains(&(obj.len() as u128)));
         let (obj, ply) = (read_obj(&obj), read_ply(&ply));
         assert_eq!(
@@ -380,14 +381,14 @@ fn meshes_too_large_or_interrupted_are_refused() {
     let scene = random_scene(1);
     let plan = Plan::new(&scene, 64, Fit::Inscribed).unwrap();
     for format in [Format::Obj, Format::Ply] {
-        let bytes = plan.file_bytes(format, "x") as u64;
-        plan.check(format, "x", bytes).unwrap();
-        let refused = plan.check(format, "x", bytes - 1).unwrap_err();
+        let bytes = format.file_bytes(&plan, "x") as u64;
+        format.check(&plan, "x", bytes).unwrap();
+        let refused = format.check(&plan, "x", bytes - 1).unwrap_err();
         assert!(
             matches!(refused, MeshFileError::TooLarge { .. }),
             "{refused}"
         );
-        let stopped = meshes::write(&scene, &plan, format, "x", &mut Vec::new(), &mut |_| {
+        let stopped = format.write(&scene, &plan, "x", &mut Vec::new(), &mut |_| {
             ControlFlow::Break(())
         });
         assert!(matches!(stopped, Err(MeshFileError::Cancelled)));
@@ -426,7 +427,7 @@ fn meshes_too_large_or_interrupted_are_refused() {
     let plan = Plan::new(&scene, 3, Fit::Inscribed).unwrap();
     // 10^40 solids: more than can be counted.
     assert_eq!(plan.solids(), u128::MAX);
-    let refused = plan.check(Format::Ply, "x", u64::MAX).unwrap_err();
+    let refused = Format::Ply.check(&plan, "x", u64::MAX).unwrap_err();
     assert!(
         matches!(refused, MeshFileError::TooLarge { .. }),
         "{refused}"

@@ -1,6 +1,6 @@
 //! Cones and rounded cones against exact truth, on families of hard cases.
 //!
-//! `CYLTRACE_CASES=1000000 cargo test --release --test solids_cone` is the full run.
+//! `CYLTRACE_CASES=1000000 cargo test --release --test solids cone` is the full run.
 
 use std::thread;
 

@@ -2,7 +2,7 @@
 //! for bit: for every instruction set, layout and time of building, and as
 //! trying every placement and every cylinder answers.
 //!
-//! `CYLTRACE_RAYS=1000000 cargo test --release --test batches` is the full run;
+//! `CYLTRACE_RAYS=1000000 cargo test --release --test tracing batches` is the full run;
 //! the default is a tenth of it.
 
 use std::sync::Arc;

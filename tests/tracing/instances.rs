@@ -3,7 +3,7 @@
 //! trying everything and against the same scene without instances. So do prototypes that are
 //! opened into their parents, since they contain nothing but a few placements.
 //!
-//! `CYLTRACE_RAYS=1000000 cargo test --release --test instances` is the full run; the
+//! `CYLTRACE_RAYS=1000000 cargo test --release --test tracing instances` is the full run; the
 //! default is a tenth of it.
 
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! Rays spawned from hits do not meet again the surface they left.
 //!
-//! `CYLTRACE_RAYS=1000000 cargo test --release --test spawn` is the full run;
+//! `CYLTRACE_RAYS=1000000 cargo test --release --test tracing spawn` is the full run;
 //! the default is a tenth of it.
 //!
 //! The judge is exact arithmetic on the spawned ray as it is, an f64 ray like

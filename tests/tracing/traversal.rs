@@ -1,7 +1,7 @@
 //! Traversal loses nothing: through Embree, every ray gets the hit that trying
 //! every placement and every cylinder gets, bit for bit.
 //!
-//! `CYLTRACE_RAYS=1000000 cargo test --release --test traversal` is the full
+//! `CYLTRACE_RAYS=1000000 cargo test --release --test tracing traversal` is the full
 //! run; the default is a tenth of it.
 
 use std::sync::Arc;

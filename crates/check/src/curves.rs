@@ -1,7 +1,7 @@
 //! Embree's own cone curves as a witness: another solver of the same shape.
 //!
 //! It proves nothing. It is f32, of unknown error, and wrong in known ways
-//! (`tests/rival_defects.rs`): directions are made unit length for it, and a
+//! (`crates/bench/tests/bench/rival_defects.rs`): directions are made unit length for it, and a
 //! disagreement beyond the tolerance is a [`Verdict::Suspect`], which only the
 //! oracle can turn against the answer. What it tells is how often two programs
 //! that share no code agree.

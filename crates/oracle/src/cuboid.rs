@@ -1,7 +1,7 @@
 //! The points of a cuboid on a ray, exactly.
 //!
-//! Every plane of a face is met on its own, and its point is checked against the
-//! definition of the solid, all three axes of it: those that hold are points of
+//! Every plane of a face is intersected on its own, and its point is checked against the
+//! definition of the solid, all three axes of it: those that pass are points of
 //! the surface, and the first and the last of them are the ends of the chord. A line
 //! within a face meets the planes of the others. A point on several faces is of the
 //! first axis.
@@ -52,7 +52,7 @@ pub fn cuboid_chord(cuboid: &Cuboid, ray: &ExactRay) -> Option<TrueChord> {
     })
 }
 
-/// Whether the closed cuboid holds a point.
+/// Whether the closed cuboid contains a point.
 ///
 /// # Panics
 /// When the point is not finite.
@@ -75,7 +75,7 @@ pub fn cuboid_holds(cuboid: &Cuboid, point: glam::DVec3) -> bool {
 /// When the ray is not valid.
 #[must_use]
 pub fn cuboid_gap(cuboid: &Cuboid, ray: &Ray) -> f64 {
-    assert!(ray.is_valid(), "the gap was asked for of {ray:?}");
+    assert!(ray.is_valid(), "a gap is of a valid ray, and this is {ray:?}");
     let vectors = [
         cuboid.half_widths(),
         cuboid.center(),

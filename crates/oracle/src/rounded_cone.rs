@@ -4,7 +4,7 @@
 //! circles at the heights `a·q = -r0 Δ` and `a·a - r1 Δ`. A point of the sphere around
 //! `p0` is on the hull's boundary up to the first height, one of that around `p1`
 //! from the second on, and one of the wall between the two. If these are not in
-//! this order, one ball holds the other and is the hull.
+//! this order, one ball contains the other and is the hull.
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,4 @@
-//! Points and tapered solids: which solid holds a point, and how far it is from a
+//! Points and tapered solids: which solid contains a point, and how far it is from a
 //! part of the surface.
 //!
 //! A point is seen in the half-plane of the axis: its height `y = a·q / |a|` and its
@@ -16,7 +16,7 @@ use super::taper::{Taper, numbers_of};
 use cyltrace::math::Ray;
 use cyltrace::solid::{Cone, Part, RoundedCone};
 
-/// Whether the closed cone holds a point.
+/// Whether the closed cone contains a point.
 #[must_use]
 pub fn cone_holds(cone: &Cone, point: DVec3) -> bool {
     let taper = of(
@@ -30,7 +30,7 @@ pub fn cone_holds(cone: &Cone, point: DVec3) -> bool {
         && sign(&taper.wall().c) != Ordering::Greater
 }
 
-/// Whether the closed rounded cone holds a point.
+/// Whether the closed rounded cone contains a point.
 #[must_use]
 pub fn rounded_cone_holds(solid: &RoundedCone, point: DVec3) -> bool {
     let radii = [solid.radius0(), solid.radius1()];

@@ -36,7 +36,7 @@ pub fn bits(ray: &Ray) -> String {
         .join(" ")
 }
 
-/// A scene of prototypes, the first of which is the root, and nothing else.
+/// A scene of prototypes and nothing else; the first is the root.
 pub fn scene_of(prototypes: Vec<Prototype>) -> Arc<Scene> {
     Arc::new(Scene::new(prototypes))
 }
@@ -107,7 +107,7 @@ pub struct Nested {
     pub scene: Arc<Scene>,
     /// How far the outermost is moved, in its own extents.
     pub translation: f64,
-    /// The placements of the last prototype, which holds all cylinders, in the
+    /// The placements of the last prototype, which contains all cylinders, in the
     /// root.
     images: Vec<DAffine3>,
 }
@@ -125,7 +125,7 @@ impl Nested {
 }
 
 /// A scale from 1e-4 to 1e4, every other time a different one for each axis, any
-/// rotations and a translation of so many times the scale.
+/// rotations and a translation of this many times the scale.
 pub fn random_placement(random: &mut Random, translation: f64) -> DAffine3 {
     let scale = random.log_uniform(1e-4, 1e4);
     let stretch = match random.below(2) {

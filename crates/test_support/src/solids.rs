@@ -40,7 +40,7 @@ pub fn any_solid(random: &mut Random, kind: u64, caps: Caps, is_turned: bool) ->
     }
 }
 
-/// Solids in their order, as a prototype holds them; their numbers count from 0.
+/// Solids in their order, as a prototype lists them; their numbers count from 0.
 pub fn prototype_of(solids: &[AnySolid]) -> Prototype {
     let mut prototype = Prototype::default();
     for (number, solid) in (0..).zip(solids) {
@@ -74,7 +74,7 @@ fn as_cone(cylinder: &Cylinder) -> Cone {
     .unwrap()
 }
 
-/// Whether a solid holds a point, in exact arithmetic.
+/// Whether a solid contains a point, in exact arithmetic.
 pub fn truly_holds(solid: &AnySolid, point: DVec3) -> bool {
     match solid {
         AnySolid::Cylinder(one) => cyltrace_oracle::cone_holds(&as_cone(one), point),

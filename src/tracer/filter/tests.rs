@@ -1,4 +1,4 @@
-//! Packets, and how tight copies are; `tests/filters` looks for lost hits.
+//! Packets, and how tight copies are; `tests/solids/filters.rs` looks for lost hits.
 
 use std::array::from_fn;
 

@@ -61,7 +61,7 @@ fn outcome(name: &str, rays: u64, by: f64) -> Outcome {
 }
 
 /// The least share of rays from around the scene, in percent, that agree. Other
-/// classes reach what cone curves get wrong (`tests/rival_defects.rs`).
+/// classes reach what cone curves get wrong (`crates/bench/tests/bench/rival_defects.rs`).
 fn agrees(name: &str, rays: u64, least: f64) {
     let outcome = outcome(name, rays, 0.0);
     assert_eq!(outcome.violation_count(), 0, "{:?}", outcome.violations);

@@ -5,8 +5,8 @@
 
 use std::io::Write;
 
-use super::walk::instances;
-use super::{AT_ONCE, MeshFileError, Plan, Progress, proceed};
+use crate::meshes::walk::instances;
+use crate::meshes::{AT_ONCE, MeshFileError, Plan, Progress, proceed};
 use crate::scene::Scene;
 use crate::solid::tessellation::{mesh_size_of, triangles_of};
 
@@ -16,6 +16,15 @@ const VERTEX_BYTES: u128 = 24;
 /// A `uchar` and three `uint`.
 const TRIANGLE_BYTES: u128 = 13;
 
+/// Refuses more vertices than faces can name.
+pub(super) fn check(plan: &Plan) -> Result<(), MeshFileError> {
+    let vertices = plan.vertices();
+    if vertices > u128::from(u32::MAX) {
+        return Err(MeshFileError::Vertices { vertices });
+    }
+    Ok(())
+}
+
 pub(super) fn write(
     scene: &Scene,
     plan: &Plan,
@@ -23,10 +32,6 @@ pub(super) fn write(
     writer: &mut dyn Write,
     progress: &mut Progress,
 ) -> Result<(), MeshFileError> {
-    let vertices = plan.vertices();
-    if vertices > u128::from(u32::MAX) {
-        return Err(MeshFileError::Vertices { vertices });
-    }
     writer.write_all(header(plan, name).as_bytes())?;
     let mut bytes = Vec::new();
     instances(scene, &mut |instance| {

@@ -7,23 +7,20 @@
 
 use glam::DVec3;
 
-use super::MeshFile;
-use super::builder::{Builder, too_many_corners};
-use super::error::{MeshError, MeshPlace};
-use super::ply_data::Data;
-use super::ply_header::{Element, Header, Kind};
-use super::text::without_mark;
+use super::data::Data;
+use super::header::{Element, Header, Kind};
+use crate::meshes::error::{MeshError, MeshPlace};
+use crate::meshes::reading::builder::{Builder, too_many_corners};
+use crate::meshes::reading::text::without_mark;
+use crate::meshes::reading::{MeshFile, ROUNDING_32};
 use crate::scene::MOST_FACE_CORNERS;
-
-/// 2^-24, what rounding to f32 changes at most, as a share.
-pub(super) const ROUNDING_32: f64 = 0.5 * f32::EPSILON as f64;
 
 /// Reads a mesh from the bytes of a PLY file.
 ///
 /// # Errors
 /// When the header or a number is malformed or out of range, the file ends early, a face
 /// names a vertex that does not exist, or there is no face.
-pub fn parse_ply(bytes: &[u8]) -> Result<MeshFile, MeshError> {
+pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, MeshError> {
     let bytes = without_mark(bytes)?;
     let header = Header::new(bytes)?;
     let needed = |name: &str| {
@@ -136,7 +133,7 @@ mod tests {
     }
 
     fn error(bytes: &[u8]) -> MeshError {
-        parse_ply(bytes).expect_err("an error")
+        parse(bytes).expect_err("an error")
     }
 
     #[test]
@@ -166,14 +163,14 @@ mod tests {
         }
         files.push([b"\xef\xbb\xbf".as_slice(), &files[0]].concat());
         for bytes in files {
-            let file = parse_ply(&bytes).unwrap();
+            let file = parse(&bytes).unwrap();
             assert_eq!(file.deviation, Some(1e-3));
             assert_eq!(file.mesh.triangles, [[0, 1, 2]]);
             assert_eq!(file.mesh.vertices[2], DVec3::new(0.0, 0.1, 0.0));
             assert_eq!(file.rounding, 0.0);
             // Cut anywhere, it is an error and never a panic.
             for length in 0..bytes.len() - 2 {
-                let _ = parse_ply(&bytes[..length]);
+                let _ = parse(&bytes[..length]);
             }
         }
     }
@@ -185,7 +182,7 @@ mod tests {
             element nothing 0\n\
             element face 2\nproperty uchar flags\nproperty list int16 float32 vertex_index\n";
         let data = "2 0.5 0.5 7\n0 7\n9 255 0 2 1 1 0 { the first }\n9 255 0 0 1\n9 255 1 0 \\\n1 # over two lines\n\n1 4 0 1 2 0\n1 2 0 1\n";
-        let file = parse_ply(&ascii(elements, data)).unwrap();
+        let file = parse(&ascii(elements, data)).unwrap();
         assert_eq!(file.mesh.vertices[2], DVec3::new(1.0, 1.0, 9.0));
         assert_eq!(file.mesh.triangles, [[0, 1, 2], [0, 2, 0]]);
         assert_eq!(file.rounding, ROUNDING_32);

@@ -1,8 +1,8 @@
 //! The header of a PLY file: its form, and the elements with their properties.
 
-use super::error::MeshError;
-use super::remarks::Remarks;
-use super::text::{before, shown, words};
+use crate::meshes::error::MeshError;
+use crate::meshes::reading::remarks::Remarks;
+use crate::meshes::reading::text::{before, shown, words};
 use crate::scene::{MOST_PLY_HEADER_BYTES, MOST_PLY_PROPERTIES};
 
 /// How the elements are written.

@@ -8,8 +8,8 @@
 use std::fmt::Write as _;
 use std::io::Write;
 
-use super::walk::{Instance, instances};
-use super::{AT_ONCE, MeshFileError, Plan, Progress, proceed};
+use crate::meshes::walk::{Instance, instances};
+use crate::meshes::{AT_ONCE, MeshFileError, Plan, Progress, proceed};
 use crate::scene::Scene;
 use crate::solid::tessellation::triangles_of;
 

@@ -7,11 +7,11 @@
 
 use glam::DVec3;
 
-use super::MeshFile;
-use super::builder::{Builder, too_many_corners};
-use super::error::{MeshError, MeshPlace};
-use super::remarks::Remarks;
-use super::text::{before, lines, number, shown, without_mark, words};
+use crate::meshes::error::{MeshError, MeshPlace};
+use crate::meshes::reading::MeshFile;
+use crate::meshes::reading::builder::{Builder, too_many_corners};
+use crate::meshes::reading::remarks::Remarks;
+use crate::meshes::reading::text::{before, lines, number, shown, without_mark, words};
 use crate::scene::MOST_FACE_CORNERS;
 
 /// Keywords whose geometry is not triangles.
@@ -24,7 +24,7 @@ const FREE_FORM: [&[u8]; 8] = [
 /// # Errors
 /// When a line is malformed, a number is out of range, a face names a vertex that does not
 /// exist, or there is no face.
-pub fn parse_obj(bytes: &[u8]) -> Result<MeshFile, MeshError> {
+pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, MeshError> {
     let mut builder = Builder::default();
     let mut remarks = Remarks::default();
     let mut statement = Statement::default();
@@ -144,7 +144,7 @@ mod tests {
     const CORNERS: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1e-17\n";
 
     fn triangles(text: &str) -> Vec<[u32; 3]> {
-        let file = parse_obj(text.as_bytes()).unwrap_or_else(|error| panic!("{text:?} {error:?}"));
+        let file = parse(text.as_bytes()).unwrap_or_else(|error| panic!("{text:?} {error:?}"));
         file.mesh.triangles
     }
 
@@ -153,7 +153,7 @@ mod tests {
         let text = format!(
             "# scene, deviation 0.25 scene units\ng one\n{CORNERS}f 1 2 3 4\ng two\nf 1 3 4\n"
         );
-        let file = parse_obj(text.as_bytes()).unwrap();
+        let file = parse(text.as_bytes()).unwrap();
         assert_eq!(file.deviation, Some(0.25));
         assert_eq!(file.mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 2, 3]]);
         assert_eq!(file.mesh.vertices[3], DVec3::new(0.0, 1.0, 1e-17));
@@ -226,12 +226,12 @@ mod tests {
             ("surf 0 1 0 1 1 2", 5, "free-form"),
         ] {
             let text = format!("{CORNERS}{text}");
-            let error = parse_obj(text.as_bytes()).unwrap_err();
+            let error = parse(text.as_bytes()).unwrap_err();
             assert_eq!(error.place, MeshPlace::Line(line), "{text:?}: {error}");
             assert!(error.message.contains(message), "{text:?}: {error}");
         }
         for (bytes, message) in [(&b""[..], "there is no face"), (b"\xff\xfev\0", "UTF-16")] {
-            let error = parse_obj(bytes).unwrap_err();
+            let error = parse(bytes).unwrap_err();
             assert!(error.message.contains(message), "{error}");
         }
     }

@@ -4,9 +4,9 @@
 //! begin a comment, as in the format's first description, and a `\` at the end of a line is
 //! no more than that. A binary record follows the one before it.
 
-use super::error::{MeshError, MeshPlace};
-use super::ply_header::{Element, Form, Header, Kind, Property};
-use super::text::{before, number, shown, words};
+use super::header::{Element, Form, Header, Kind, Property};
+use crate::meshes::error::{MeshError, MeshPlace};
+use crate::meshes::reading::text::{before, number, shown, words};
 
 /// What follows the header.
 pub(super) struct Data<'a> {

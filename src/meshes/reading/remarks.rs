@@ -13,7 +13,7 @@ pub struct Made {
 
 /// The first comment of each kind.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Remarks {
+pub(in crate::meshes) struct Remarks {
     /// The number after the word `deviation`.
     pub deviation: Option<f64>,
     segments: Option<u32>,

@@ -9,12 +9,13 @@
 
 use glam::DVec3;
 
-use super::MeshFile;
-use super::builder::Builder;
-use super::error::{MeshError, MeshPlace};
-use super::ply::ROUNDING_32;
-use super::remarks::Remarks;
-use super::text::{lines, number, shown, without_mark, words};
+use super::{MeshFormat, Writer};
+use crate::meshes::error::{MeshError, MeshPlace};
+use crate::meshes::reading::MeshFile;
+use crate::meshes::reading::ROUNDING_32;
+use crate::meshes::reading::builder::Builder;
+use crate::meshes::reading::remarks::Remarks;
+use crate::meshes::reading::text::{lines, number, shown, without_mark, words};
 
 /// Bytes of a binary file before its facets.
 const HEADER: usize = 84;
@@ -23,12 +24,20 @@ const FACET: usize = 50;
 /// Bytes in which a text is looked for.
 const SAMPLE: usize = 1024;
 
-/// Reads a mesh from the bytes of an STL file.
-///
-/// # Errors
-/// When the number of facets contradicts the length of a binary file, a text is malformed, a
-/// number is out of range, or there is no facet.
-pub fn parse_stl(bytes: &[u8]) -> Result<MeshFile, MeshError> {
+/// Facets; read only.
+pub(super) struct Stl;
+
+impl MeshFormat for Stl {
+    const NAME: &'static str = "STL";
+    const EXTENSION: &'static str = "stl";
+    const WRITER: Option<Writer> = None;
+
+    fn parse(bytes: &[u8]) -> Result<MeshFile, MeshError> {
+        parse(bytes)
+    }
+}
+
+fn parse(bytes: &[u8]) -> Result<MeshFile, MeshError> {
     let claimed = bytes.get(80..HEADER).map(|count| {
         let count = [count[0], count[1], count[2], count[3]];
         u64::from(u32::from_le_bytes(count))
@@ -259,7 +268,7 @@ mod tests {
     const ONE: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
 
     fn corners(bytes: &[u8]) -> Vec<[DVec3; 3]> {
-        let file = parse_stl(bytes).unwrap_or_else(|error| panic!("{error:?}"));
+        let file = parse(bytes).unwrap_or_else(|error| panic!("{error:?}"));
         let triangles = file.mesh.triangles.iter();
         let triangles = triangles.map(|one| one.map(|i| file.mesh.vertices[i as usize]));
         triangles.collect()
@@ -284,7 +293,7 @@ mod tests {
         ] {
             assert_eq!(corners(text.as_bytes()), expected, "{text:?}");
         }
-        let file = parse_stl(text.as_bytes()).unwrap();
+        let file = parse(text.as_bytes()).unwrap();
         assert_eq!((file.deviation, file.rounding), (Some(0.5), ROUNDING_32));
         for header in [&b"solid deviation 0.5"[..], b"", b"anything"] {
             assert_eq!(corners(&binary_file(header, &[ONE])), expected);
@@ -343,13 +352,13 @@ mod tests {
                 "\"facet\" where solid",
             ),
         ] {
-            let error = parse_stl(text.as_bytes()).unwrap_err();
+            let error = parse(text.as_bytes()).unwrap_err();
             assert_eq!(error.place, MeshPlace::Line(line), "{text:?}: {error}");
             assert!(error.message.contains(message), "{text:?}: {error}");
         }
         let mut infinite = ONE;
         infinite[4] = f32::INFINITY;
-        let error = parse_stl(&binary_file(b"", &[ONE, infinite])).unwrap_err();
+        let error = parse(&binary_file(b"", &[ONE, infinite])).unwrap_err();
         assert_eq!(error.place, MeshPlace::Record("facet", 1));
         let whole = binary_file(b"solid", &[ONE]);
         let longer = [&whole[..], &[0]].concat();
@@ -364,7 +373,7 @@ mod tests {
             (b"solid", "there is no face"),
             (&binary_file(b"", &[]), "there is no face"),
         ] {
-            let error = parse_stl(bytes).unwrap_err();
+            let error = parse(bytes).unwrap_err();
             assert!(error.message.contains(message), "{error}");
         }
     }

@@ -3,18 +3,18 @@
 
 use glam::DVec3;
 
-use super::error::{MeshError, MeshPlace};
+use crate::meshes::error::{MeshError, MeshPlace};
 use crate::scene::{GREATEST_MESH_COORDINATE, MOST_FACE_CORNERS};
 use crate::solid::tessellation::Mesh;
 
 /// What is wrong with a face of more corners than [`MOST_FACE_CORNERS`].
-pub(super) fn too_many_corners() -> String {
+pub(in crate::meshes) fn too_many_corners() -> String {
     format!("the face has more than {MOST_FACE_CORNERS} corners")
 }
 
 /// Vertices and triangles so far.
 #[derive(Default)]
-pub(super) struct Builder {
+pub(in crate::meshes) struct Builder {
     mesh: Mesh,
     /// Corners that were beyond the vertices of their time, each greater than the one
     /// before, with their places: the first that stays beyond is the error.

@@ -1,8 +1,11 @@
-//! What is wrong with a mesh file, and where.
+//! Why a mesh is not read or not written: what is wrong, and where.
 
 use std::fmt;
 use std::io;
 use std::path::PathBuf;
+
+use super::Format;
+use crate::solid::tessellation::{GREATEST_SEGMENTS, LEAST_SEGMENTS};
 
 /// Where something is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +59,7 @@ impl fmt::Display for MeshError {
 #[derive(Debug, thiserror::Error)]
 pub enum MeshReadError {
     /// The name ends in no format that is read.
-    #[error("{}: the name of a mesh must end in .stl, .obj or .ply", path.display())]
+    #[error("{}: the name of a mesh must end in {}", path.display(), Format::endings(Format::ALL.iter().copied()))]
     Extension {
         /// The file.
         path: PathBuf,
@@ -85,4 +88,69 @@ pub enum MeshReadError {
         /// What is wrong.
         error: MeshError,
     },
+}
+
+/// Why there is no mesh file.
+#[derive(Debug, thiserror::Error)]
+pub enum MeshFileError {
+    /// The name says nothing of the format.
+    #[error(
+        "cannot write {path:?}: the name of a mesh must end in {}",
+        written_endings()
+    )]
+    Format {
+        /// The file as asked for.
+        path: PathBuf,
+    },
+    /// The format is only read.
+    #[error("{name} is read and not written: write {}", written_endings())]
+    NotWritten {
+        /// What the format is called.
+        name: &'static str,
+    },
+    /// No such meshes.
+    #[error(
+        "{segments} segments: a mesh has at least {LEAST_SEGMENTS} and at most {GREATEST_SEGMENTS}"
+    )]
+    Segments {
+        /// The number given.
+        segments: u32,
+    },
+    /// There are solids that have no mesh of their own.
+    #[error(
+        "solids composed by union, intersection or difference have no mesh of their own, and the scene holds {solids}: leave them out, or state the solids that they are composed of by themselves"
+    )]
+    ComposedSolids {
+        /// How many, as they are stored.
+        solids: u64,
+    },
+    /// A PLY file counts vertices in 32 bits.
+    #[error(
+        "the mesh has {vertices} vertices, and a .ply file can name {}: write an .obj file, or use fewer segments",
+        u32::MAX
+    )]
+    Vertices {
+        /// Vertices of the mesh.
+        vertices: u128,
+    },
+    /// More than may be written.
+    #[error("the file needs up to {needed} bytes, which is more than the {allowed} allowed")]
+    TooLarge {
+        /// At least what the file takes.
+        needed: u128,
+        /// What was allowed.
+        allowed: u64,
+    },
+    /// The caller asked to stop.
+    #[error("stopped before the mesh was complete")]
+    Cancelled,
+    /// The system refuses to write.
+    #[error(transparent)]
+    Write(#[from] io::Error),
+}
+
+/// The endings of the formats that are written.
+fn written_endings() -> String {
+    let all = Format::ALL.iter().copied();
+    Format::endings(all.filter(|format| format.is_written()))
 }
