@@ -5,10 +5,11 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::set_operations::Operation;
-use super::solid_keys::{
-    BeamLatticeKeys, CompositionKeys, CylinderTableKeys, RotationKeys, SwcKeys,
+use super::formats::{
+    BeamLatticeKeys, CylinderTableKeys, SolidFile, SwcKeys, for_each_solid_format,
 };
+use super::set_operations::Operation;
+use super::solid_keys::{CompositionKeys, RotationKeys};
 use super::solids::SceneSolid;
 use super::table::ColumnKey;
 use super::values::{ColumnOrList, Keys, List, Number, NumberOrList, Whole};
@@ -72,19 +73,32 @@ macro_rules! body {
     };
 }
 
-for_each_solid! {
-    holders
+/// Adds the lists of files to those that `holders` gets.
+macro_rules! with_files {
+    ([$($others:tt)*] [$($structs:tt)*] $({ $keys:ident $name:ident })*) => {
+        for_each_solid! { holders [$($name: $keys,)* $($others)*], $($structs)*; }
+
+        impl<'a> Body<'a> {
+            /// The files of solids, in the order in which their solids are numbered.
+            pub fn files(self) -> impl Iterator<Item = &'a dyn SolidFile> {
+                std::iter::empty()
+                    $(.chain(self.$name.iter().map(|Keys(keys)| keys as &dyn SolidFile)))*
+            }
+        }
+    };
+}
+
+for_each_solid_format! {
+    with_files
     [
-        cylinder_table: CylinderTableKeys,
-        swc: SwcKeys,
-        beam_lattice: BeamLatticeKeys,
         union: CompositionKeys,
         intersection: CompositionKeys,
         difference: CompositionKeys,
         instance: InstanceKeys,
         instance_table: InstanceTableKeys,
         scatter: ScatterKeys,
-    ],
+    ]
+    [
 
     /// The whole file.
     Document {
@@ -104,7 +118,8 @@ for_each_solid! {
     /// `[[prototype]]`
     PrototypeKeys {
         pub name: Spanned<String>,
-    };
+    }
+    ]
 }
 
 impl Document {

@@ -6,13 +6,12 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::beam_lattice::{BeamLattice, UNITS, add_beam_lattice};
 use super::camera::camera;
 use super::cylinder_list::Records;
-use super::cylinder_table::add_table;
 use super::description::{Prototype, PrototypeIndex, Scene};
 use super::document::{Body, Document, PrototypeKeys, ScatterKeys};
 use super::error::SceneError;
+use super::formats::Context;
 use super::graph::{self, Node};
 use super::named_table::Tables;
 use super::names::{quoted, suggestion};
@@ -22,11 +21,10 @@ use super::scatter::{Pattern, Scatter};
 use super::scene_file::SceneFile;
 use super::set_operations::Operation;
 use super::settings::{Materials, check_names, film, lights, render};
-use super::solid_collector::{Degenerate, Look, Refusal, SolidCollector};
-use super::solid_keys::{BeamLatticeKeys, CompositionKeys, SolidTable};
-use super::solids::{SolidKeys, caps};
+use super::solid_collector::{Refusal, SolidCollector};
+use super::solid_keys::{CompositionKeys, SolidTable};
+use super::solids::SolidKeys;
 use super::source::Source;
-use super::swc::{Shape, add_swc};
 use super::transform::GREATEST_ENTRY;
 use super::values::{Keys, NumberOrList};
 use crate::for_each_solid;
@@ -214,27 +212,15 @@ impl Loader<'_> {
 
     /// Adds the solids that come from files.
     fn add_files(&self, solids: &mut SolidCollector, body: &Body) -> Result<(), SceneError> {
-        let source = self.source;
-        for Keys(keys) in body.cylinder_table {
-            let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
-            let degenerate = self.degenerate(keys.degenerate.as_ref())?;
+        let context = Context {
+            source: self.source,
+            tables: self.tables,
+            materials: self.materials,
+        };
+        for file in body.files() {
             let first = solids.numbers();
-            add_table(solids, self.tables, keys, look, degenerate)?;
-            solids.came_from(keys.file.get_ref(), true, first);
-        }
-        for Keys(keys) in body.swc {
-            let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
-            let degenerate = self.degenerate(keys.degenerate.as_ref())?;
-            let shape = Shape::new(source, keys)?;
-            let first = solids.numbers();
-            add_swc(solids, self.tables, keys, look, shape, degenerate)?;
-            solids.came_from(keys.file.get_ref(), false, first);
-        }
-        for Keys(keys) in body.beam_lattice {
-            let lattice = self.beam_lattice(keys)?;
-            let first = solids.numbers();
-            add_beam_lattice(solids, source, &keys.file, &lattice)?;
-            solids.came_from(keys.file.get_ref(), false, first);
+            file.add(&context, solids)?;
+            solids.came_from(file.file().get_ref(), file.has_rows(), first);
         }
         Ok(())
     }
@@ -277,38 +263,6 @@ impl Loader<'_> {
             Some(help) => self.source.error_with_help(place, message, help),
             None => self.source.error(place, message),
         }
-    }
-
-    fn beam_lattice(&self, keys: &BeamLatticeKeys) -> Result<BeamLattice, SceneError> {
-        const MESHES: [(&str, bool); 2] = [("error", false), ("skip", true)];
-        let (source, unit, meshes) = (self.source, keys.unit.as_ref(), keys.meshes.as_ref());
-        let unit = unit.map(|word| source.choose("unit", word, &UNITS));
-        let meshes = meshes.map(|word| source.choose("meshes", word, &MESHES));
-        Ok(BeamLattice {
-            unit: unit.transpose()?,
-            skips_meshes: meshes.transpose()?.unwrap_or(false),
-            material: self.materials.find(self.source, keys.material.as_ref())?,
-            degenerate: self.degenerate(keys.degenerate.as_ref())?,
-        })
-    }
-
-    fn look(
-        &self,
-        caps: Option<&Spanned<String>>,
-        material: Option<&Spanned<String>>,
-    ) -> Result<Look, SceneError> {
-        Ok(Look {
-            caps: self::caps(self.source, caps)?,
-            material: self.materials.find(self.source, material)?,
-        })
-    }
-
-    fn degenerate(&self, word: Option<&Spanned<String>>) -> Result<Degenerate, SceneError> {
-        const POLICIES: [(&str, Degenerate); 2] =
-            [("error", Degenerate::Error), ("skip", Degenerate::Skip)];
-        word.map_or(Ok(Degenerate::Error), |word| {
-            self.source.choose("degenerate", word, &POLICIES)
-        })
     }
 
     fn placed(&self, of: &Spanned<String>) -> Result<PrototypeIndex, SceneError> {

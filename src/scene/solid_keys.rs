@@ -3,9 +3,8 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::document::{ThreeColumns, Triple};
+use super::document::Triple;
 use super::solids::{SceneSolid, SolidKeys};
-use super::table::ColumnKey;
 use super::values::{Keys, Number};
 use crate::for_each_solid;
 use crate::solid::{Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
@@ -110,52 +109,3 @@ macro_rules! operand_keys {
 }
 
 for_each_solid!(operand_keys);
-
-/// `[[cylinder_table]]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct CylinderTableKeys {
-    pub file: Spanned<String>,
-    pub columns: Spanned<Keys<CylinderColumns>>,
-    pub delimiter: Option<Spanned<String>>,
-    pub decimal: Option<Spanned<String>>,
-    pub degenerate: Option<Spanned<String>>,
-    pub caps: Option<Spanned<String>>,
-    pub material: Option<Spanned<String>>,
-}
-
-/// `columns` of `[[cylinder_table]]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct CylinderColumns {
-    #[serde(alias = "start")]
-    pub p0: ThreeColumns,
-    pub p1: Option<ThreeColumns>,
-    pub axis: Option<ThreeColumns>,
-    pub length: Option<Spanned<ColumnKey>>,
-    pub radius: Option<Spanned<ColumnKey>>,
-    pub diameter: Option<Spanned<ColumnKey>>,
-}
-
-/// `[[swc]]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct SwcKeys {
-    pub file: Spanned<String>,
-    pub joints: Option<Spanned<String>>,
-    pub soma: Option<Spanned<String>>,
-    pub degenerate: Option<Spanned<String>>,
-    pub caps: Option<Spanned<String>>,
-    pub material: Option<Spanned<String>>,
-}
-
-/// `[[beam_lattice]]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct BeamLatticeKeys {
-    pub file: Spanned<String>,
-    pub unit: Option<Spanned<String>>,
-    pub meshes: Option<Spanned<String>>,
-    pub degenerate: Option<Spanned<String>>,
-    pub material: Option<Spanned<String>>,
-}

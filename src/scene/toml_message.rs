@@ -1,15 +1,14 @@
 //! What the messages of the TOML parser mean to a user, and what to do.
 
+use super::formats;
 use super::names::{quoted, suggestion};
 use crate::solid::SolidKind;
 
-/// Keys of the scene that contain many tables, `[[...]]`, beside those of solids.
-const LISTS: [&str; 8] = [
+/// Keys of the scene that contain many tables, `[[...]]`, beside those of solids
+/// and of their files.
+const LISTS: [&str; 5] = [
     "material",
     "prototype",
-    "cylinder_table",
-    "swc",
-    "beam_lattice",
     "instance",
     "instance_table",
     "scatter",
@@ -19,7 +18,7 @@ const SINGLE: [&str; 6] = ["background", "camera", "film", "render", "sun", "sky
 
 /// Whether a key of the scene contains many tables.
 fn is_list(key: &str) -> bool {
-    LISTS.contains(&key) || key.parse::<SolidKind>().is_ok()
+    LISTS.contains(&key) || formats::KEYS.contains(&key) || key.parse::<SolidKind>().is_ok()
 }
 
 /// Most characters of a message that are passed on, from its beginning and

@@ -103,7 +103,7 @@ fn each_kind_has_its_table_and_its_number() {
             (9, Composition::Difference(parts())),
         ];
         assert_eq!(compositions, expected);
-        assert_eq!(all.len(), 9);
+        assert_eq!(all.len(), 10);
         assert_eq!(prototype.solids.cylinders.get(0).material().0, 1);
         assert!(all.cuboids.iter().all(|one| one.material.0 == 1));
         assert!(all.compositions.iter().all(|one| one.material.0 == 1));

@@ -75,7 +75,10 @@ pub fn cuboid_holds(cuboid: &Cuboid, point: glam::DVec3) -> bool {
 /// When the ray is not valid.
 #[must_use]
 pub fn cuboid_gap(cuboid: &Cuboid, ray: &Ray) -> f64 {
-    assert!(ray.is_valid(), "a gap is of a valid ray, and this is {ray:?}");
+    assert!(
+        ray.is_valid(),
+        "a gap is of a valid ray, and this is {ray:?}"
+    );
     let vectors = [
         cuboid.half_widths(),
         cuboid.center(),

@@ -67,7 +67,10 @@ pub fn disk_holds(disk: &Disk, point: glam::DVec3) -> bool {
 /// When the ray is not valid.
 #[must_use]
 pub fn disk_gap(disk: &Disk, ray: &Ray) -> f64 {
-    assert!(ray.is_valid(), "a gap is of a valid ray, and this is {ray:?}");
+    assert!(
+        ray.is_valid(),
+        "a gap is of a valid ray, and this is {ray:?}"
+    );
     let mut numbers = vec![exact(disk.radius())];
     for vector in [disk.center(), disk.normal(), ray.origin, ray.direction] {
         numbers.extend(vector.to_array().map(exact));

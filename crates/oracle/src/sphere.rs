@@ -45,7 +45,10 @@ pub fn sphere_holds(sphere: &Sphere, point: glam::DVec3) -> bool {
 /// When the ray is not valid.
 #[must_use]
 pub fn sphere_gap(sphere: &Sphere, ray: &Ray) -> f64 {
-    assert!(ray.is_valid(), "a gap is of a valid ray, and this is {ray:?}");
+    assert!(
+        ray.is_valid(),
+        "a gap is of a valid ray, and this is {ray:?}"
+    );
     let mut numbers = vec![exact(sphere.radius())];
     for vector in [sphere.center(), ray.origin, ray.direction] {
         numbers.extend(vector.to_array().map(exact));

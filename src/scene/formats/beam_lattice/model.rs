@@ -38,7 +38,7 @@ enum Type {
 }
 
 /// The units of lengths, and how many micrometers each is.
-pub(in crate::scene) const UNITS: [(&str, f64); 6] = [
+pub(super) const UNITS: [(&str, f64); 6] = [
     ("micron", 1.0),
     ("millimeter", 1e3),
     ("centimeter", 1e4),

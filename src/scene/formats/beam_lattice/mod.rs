@@ -30,63 +30,104 @@ mod package;
 use std::collections::BTreeMap;
 
 use glam::DVec3;
+use serde::Deserialize;
 use toml::Spanned;
 
-pub(super) use self::counted::count;
+use self::counted::count;
 use self::element::{Element, Similarity};
 use self::lattice::{Beam, End, Lattice};
-use self::model::Model;
-pub(super) use self::model::UNITS;
-use super::description::MaterialIndex;
-use super::error::SceneError;
-use super::solid_collector::{
+use self::model::{Model, UNITS};
+use super::{Context, SolidFile, SolidFormat};
+use crate::scene::contents::ExpectedSolids;
+use crate::scene::cylinder_list::Records;
+use crate::scene::description::MaterialIndex;
+use crate::scene::error::SceneError;
+use crate::scene::solid_collector::{
     Degenerate, Refusal, SKIP_HELP, SolidCollector, is_degenerate, is_degenerate_cone,
 };
-use super::source::Source;
+use crate::scene::source::Source;
 use crate::solid::{AnySolid, Caps, Composition, Cone, Cylinder, Sphere};
 
-/// How a file is read.
-pub(super) struct BeamLattice {
-    /// The unit of the scene, in micrometers; without it, the file's.
-    pub unit: Option<f64>,
-    /// Whether meshes are left out; they are an error otherwise.
-    pub skips_meshes: bool,
-    pub material: MaterialIndex,
-    pub degenerate: Degenerate,
+/// `[[beam_lattice]]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct BeamLatticeKeys {
+    file: Spanned<String>,
+    unit: Option<Spanned<String>>,
+    meshes: Option<Spanned<String>>,
+    degenerate: Option<Spanned<String>>,
+    material: Option<Spanned<String>>,
 }
 
-/// Adds the beams and balls of a `[[beam_lattice]]`.
-pub(super) fn add_beam_lattice(
-    solids: &mut SolidCollector,
-    source: &Source,
-    file: &Spanned<String>,
-    keys: &BeamLattice,
-) -> Result<(), SceneError> {
-    let part = package::model_part(source, file)?;
-    let document = package::parsed(&part)?;
-    let root = Element::root(&part.path, &document);
-    let model = Model::new(&root, keys.skips_meshes)?;
-    for note in &model.notes {
-        solids.note(note);
+/// How a file is read.
+struct BeamLattice {
+    /// The unit of the scene, in micrometers; without it, the file's.
+    unit: Option<f64>,
+    /// Whether meshes are left out; they are an error otherwise.
+    skips_meshes: bool,
+    material: MaterialIndex,
+    degenerate: Degenerate,
+}
+
+impl SolidFormat for BeamLatticeKeys {
+    const WHAT: &'static str = "a model in 3MF";
+    const EXTENSIONS: &'static [&'static str] = &["3mf"];
+}
+
+impl SolidFile for BeamLatticeKeys {
+    fn file(&self) -> &Spanned<String> {
+        &self.file
     }
-    let units = keys
-        .unit
-        .map_or((1.0, 1.0), |unit| lowest(model.unit, unit));
-    for placed in &model.placed {
-        for place in &placed.places {
-            let mut lowering = Lowering {
-                source,
-                file,
-                root,
-                place,
-                units,
-                keys,
-                solids: &mut *solids,
-            };
-            lowering.add(&placed.lattice)?;
+
+    fn count(&self, source: &Source, records: Records, solids: &mut ExpectedSolids) {
+        // Loading makes nothing of what cannot be read.
+        let _ = count(source, &self.file, records, solids);
+    }
+
+    fn add(&self, context: &Context, solids: &mut SolidCollector) -> Result<(), SceneError> {
+        let (source, file) = (context.source, &self.file);
+        let keys = self.stated(context)?;
+        let part = package::model_part(source, file)?;
+        let document = package::parsed(&part)?;
+        let root = Element::root(&part.path, &document);
+        let model = Model::new(&root, keys.skips_meshes)?;
+        for note in &model.notes {
+            solids.note(note);
         }
+        let units = keys
+            .unit
+            .map_or((1.0, 1.0), |unit| lowest(model.unit, unit));
+        for placed in &model.placed {
+            for place in &placed.places {
+                let mut lowering = Lowering {
+                    source,
+                    file,
+                    root,
+                    place,
+                    units,
+                    keys: &keys,
+                    solids: &mut *solids,
+                };
+                lowering.add(&placed.lattice)?;
+            }
+        }
+        Ok(())
     }
-    Ok(())
+}
+
+impl BeamLatticeKeys {
+    fn stated(&self, context: &Context) -> Result<BeamLattice, SceneError> {
+        const MESHES: [(&str, bool); 2] = [("error", false), ("skip", true)];
+        let (source, unit, meshes) = (context.source, self.unit.as_ref(), self.meshes.as_ref());
+        let unit = unit.map(|word| source.choose("unit", word, &UNITS));
+        let meshes = meshes.map(|word| source.choose("meshes", word, &MESHES));
+        Ok(BeamLattice {
+            unit: unit.transpose()?,
+            skips_meshes: meshes.transpose()?.unwrap_or(false),
+            material: context.material(self.material.as_ref())?,
+            degenerate: context.degenerate(self.degenerate.as_ref())?,
+        })
+    }
 }
 
 /// The number of beams that the model part of a 3MF file builds: what is read of it, without

@@ -14,15 +14,20 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use super::description::CylinderRecord;
-use super::error::SceneError;
-use super::named_table::Tables;
-use super::solid_collector::{
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{Context, SolidFile, SolidFormat};
+use crate::scene::contents::ExpectedSolids;
+use crate::scene::cylinder_list::Records;
+use crate::scene::description::CylinderRecord;
+use crate::scene::error::SceneError;
+use crate::scene::named_table::{Tables, rows};
+use crate::scene::solid_collector::{
     Degenerate, Look, SKIP_HELP, SolidCollector, is_degenerate, is_degenerate_cone,
 };
-use super::solid_keys::SwcKeys;
-use super::source::Source;
-use super::table::input;
+use crate::scene::source::Source;
+use crate::scene::table::input;
 use crate::solid::{
     AnySolid, Caps, Cone, ConeError, Cylinder, CylinderError, RoundedCone, SolidKind, Sphere,
     SphereError,
@@ -30,20 +35,32 @@ use crate::solid::{
 use samples::{Sample, SwcFile};
 use soma::Somata;
 
+/// `[[swc]]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct SwcKeys {
+    file: Spanned<String>,
+    joints: Option<Spanned<String>>,
+    soma: Option<Spanned<String>>,
+    degenerate: Option<Spanned<String>>,
+    caps: Option<Spanned<String>>,
+    material: Option<Spanned<String>>,
+}
+
 /// Bytes that a sample takes while a file is read: its own, and its places in the
 /// index and among the parents.
-pub(super) const SAMPLE_BYTES: u64 = 160;
+const SAMPLE_BYTES: u64 = 160;
 
 /// What solids a neuron has.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Shape {
+struct Shape {
     pub joints: Joints,
     pub has_soma: bool,
 }
 
 /// What the segments are, and so how they meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Joints {
+enum Joints {
     /// Cylinders, of the radius of the segment's own sample.
     Steps,
     /// Cones, which end flat.
@@ -145,41 +162,65 @@ enum Part {
     Free,
 }
 
-/// Adds the solids of an `[[swc]]`: the segments in the order of their samples, then
-/// the balls of somata.
-pub(super) fn add_swc(
-    solids: &mut SolidCollector,
-    tables: &Tables,
-    keys: &SwcKeys,
-    look: Look,
-    shape: Shape,
-    degenerate: Degenerate,
-) -> Result<(), SceneError> {
-    let source = tables.source;
-    let path = source.resolve(keys.file.get_ref());
-    let file = SwcFile { path: &path };
-    let neuron = input::open(&path)
-        .and_then(|input| Neuron::read(&file, input, tables))
-        .map_err(|error| source.unreadable(&keys.file, error))?;
-    neuron.parts(shape, look, |sample, part| {
-        match part {
-            Part::Solid(Ok(solid)) => solids.push_any(&solid, look.material),
-            Part::Solid(Err(fault)) if fault.is_degenerate && degenerate == Degenerate::Skip => {
-                solids.skip()
-            }
-            Part::Solid(Err(fault)) => {
-                let column = fault.is_of_radius.then_some("radius");
-                let help = fault.is_degenerate.then_some(SKIP_HELP);
-                return Err(file.error(sample.line, column, fault.message, help));
-            }
-            Part::Free => solids.leave_free(),
+impl SolidFormat for SwcKeys {
+    const WHAT: &'static str = "a neuron in SWC";
+    const EXTENSIONS: &'static [&'static str] = &["swc"];
+}
+
+impl SolidFile for SwcKeys {
+    fn file(&self) -> &Spanned<String> {
+        &self.file
+    }
+
+    fn count(&self, source: &Source, records: Records, solids: &mut ExpectedSolids) {
+        let Ok(shape) = Shape::new(source, self) else {
+            return;
+        };
+        solids.add(shape.joints.kind(), rows(source, &self.file), records);
+        if shape.has_soma {
+            let path = source.resolve(self.file.get_ref());
+            solids.add(SolidKind::Sphere, most_balls(&path), records);
         }
-        .map_err(|refusal| {
-            refusal.in_row(source, &keys.file, |message, help| {
-                file.error(sample.line, None, message, help)
+    }
+
+    /// The samples, which are read before the first becomes a record.
+    fn reading_bytes(&self, source: &Source) -> u64 {
+        rows(source, &self.file).saturating_mul(SAMPLE_BYTES)
+    }
+
+    /// Adds the segments in the order of their samples, then the balls of somata.
+    fn add(&self, context: &Context, solids: &mut SolidCollector) -> Result<(), SceneError> {
+        let source = context.source;
+        let look = context.look(self.caps.as_ref(), self.material.as_ref())?;
+        let degenerate = context.degenerate(self.degenerate.as_ref())?;
+        let shape = Shape::new(source, self)?;
+        let path = source.resolve(self.file.get_ref());
+        let file = SwcFile { path: &path };
+        let neuron = input::open(&path)
+            .and_then(|input| Neuron::read(&file, input, context.tables))
+            .map_err(|error| source.unreadable(&self.file, error))?;
+        neuron.parts(shape, look, |sample, part| {
+            match part {
+                Part::Solid(Ok(solid)) => solids.push_any(&solid, look.material),
+                Part::Solid(Err(fault))
+                    if fault.is_degenerate && degenerate == Degenerate::Skip =>
+                {
+                    solids.skip()
+                }
+                Part::Solid(Err(fault)) => {
+                    let column = fault.is_of_radius.then_some("radius");
+                    let help = fault.is_degenerate.then_some(SKIP_HELP);
+                    return Err(file.error(sample.line, column, fault.message, help));
+                }
+                Part::Free => solids.leave_free(),
+            }
+            .map_err(|refusal| {
+                refusal.in_row(source, &self.file, |message, help| {
+                    file.error(sample.line, None, message, help)
+                })
             })
         })
-    })
+    }
 }
 
 /// Reads the samples of a neuron in SWC and checks that they form trees, as a scene
@@ -196,7 +237,7 @@ pub fn check_swc(input: impl Read, path: &Path) -> Result<(), SceneError> {
 
 /// The most balls that the somata of a file are: one for each sample of a soma. 0 of what
 /// cannot be read, or only once, such as a pipe.
-pub(super) fn most_balls(path: &Path) -> u64 {
+fn most_balls(path: &Path) -> u64 {
     if !path.is_file() {
         return 0;
     }

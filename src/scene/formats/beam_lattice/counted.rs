@@ -19,7 +19,7 @@ use crate::solid::SolidKind;
 
 /// Counts the solids of a `[[beam_lattice]]`. Half a ball counts also if a greater ball at its
 /// vertex will contain it.
-pub(in crate::scene) fn count(
+pub(super) fn count(
     source: &Source,
     file: &Spanned<String>,
     records: Records,

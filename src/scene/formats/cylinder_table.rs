@@ -1,55 +1,102 @@
 //! Cylinders from the rows of a table.
 
 use glam::DVec3;
+use serde::Deserialize;
 use toml::Spanned;
 
-use super::description::CylinderRecord;
-use super::error::SceneError;
-use super::named_table::{NamedTable, TableKeys, Tables, keys_of};
-use super::solid_collector::{Degenerate, Look, SKIP_HELP, SolidCollector, is_degenerate};
-use super::solid_keys::{CylinderColumns, CylinderTableKeys};
-use super::source::Source;
-use super::table::{Column, ColumnKey, Fault, Row};
-use super::values::Keys;
+use super::{Context, SolidFile, SolidFormat};
 use crate::math::unit;
-use crate::solid::{Caps, Cylinder, CylinderError};
+use crate::scene::contents::ExpectedSolids;
+use crate::scene::cylinder_list::Records;
+use crate::scene::description::CylinderRecord;
+use crate::scene::document::ThreeColumns;
+use crate::scene::error::SceneError;
+use crate::scene::named_table::{NamedTable, TableKeys, keys_of, table_rows};
+use crate::scene::solid_collector::{Degenerate, SKIP_HELP, SolidCollector, is_degenerate};
+use crate::scene::source::Source;
+use crate::scene::table::{Column, ColumnKey, Fault, Row};
+use crate::scene::values::Keys;
+use crate::solid::{Caps, Cylinder, CylinderError, SolidKind};
 
-/// Adds the rows of a `[[cylinder_table]]`.
-pub(super) fn add_table(
-    solids: &mut SolidCollector,
-    tables: &Tables,
-    keys: &CylinderTableKeys,
-    look: Look,
-    degenerate: Degenerate,
-) -> Result<(), SceneError> {
-    let source = tables.source;
-    let table = TableKeys {
-        file: &keys.file,
-        delimiter: keys.delimiter.as_ref(),
-        decimal: keys.decimal.as_ref(),
-    };
-    let columns = &keys.columns;
-    let mut table = tables.open(table, &columns.get_ref().0.all())?;
-    let layout = Layout::new(source, &table, columns)?;
-    table.note_unread(&layout.all());
-    let before = solids.numbers();
-    solids.solids.cylinders.reserve(table.most_rows());
-    while let Some(row) = table.next_row(size_of::<CylinderRecord>())? {
-        match layout.cylinder(&row, look.caps) {
-            Ok(cylinder) => solids.push(cylinder, look.material),
-            Err(Fault::Degenerate { .. }) if degenerate == Degenerate::Skip => solids.skip(),
-            Err(fault) => return Err(row.refused_with_help(fault, Some(SKIP_HELP))),
+/// `[[cylinder_table]]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct CylinderTableKeys {
+    file: Spanned<String>,
+    columns: Spanned<Keys<CylinderColumns>>,
+    delimiter: Option<Spanned<String>>,
+    decimal: Option<Spanned<String>>,
+    degenerate: Option<Spanned<String>>,
+    caps: Option<Spanned<String>>,
+    material: Option<Spanned<String>>,
+}
+
+/// `columns` of `[[cylinder_table]]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct CylinderColumns {
+    #[serde(alias = "start")]
+    p0: ThreeColumns,
+    p1: Option<ThreeColumns>,
+    axis: Option<ThreeColumns>,
+    length: Option<Spanned<ColumnKey>>,
+    radius: Option<Spanned<ColumnKey>>,
+    diameter: Option<Spanned<ColumnKey>>,
+}
+
+impl SolidFormat for CylinderTableKeys {
+    const WHAT: &'static str = "a table";
+    const EXTENSIONS: &'static [&'static str] = &["csv", "tsv"];
+    const EXAMPLE: &'static str = r#"columns = { p0 = ["startX", "startY", "startZ"], p1 = ["endX", "endY", "endZ"], radius = "radius" }"#;
+}
+
+impl SolidFile for CylinderTableKeys {
+    fn file(&self) -> &Spanned<String> {
+        &self.file
+    }
+
+    fn has_rows(&self) -> bool {
+        true
+    }
+
+    fn count(&self, source: &Source, records: Records, solids: &mut ExpectedSolids) {
+        let Keys(columns) = self.columns.get_ref();
+        let rows = table_rows(source, &self.file, &columns.p0);
+        solids.add(SolidKind::Cylinder, rows, records);
+    }
+
+    fn add(&self, context: &Context, solids: &mut SolidCollector) -> Result<(), SceneError> {
+        let source = context.source;
+        let look = context.look(self.caps.as_ref(), self.material.as_ref())?;
+        let degenerate = context.degenerate(self.degenerate.as_ref())?;
+        let table = TableKeys {
+            file: &self.file,
+            delimiter: self.delimiter.as_ref(),
+            decimal: self.decimal.as_ref(),
+        };
+        let columns = &self.columns;
+        let mut table = context.tables.open(table, &columns.get_ref().0.all())?;
+        let layout = Layout::new(source, &table, columns)?;
+        table.note_unread(&layout.all());
+        let before = solids.numbers();
+        solids.solids.cylinders.reserve(table.most_rows());
+        while let Some(row) = table.next_row(size_of::<CylinderRecord>())? {
+            match layout.cylinder(&row, look.caps) {
+                Ok(cylinder) => solids.push(cylinder, look.material),
+                Err(Fault::Degenerate { .. }) if degenerate == Degenerate::Skip => solids.skip(),
+                Err(fault) => return Err(row.refused_with_help(fault, Some(SKIP_HELP))),
+            }
+            .map_err(|refusal| {
+                refusal.in_row(source, &self.file, |message, help| {
+                    row.error_with_help(None, message, help)
+                })
+            })?;
         }
-        .map_err(|refusal| {
-            refusal.in_row(source, &keys.file, |message, help| {
-                row.error_with_help(None, message, help)
-            })
-        })?;
+        if solids.numbers() == before {
+            return Err(source.error(self.file.span(), "the table has a header but no rows"));
+        }
+        Ok(())
     }
-    if solids.numbers() == before {
-        return Err(source.error(keys.file.span(), "the table has a header but no rows"));
-    }
-    Ok(())
 }
 
 impl CylinderColumns {
