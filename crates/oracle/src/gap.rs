@@ -45,7 +45,10 @@ use cyltrace::solid::Cylinder;
 /// When the ray is not valid ([`Ray::is_valid`]).
 #[must_use]
 pub fn gap(cylinder: &Cylinder, ray: &Ray, hit: Option<&TrueHit>) -> f64 {
-    assert!(ray.is_valid(), "a gap is of a valid ray, and this is {ray:?}");
+    assert!(
+        ray.is_valid(),
+        "a gap is of a valid ray, and this is {ray:?}"
+    );
     let case = Case::new(cylinder, ray, hit.map(TrueHit::t_f64));
     let mut gap = case.tangency().min(case.rim(false)).min(case.rim(true));
     for end in [case.t_min, case.t_max] {

@@ -39,7 +39,10 @@ impl ExactRay {
     /// When the ray is not valid ([`Ray::is_valid`]).
     #[must_use]
     pub fn new(ray: &Ray) -> Self {
-        assert!(ray.is_valid(), "the oracle takes valid rays, and this is {ray:?}");
+        assert!(
+            ray.is_valid(),
+            "the oracle takes valid rays, and this is {ray:?}"
+        );
         Self {
             origin: ExactVector::new(ray.origin),
             direction: ExactVector::new(ray.direction),
