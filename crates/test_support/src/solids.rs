@@ -61,31 +61,6 @@ pub fn crowd(seed: u64, count: u64) -> Vec<AnySolid> {
         .collect()
 }
 
-/// A cylinder as the cone with equal radii.
-fn as_cone(cylinder: &Cylinder) -> Cone {
-    let radius = cylinder.radius();
-    Cone::new(
-        cylinder.p0(),
-        cylinder.p1(),
-        radius,
-        radius,
-        cylinder.caps(),
-    )
-    .unwrap()
-}
-
-/// Whether a solid contains a point, in exact arithmetic.
-pub fn truly_holds(solid: &AnySolid, point: DVec3) -> bool {
-    match solid {
-        AnySolid::Cylinder(one) => cyltrace_oracle::cone_holds(&as_cone(one), point),
-        AnySolid::Cone(one) => cyltrace_oracle::cone_holds(one, point),
-        AnySolid::RoundedCone(one) => cyltrace_oracle::rounded_cone_holds(one, point),
-        AnySolid::Sphere(one) => cyltrace_oracle::sphere_holds(one, point),
-        AnySolid::Cuboid(one) => cyltrace_oracle::cuboid_holds(one, point),
-        AnySolid::Disk(one) => cyltrace_oracle::disk_holds(one, point),
-    }
-}
-
 /// A ray through the unit cube, from outside of it.
 pub fn ray_through(random: &mut Random) -> Ray {
     let mut inside = || DVec3::new(random.unit(), random.unit(), random.unit());
