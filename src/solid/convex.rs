@@ -1,9 +1,9 @@
-//! What a solid has to know of itself.
+//! What every kind of solid implements.
 //!
 //! Solids are closed convex sets (a disk is one without an inside), so a line is
-//! inside one in a single closed interval, its [`Chord`]. All that is asked of a
-//! ray follows from that interval and from which parts of the boundary are
-//! there; `chord.rs` has the one step that turns it into hits.
+//! inside one in a single closed interval, its [`Chord`]. Every query of a
+//! ray follows from that interval and from which parts of the boundary exist;
+//! `chord.rs` has the one step that turns it into hits.
 
 use std::cmp::Ordering;
 use std::fmt::Debug;
@@ -14,8 +14,7 @@ use super::quick::{Quick, Range};
 use super::{Caps, Chord, Intersection, RayOrigin, SolidKind, SurfacePoint};
 use crate::math::Bounds;
 
-/// A kind of solid. Adding one is a file with an implementation of this, and its
-/// truth in `oracle`.
+/// A kind of solid, which is a row of [`for_each_solid!`](crate::for_each_solid).
 ///
 /// Solvers are given a ray's origin as seen from the solid's
 /// [anchor](ConvexSolid::anchor): the difference is taken once, relative to
@@ -35,6 +34,18 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
 
     /// The point that the solver counts from.
     fn anchor(&self) -> DVec3;
+
+    /// Its own center, about which it is turned: the middle of the axis, if it has one,
+    /// rounded.
+    fn center(&self) -> DVec3;
+
+    /// The radius of its thickest part; of a cuboid half of its least width.
+    fn radius(&self) -> f64;
+
+    /// Whether its surface is the boundary of a solid with an inside.
+    fn is_closed(&self) -> bool {
+        self.caps() == Caps::Both
+    }
 
     /// Which disks the surface has; [`Caps::Both`] for solids without open ends.
     fn caps(&self) -> Caps {

@@ -206,6 +206,14 @@ impl ConvexSolid for Cylinder {
         self.p0
     }
 
+    fn center(&self) -> DVec3 {
+        middle(self.p0(), self.p1())
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius
+    }
+
     fn caps(&self) -> Caps {
         self.caps
     }
@@ -240,6 +248,11 @@ impl ConvexSolid for Cylinder {
     fn size(&self) -> f64 {
         (self.p1 - self.p0).length() + 2.0 * self.radius
     }
+}
+
+/// The middle between two points. Halves are exact, so only their sum is rounded.
+pub(super) fn middle(p0: DVec3, p1: DVec3) -> DVec3 {
+    p0 * 0.5 + p1 * 0.5
 }
 
 /// How far a disk across the axis `a` reaches from its middle, rounded up.

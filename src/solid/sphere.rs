@@ -89,6 +89,14 @@ impl ConvexSolid for Sphere {
         self.center
     }
 
+    fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius
+    }
+
     #[inline]
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
         ball::chord(from_anchor, direction, self.radius, Part::Side)

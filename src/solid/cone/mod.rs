@@ -10,7 +10,7 @@ pub(super) mod wall;
 
 use glam::DVec3;
 
-use super::cylinder::disk_reach;
+use super::cylinder::{disk_reach, middle};
 use super::exact::{self, Expression, Number, difference, dot};
 use super::passing::Line;
 use super::quick::{Quick, Range};
@@ -150,6 +150,14 @@ impl ConvexSolid for Cone {
 
     fn anchor(&self) -> DVec3 {
         self.ends.p0
+    }
+
+    fn center(&self) -> DVec3 {
+        middle(self.p0(), self.p1())
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius0().max(self.radius1())
     }
 
     fn caps(&self) -> Caps {

@@ -133,6 +133,14 @@ impl ConvexSolid for Cuboid {
         self.center
     }
 
+    fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    fn radius(&self) -> f64 {
+        self.half_widths.min_element()
+    }
+
     #[inline]
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
         chord::chord(self, from_anchor, direction)

@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::cone::Ends;
 use super::cone::wall::{Fit, Measures, Taper};
+use super::cylinder::middle;
 use super::exact::{self, Expression, Number, difference, dot};
 use super::passing::Line;
 use super::quick::{Quick, Range};
@@ -149,6 +150,14 @@ impl ConvexSolid for RoundedCone {
 
     fn anchor(&self) -> DVec3 {
         self.ends.p0
+    }
+
+    fn center(&self) -> DVec3 {
+        middle(self.p0(), self.p1())
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius0().max(self.radius1())
     }
 
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
