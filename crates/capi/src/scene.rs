@@ -1,16 +1,17 @@
 //! Scenes: loaded, traced, freed.
 
 use std::ffi::{CStr, c_char, c_int};
+use std::mem::MaybeUninit;
 use std::path::Path;
 use std::ptr;
 use std::slice;
 use std::sync::{Arc, OnceLock};
 
 use super::status::{CYLTRACE_ERROR, CYLTRACE_OK, guarded};
-use super::types::{ALL_FIELDS, CyltraceHit, CyltraceRay, fields_of};
+use super::types::{CYLTRACE_FIELD_ALL, CyltraceHit, CyltraceRay, fields_of};
 use cyltrace::math::Ray;
 use cyltrace::scene::{self, Scene};
-use cyltrace::tracer::{BuildTime, HitFields, Options, Tracer};
+use cyltrace::tracer::{BuildTime, Options, PartialHit, Tracer};
 
 /// `struct cyltrace_scene`: a scene, and its tracer once rays are traced.
 pub struct CyltraceScene {
@@ -21,7 +22,7 @@ pub struct CyltraceScene {
 impl CyltraceScene {
     fn tracer(&self) -> Result<&Tracer, String> {
         let build = || {
-            // Errors are told here; a ray that comes later could not.
+            // An error is returned here; a later ray could not return it.
             let options = Options {
                 build: BuildTime::AtOnce,
                 ..Options::default()
@@ -71,11 +72,15 @@ pub unsafe extern "C" fn cyltrace_scene_free(scene: *mut CyltraceScene) {
     });
 }
 
+/// The most rays that are traced together: enough for packets of neighbors, few enough that
+/// a call needs at most 2 MB beside the caller's arrays.
+const BATCH: usize = 4096;
+
 /// The first hit of each of `count` rays.
 ///
 /// # Safety
 /// `scene` is null or a live scene; `rays` and `hits` are null or point to
-/// `count` values, `hits` to such as nobody else uses.
+/// `count` values; nothing else uses `hits` during the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cyltrace_closest(
     scene: *const CyltraceScene,
@@ -83,12 +88,12 @@ pub unsafe extern "C" fn cyltrace_closest(
     count: usize,
     hits: *mut CyltraceHit,
 ) -> c_int {
-    let answer = |tracer: &Tracer, ray: &Ray| first_hit(tracer, ray, ALL_FIELDS);
+    let fields = CYLTRACE_FIELD_ALL;
     // SAFETY: the caller makes the promise of the function called here.
-    unsafe { for_each_ray("cyltrace_closest", scene, rays, count, hits, answer) }
+    unsafe { closest("cyltrace_closest", scene, rays, count, fields, hits) }
 }
 
-/// The first hit of each of `count` rays, with only some fields worked out: a sum of
+/// The first hit of each of `count` rays, with only the fields in `fields`, a sum of
 /// `CYLTRACE_FIELD_...`.
 ///
 /// # Safety
@@ -101,20 +106,34 @@ pub unsafe extern "C" fn cyltrace_closest_with(
     fields: u32,
     hits: *mut CyltraceHit,
 ) -> c_int {
-    let function = "cyltrace_closest_with";
-    let Some(fields) =
-        guarded(|| fields_of(fields).map_err(|error| format!("{function}: {error}")))
-    else {
-        return CYLTRACE_ERROR;
-    };
-    let answer = |tracer: &Tracer, ray: &Ray| first_hit(tracer, ray, fields);
     // SAFETY: the caller makes the promise of the function called here.
-    unsafe { for_each_ray(function, scene, rays, count, hits, answer) }
+    unsafe { closest("cyltrace_closest_with", scene, rays, count, fields, hits) }
 }
 
-fn first_hit(tracer: &Tracer, ray: &Ray, fields: HitFields) -> CyltraceHit {
-    let hit = tracer.closest_with(ray, fields);
-    hit.as_ref().map_or(CyltraceHit::MISS, CyltraceHit::from)
+/// Both functions for closest hits; `function` is the name in messages.
+///
+/// # Safety
+/// As for [`cyltrace_closest`].
+unsafe fn closest(
+    function: &str,
+    scene: *const CyltraceScene,
+    rays: *const CyltraceRay,
+    count: usize,
+    fields: u32,
+    hits: *mut CyltraceHit,
+) -> c_int {
+    let done = guarded(|| {
+        let fields = fields_of(fields).map_err(|error| format!("{function}: {error}"))?;
+        let trace = |tracer: &Tracer, rays: &[Ray], hits: &mut Vec<Option<PartialHit>>| match rays {
+            [ray] => hits.push(tracer.closest_with(ray, fields)),
+            _ => tracer.closest_batch_with(rays, fields, hits),
+        };
+        let in_c =
+            |hit: Option<PartialHit>| hit.as_ref().map_or(CyltraceHit::MISS, CyltraceHit::from);
+        // SAFETY: the caller makes the promise of the function called here.
+        unsafe { for_each_ray(function, scene, rays, count, hits, trace, in_c) }
+    });
+    done.map_or(CYLTRACE_ERROR, |()| CYLTRACE_OK)
 }
 
 /// Whether each of `count` rays hits anything: 1 or 0.
@@ -128,57 +147,59 @@ pub unsafe extern "C" fn cyltrace_occluded(
     count: usize,
     occluded: *mut u8,
 ) -> c_int {
-    // SAFETY: the caller makes the promise of the function called here.
-    unsafe {
-        for_each_ray(
-            "cyltrace_occluded",
-            scene,
-            rays,
-            count,
-            occluded,
-            |tracer, ray| u8::from(tracer.occluded(ray)),
-        )
-    }
+    let done = guarded(|| {
+        let function = "cyltrace_occluded";
+        let trace = |tracer: &Tracer, rays: &[Ray], blocked: &mut Vec<bool>| match rays {
+            [ray] => blocked.push(tracer.occluded(ray)),
+            _ => tracer.occluded_batch(rays, blocked),
+        };
+        // SAFETY: the caller makes the promise of the function called here.
+        unsafe { for_each_ray(function, scene, rays, count, occluded, trace, u8::from) }
+    });
+    done.map_or(CYLTRACE_ERROR, |()| CYLTRACE_OK)
 }
 
-/// Writes an answer for each ray.
+/// Writes a result for each ray: what `trace` finds for a batch, converted by `in_c`.
 ///
 /// # Safety
 /// As for [`cyltrace_closest`].
-unsafe fn for_each_ray<A>(
+unsafe fn for_each_ray<T, A>(
     function: &str,
     scene: *const CyltraceScene,
     rays: *const CyltraceRay,
     count: usize,
-    answers: *mut A,
-    answer: impl Fn(&Tracer, &Ray) -> A,
-) -> c_int {
-    let done = guarded(|| {
-        // SAFETY: invariants 1 and 2: null or a live scene, which is only read.
-        let scene = unsafe { scene.as_ref() };
-        let scene = scene.ok_or_else(|| format!("{function}: scene is null"))?;
-        let tracer = scene.tracer()?;
-        if count == 0 {
-            return Ok(());
+    results: *mut A,
+    trace: impl Fn(&Tracer, &[Ray], &mut Vec<T>),
+    in_c: impl Fn(T) -> A,
+) -> Result<(), String> {
+    // SAFETY: invariants 1 and 2: null or a live scene, which is only read.
+    let scene = unsafe { scene.as_ref() };
+    let scene = scene.ok_or_else(|| format!("{function}: scene is null"))?;
+    let tracer = scene.tracer()?;
+    if count == 0 {
+        return Ok(());
+    }
+    if rays.is_null() || results.is_null() {
+        return Err(format!(
+            "{function}: an array is null, and count is {count}"
+        ));
+    }
+    check_array::<CyltraceRay>(function, rays, count)?;
+    check_array::<A>(function, results, count)?;
+    // SAFETY: invariant 1: neither null nor impossible, so `count` rays.
+    let rays = unsafe { slice::from_raw_parts(rays, count) };
+    // SAFETY: invariant 1: likewise `count` places, whose bytes may be anything before.
+    let results = unsafe { slice::from_raw_parts_mut(results.cast::<MaybeUninit<A>>(), count) };
+    let (mut batch, mut found) = (Vec::new(), Vec::new());
+    for (rays, results) in rays.chunks(BATCH).zip(results.chunks_mut(BATCH)) {
+        batch.clear();
+        batch.extend(rays.iter().map(Ray::from));
+        trace(tracer, &batch, &mut found);
+        for (result, found) in results.iter_mut().zip(found.drain(..)) {
+            result.write(in_c(found));
         }
-        if rays.is_null() || answers.is_null() {
-            return Err(format!(
-                "{function}: an array is null, and count is {count}"
-            ));
-        }
-        check_array::<CyltraceRay>(function, rays, count)?;
-        check_array::<A>(function, answers, count)?;
-        // SAFETY: invariant 1: neither null nor impossible, so `count` rays.
-        let rays = unsafe { slice::from_raw_parts(rays, count) };
-        for (number, ray) in rays.iter().enumerate() {
-            let answer = answer(tracer, &Ray::from(ray));
-            // SAFETY: invariant 1: not null, so `count` places, which may hold
-            // anything before.
-            unsafe { answers.add(number).write(answer) };
-        }
-        Ok(())
-    });
-    done.map_or(CYLTRACE_ERROR, |()| CYLTRACE_OK)
+    }
+    Ok(())
 }
 
 /// Refuses an array that no program can have: one that is not aligned, or that takes

@@ -43,9 +43,6 @@ const FIELDS: [(HitFields, u32); 5] = [
     (HitFields::PATH, CYLTRACE_FIELD_PATH),
 ];
 
-/// The fields of `CYLTRACE_FIELD_ALL`: all that `struct cyltrace_hit` has.
-pub(super) const ALL_FIELDS: HitFields = HitFields::all().difference(HitFields::SPAWN);
-
 /// The fields of a sum of their codes. The error is a message: another number is in it.
 pub(super) fn fields_of(codes: u32) -> Result<HitFields, String> {
     if codes & !CYLTRACE_FIELD_ALL != 0 {
