@@ -9,6 +9,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::status::{CYLTRACE_ERROR, CYLTRACE_OK, guarded};
 use super::types::{CYLTRACE_FIELD_ALL, CyltraceHit, CyltraceRay, fields_of};
+use super::version::{CyltraceLayout, check_size};
 use cyltrace::math::Ray;
 use cyltrace::scene::{self, Scene};
 use cyltrace::tracer::{BuildTime, Options, PartialHit, Tracer};
@@ -35,16 +36,29 @@ impl CyltraceScene {
     }
 }
 
-/// Loads the scene file `path`; null on failure.
+/// Loads the scene file `path` for a program with the layout `program`; null on failure.
 ///
 /// # Safety
-/// `path` is null or a text that ends with a NUL.
+/// `path` is null or a text that ends with a NUL; `program` is null or points to as many
+/// bytes as its first field says.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn cyltrace_scene_load(path: *const c_char) -> *mut CyltraceScene {
+pub unsafe extern "C" fn cyltrace_scene_load_checked(
+    path: *const c_char,
+    program: *const CyltraceLayout,
+) -> *mut CyltraceScene {
     let loaded = guarded(|| {
+        let fault = |fault: String| format!("cyltrace_scene_load: {fault}");
         if path.is_null() {
-            return Err("cyltrace_scene_load: path is null".to_owned());
+            return Err(fault("path is null".to_owned()));
         }
+        if program.is_null() {
+            return Err(fault("program is null".to_owned()));
+        }
+        // SAFETY: invariant 1: not null, and the first field is there in every version.
+        let size = unsafe { program.cast::<u32>().read() };
+        check_size(size).map_err(fault)?;
+        // SAFETY: invariant 1: not null, and of the size that was just checked.
+        unsafe { program.read() }.check().map_err(fault)?;
         // SAFETY: invariant 1: not null, so a text with its NUL.
         let path = unsafe { CStr::from_ptr(path) };
         let scene = scene::load(&native_path(path)?).map_err(|error| error.to_string())?;
@@ -59,7 +73,7 @@ pub unsafe extern "C" fn cyltrace_scene_load(path: *const c_char) -> *mut Cyltra
 /// Frees a scene; null is ignored.
 ///
 /// # Safety
-/// `scene` is null or came from [`cyltrace_scene_load`], was not freed, and no
+/// `scene` is null or came from [`cyltrace_scene_load_checked`], was not freed, and no
 /// call uses it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cyltrace_scene_free(scene: *mut CyltraceScene) {
