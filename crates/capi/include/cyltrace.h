@@ -158,9 +158,10 @@ struct cyltrace_hit {
  * it, the one with the least path of instances, then the least primitive. Runs on the calling
  * thread. Arrays may be NULL if count is 0.
  *
- * Large arrays are faster than single rays: the rays are traced in batches, and coherent
- * ones, such as neighbors in a picture, in packets. The hits have the same bits either way.
- * A call takes at most 2 MB of memory besides the arrays.
+ * Arrays of 16 rays and more are traced in packets of 16 where the rays are coherent, which
+ * is about twice as fast. So let neighbors in the array be neighbors in the picture: tiles of
+ * 4 by 4 pixels are better than rows. The hits have the same bits either way. A call takes at
+ * most 2 MB of memory besides the arrays.
  */
 int cyltrace_closest(const struct cyltrace_scene *scene,
                      const struct cyltrace_ray *rays, size_t count,

@@ -12,7 +12,7 @@ use super::types::{CYLTRACE_FIELD_ALL, CyltraceHit, CyltraceRay, fields_of};
 use super::version::{CyltraceLayout, check_size};
 use cyltrace::math::Ray;
 use cyltrace::scene::{self, Scene};
-use cyltrace::tracer::{BuildTime, Options, PartialHit, Tracer};
+use cyltrace::tracer::{BuildTime, FirstHit, HitFields, Options, Tracer};
 
 /// `struct cyltrace_scene`: a scene, and its tracer once rays are traced.
 pub struct CyltraceScene {
@@ -90,6 +90,10 @@ pub unsafe extern "C" fn cyltrace_scene_free(scene: *mut CyltraceScene) {
 /// a call needs at most 2 MB beside the caller's arrays.
 const BATCH: usize = 4096;
 
+/// Fewer rays than a packet are traced one by one: with its own few rays, a call cannot find
+/// out whether packets pay.
+const LEAST_BATCH: usize = 16;
+
 /// The first hit of each of `count` rays.
 ///
 /// # Safety
@@ -138,16 +142,32 @@ unsafe fn closest(
 ) -> c_int {
     let done = guarded(|| {
         let fields = fields_of(fields).map_err(|error| format!("{function}: {error}"))?;
-        let trace = |tracer: &Tracer, rays: &[Ray], hits: &mut Vec<Option<PartialHit>>| match rays {
-            [ray] => hits.push(tracer.closest_with(ray, fields)),
-            _ => tracer.closest_batch_with(rays, fields, hits),
+        let single = |tracer: &Tracer, ray: &Ray| {
+            let first = tracer.first_hit(ray);
+            first.map_or(CyltraceHit::MISS, |first| in_c(tracer, ray, &first, fields))
         };
-        let in_c =
-            |hit: Option<PartialHit>| hit.as_ref().map_or(CyltraceHit::MISS, CyltraceHit::from);
+        let mut found = Vec::new();
+        let batch = |tracer: &Tracer, rays: &[Ray], hits: &mut [MaybeUninit<CyltraceHit>]| {
+            tracer.first_hits(rays, &mut found);
+            for ((ray, first), hit) in rays.iter().zip(&found).zip(hits) {
+                match first {
+                    Some(first) => hit.write(in_c(tracer, ray, first, fields)),
+                    None => hit.write(CyltraceHit::MISS),
+                };
+            }
+        };
         // SAFETY: the caller makes the promise of the function called here.
-        unsafe { for_each_ray(function, scene, rays, count, hits, trace, in_c) }
+        unsafe { for_each_ray(function, scene, rays, count, hits, single, batch) }
     });
     done.map_or(CYLTRACE_ERROR, |()| CYLTRACE_OK)
+}
+
+/// The hit with only those fields. The path is copied from the first hit, as that of a
+/// [`Hit`](cyltrace::tracer::Hit) is allocated.
+fn in_c(tracer: &Tracer, ray: &Ray, first: &FirstHit, fields: HitFields) -> CyltraceHit {
+    let path = fields.contains(HitFields::PATH).then(|| first.instance());
+    let hit = tracer.hit_with(ray, first, fields.difference(HitFields::PATH));
+    CyltraceHit::new(&hit, path)
 }
 
 /// Whether each of `count` rays hits anything: 1 or 0.
@@ -163,28 +183,32 @@ pub unsafe extern "C" fn cyltrace_occluded(
 ) -> c_int {
     let done = guarded(|| {
         let function = "cyltrace_occluded";
-        let trace = |tracer: &Tracer, rays: &[Ray], blocked: &mut Vec<bool>| match rays {
-            [ray] => blocked.push(tracer.occluded(ray)),
-            _ => tracer.occluded_batch(rays, blocked),
+        let single = |tracer: &Tracer, ray: &Ray| u8::from(tracer.occluded(ray));
+        let mut found = Vec::new();
+        let batch = |tracer: &Tracer, rays: &[Ray], occluded: &mut [MaybeUninit<u8>]| {
+            tracer.occluded_batch(rays, &mut found);
+            for (&found, occluded) in found.iter().zip(occluded) {
+                occluded.write(found.into());
+            }
         };
         // SAFETY: the caller makes the promise of the function called here.
-        unsafe { for_each_ray(function, scene, rays, count, occluded, trace, u8::from) }
+        unsafe { for_each_ray(function, scene, rays, count, occluded, single, batch) }
     });
     done.map_or(CYLTRACE_ERROR, |()| CYLTRACE_OK)
 }
 
-/// Writes a result for each ray: what `trace` finds for a batch, converted by `in_c`.
+/// Writes a result for each ray: of a few rays by `single`, of a batch by `batch`.
 ///
 /// # Safety
 /// As for [`cyltrace_closest`].
-unsafe fn for_each_ray<T, A>(
+unsafe fn for_each_ray<A>(
     function: &str,
     scene: *const CyltraceScene,
     rays: *const CyltraceRay,
     count: usize,
     results: *mut A,
-    trace: impl Fn(&Tracer, &[Ray], &mut Vec<T>),
-    in_c: impl Fn(T) -> A,
+    single: impl Fn(&Tracer, &Ray) -> A,
+    mut batch: impl FnMut(&Tracer, &[Ray], &mut [MaybeUninit<A>]),
 ) -> Result<(), String> {
     // SAFETY: invariants 1 and 2: null or a live scene, which is only read.
     let scene = unsafe { scene.as_ref() };
@@ -204,13 +228,16 @@ unsafe fn for_each_ray<T, A>(
     let rays = unsafe { slice::from_raw_parts(rays, count) };
     // SAFETY: invariant 1: likewise `count` places, whose bytes may be anything before.
     let results = unsafe { slice::from_raw_parts_mut(results.cast::<MaybeUninit<A>>(), count) };
-    let (mut batch, mut found) = (Vec::new(), Vec::new());
+    let mut converted = Vec::new();
     for (rays, results) in rays.chunks(BATCH).zip(results.chunks_mut(BATCH)) {
-        batch.clear();
-        batch.extend(rays.iter().map(Ray::from));
-        trace(tracer, &batch, &mut found);
-        for (result, found) in results.iter_mut().zip(found.drain(..)) {
-            result.write(in_c(found));
+        if rays.len() < LEAST_BATCH {
+            for (ray, result) in rays.iter().zip(results) {
+                result.write(single(tracer, &Ray::from(ray)));
+            }
+        } else {
+            converted.clear();
+            converted.extend(rays.iter().map(Ray::from));
+            batch(tracer, &converted, results);
         }
     }
     Ok(())

@@ -225,15 +225,16 @@ fn part_code(part: Part) -> u32 {
     known.expect("every part has a code").1
 }
 
-/// Fields that were not requested are NaN; without its path, a hit has no instances.
-impl From<&PartialHit> for CyltraceHit {
-    fn from(hit: &PartialHit) -> Self {
+impl CyltraceHit {
+    /// A hit and its path. Fields that were not requested are NaN; without a path, the hit
+    /// has no instances.
+    pub(super) fn new(hit: &PartialHit, requested_path: Option<&[u32]>) -> Self {
         let (u, v) = hit.uv().unwrap_or((f64::NAN, f64::NAN));
-        let path = hit.instance().unwrap_or_default();
+        let path = requested_path.unwrap_or_default();
         let mut instance = [0; CYLTRACE_GREATEST_DEPTH];
         instance[..path.len()].copy_from_slice(path);
         let has_normal = hit.normal().map_or(0, |_| CYLTRACE_VALID_NORMAL);
-        let has_place = hit.instance().map_or(0, |_| CYLTRACE_VALID_PLACE);
+        let has_place = requested_path.map_or(0, |_| CYLTRACE_VALID_PLACE);
         Self {
             t: hit.t(),
             point: hit.point().unwrap_or(DVec3::NAN).to_array(),
