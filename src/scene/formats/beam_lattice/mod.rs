@@ -1,4 +1,4 @@
-//! Beam lattices in 3MF: `package` finds the model in the archive, `model` the
+//! Beam lattices in 3MF: `archive` unpacks the file, `package` finds the model, `model` the
 //! objects that it builds, `lattice` the beams and balls of one, `element` reads
 //! XML, `limits` refuses what would take too long, `notes` collects notes for the user,
 //! `counted` computes the number of solids beforehand. Here they become solids.
@@ -19,6 +19,8 @@
 //! the end and is wider and higher than the half; unless the ball at the vertex holds
 //! it anyway.
 
+#[cfg_attr(not(feature = "three-mf"), path = "no_archive.rs")]
+mod archive;
 mod counted;
 mod element;
 mod lattice;
