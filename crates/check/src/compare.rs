@@ -1,5 +1,4 @@
-//! Many rays of every class against both meshes, some against cone curves and a
-//! few against the oracle.
+//! Many rays of every class against both meshes, and a few against the oracle.
 //!
 //! Every number of sides and every class get the same rays: the windows of the
 //! scene take turns, ray `i` belongs to window `i mod windows`. Rays are traced
@@ -20,8 +19,6 @@ use super::bounding_meshes::mesh_frame::MeshFrame;
 use super::bounding_meshes::meshes::{Meshes, Scratch, Seen};
 use super::bounding_meshes::placed::{Budget, windows};
 use super::bounding_meshes::window::Window;
-use super::curves::ConeCurves;
-use super::curves::blocks::curve_block;
 use super::finding::{Intersector, ReportedHit};
 use super::outcome::{Outcome, Violation, Witness};
 use super::rays::RaySource;
@@ -39,9 +36,6 @@ const BLOCK: u64 = 512;
 
 /// One ray of so many is given to the oracle, which takes some milliseconds.
 const RAYS_A_TRUTH: u64 = 1000;
-
-/// One ray of so many is held against the cone curves, which prove nothing.
-const RAYS_A_CURVE: u64 = 10;
 
 /// Is told how many of how many rays are done and what is going on, and may
 /// break off.
@@ -73,8 +67,7 @@ pub fn compare_with(
 ) -> Result<Outcome, CheckError> {
     let windows = chosen_windows(scene, settings)?;
     let device = Device::new(&settings.device)?;
-    let of_class =
-        settings.segments.len() as u64 * settings.rays + settings.rays.div_ceil(RAYS_A_CURVE);
+    let of_class = settings.segments.len() as u64 * settings.rays;
     let run = Run {
         intersector,
         settings,
@@ -161,19 +154,6 @@ impl<I: Intersector> Run<'_, I> {
                 row.add(tally, self.settings.most_listed);
             }
         }
-        self.tell(0, "building cone curves")?;
-        let curves = ConeCurves::of_window(&self.device, about.window, about.frame)?;
-        let with_curves = curves.witnessed_solids();
-        for (&class, row) in self.settings.classes.iter().zip(&mut rows.curves) {
-            let what = format!("{class}, cone curves");
-            let block = BLOCK * RAYS_A_CURVE;
-            let tally = self.trace(about, &what, block, |range, _| {
-                let sample = range.step_by(RAYS_A_CURVE as usize);
-                let indices = sample.map(|number| self.index(about, number));
-                curve_block(about, &curves, self.intersector, class, indices)
-            })?;
-            row.add(tally, self.settings.most_listed);
-        }
         for (&class, row) in self.settings.classes.iter().zip(&mut rows.truths) {
             let what = format!("{class}, oracle");
             let tally = self.trace(about, &what, RAYS_A_TRUTH, |range, _| {
@@ -182,13 +162,7 @@ impl<I: Intersector> Run<'_, I> {
             row.add(tally, self.settings.most_listed);
         }
         let number = about.number;
-        Ok(plan::in_words(
-            about.window,
-            number,
-            self.windows,
-            &missing,
-            with_curves,
-        ))
+        Ok(plan::in_words(about.window, number, self.windows, &missing))
     }
 
     /// Gives the rays of a window to `block`, in ranges of the window's own
@@ -340,8 +314,6 @@ struct Rows {
     /// By segments, then class.
     prisms: Vec<Vec<Tally>>,
     /// By class.
-    curves: Vec<Tally>,
-    /// By class.
     truths: Vec<Tally>,
 }
 
@@ -350,7 +322,6 @@ impl Rows {
         let classes = vec![Tally::default(); settings.classes.len()];
         Self {
             prisms: vec![classes.clone(); settings.segments.len()],
-            curves: classes.clone(),
             truths: classes,
         }
     }
@@ -366,12 +337,9 @@ impl Rows {
                 outcome.violations.append(&mut tally.listed);
             }
         }
-        let curves = (Witness::ConeCurve, self.curves);
-        for (witness, row) in [curves, (Witness::Oracle, self.truths)] {
-            for (&class, mut tally) in settings.classes.iter().zip(row) {
-                outcome.rows.push(tally.row(class, witness, None));
-                outcome.violations.append(&mut tally.listed);
-            }
+        for (&class, mut tally) in settings.classes.iter().zip(self.truths) {
+            outcome.rows.push(tally.row(class, Witness::Oracle, None));
+            outcome.violations.append(&mut tally.listed);
         }
     }
 }

@@ -15,15 +15,12 @@
 //! - `judging`: the sandwich, bounds of the first hit from what a ray meets of both;
 //!   part and normal; suspects judged again, exactly, on the f32 triangles; and
 //!   the same sandwich with exact cylinders in place of prisms, on a sample;
-//! - `curves`: how often Embree's own cone curves, another solver, agree; the
-//!   oracle judges where they do not;
 //! - `compare`: all of it over many rays, and the outcome; `replay`: one ray again;
 //! - `elsewhere`: hits of another program or of a mesh from a file;
 //! - `telling`: what it will take, tables and the page.
 
 mod bounding_meshes;
 mod compare;
-mod curves;
 mod external;
 mod finding;
 mod outcome;

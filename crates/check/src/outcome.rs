@@ -9,8 +9,6 @@ use super::{Class, ReportedHit};
 pub enum Witness {
     /// Inscribed and circumscribed prisms as Embree's triangle meshes.
     Prisms,
-    /// Embree's own `CONE_LINEAR_CURVE`.
-    ConeCurve,
     /// The exact oracle, on a sample.
     Oracle,
     /// A mesh of the user's.
@@ -25,7 +23,6 @@ impl Witness {
     pub fn name(self) -> &'static str {
         match self {
             Self::Prisms => "prisms",
-            Self::ConeCurve => "cone-curve",
             Self::Oracle => "oracle",
             Self::UserMesh => "user-mesh",
             Self::UserHits => "user-hits",
@@ -54,8 +51,7 @@ pub struct ClassRow {
     pub band: u64,
     /// Rays of which the witness cannot tell a lower bound.
     pub unwitnessed: u64,
-    /// Suspects that the f32 triangles, judged exactly, clear, or that the
-    /// oracle clears of what cone curves say: Embree's own errors.
+    /// Suspects that the f32 triangles, judged exactly, clear: Embree's own errors.
     pub triangle_errors: u64,
     /// Answers that are wrong.
     pub violations: u64,
@@ -68,8 +64,7 @@ pub struct ClassRow {
 
 impl ClassRow {
     /// Whether more than half of the rays had no witness: such a row says
-    /// nothing and fails. It is asked of the prisms, which are there for every
-    /// ray: cone curves are not, and the oracle is given a few.
+    /// nothing and fails. The oracle is given a few rays only.
     #[must_use]
     pub fn is_unwitnessed(&self) -> bool {
         self.witness == Witness::Prisms && 2 * self.unwitnessed > self.rays

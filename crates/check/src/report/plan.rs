@@ -56,13 +56,7 @@ pub(crate) struct Missing {
 }
 
 /// What a window held, in a line.
-pub(crate) fn in_words(
-    window: &Window,
-    number: u64,
-    windows: u64,
-    missing: &[Missing],
-    with_curves: usize,
-) -> String {
+pub(crate) fn in_words(window: &Window, number: u64, windows: u64, missing: &[Missing]) -> String {
     let place = match &window.bounds {
         None => String::from("the whole scene"),
         Some(bounds) => format!(
@@ -75,9 +69,7 @@ pub(crate) fn in_words(
     let solids = window.count();
     let segments = missing.iter().map(|one| one.segments).max().unwrap_or(3);
     let bytes = readable(bytes(window, segments));
-    let mut text = format!(
-        "{place}: {solids} solids, about {bytes} with {segments} sides; {with_curves} of them as cone curves"
-    );
+    let mut text = format!("{place}: {solids} solids, about {bytes} with {segments} sides");
     for (kind, count) in [
         ("inscribed", (|one| one.inscribed) as fn(&Missing) -> usize),
         ("circumscribed", |one| one.circumscribed),

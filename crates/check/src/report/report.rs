@@ -228,7 +228,7 @@ fn agreement_table(page: &mut Page, rows: &[Vec<String>]) {
 }
 
 /// How to read the table.
-const READING: &str = "Witnessed: the meshes bound the answer on both sides. Band: the ray meets a circumscribed prism before any certain hit, so that a hit and a miss are both allowed. Unwitnessed: no bound at all. Embree's errors: Embree's triangle test contradicted the answer, and exact arithmetic on the same triangles cleared it; for cone curves, their contradictions that the exact oracle cleared. dt / chord: the greatest way from the answer to the inscribed prism in units of the chord error; far above 4 where a solid is so far or so tiny that f32 moves the prism's corners by more than that.";
+const READING: &str = "Witnessed: the meshes bound the answer on both sides. Band: the ray meets a circumscribed prism before any certain hit, so that a hit and a miss are both allowed. Unwitnessed: no bound at all. Embree's errors: Embree's triangle test contradicted the answer, and exact arithmetic on the same triangles cleared it. dt / chord: the greatest way from the answer to the inscribed prism in units of the chord error; far above 4 where a solid is so far or so tiny that f32 moves the prism's corners by more than that.";
 
 /// How to read the table of hits from elsewhere.
 const READING_TOLD: &str = "Violations: answers that no displacement by the allowed distance explains. Witnessed: answers that agree, or that are wrong. Band: the rest, near a silhouette or an edge or at a low angle, where answers may differ. Unwitnessed: answers about a solid that is thinner than the tolerance.";

@@ -6,7 +6,7 @@ use cyltrace::math::{Random, Ray};
 use cyltrace::scene::{CylinderRecord, MaterialIndex, Scene};
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::Tracer;
-use cyltrace_check::{Class, Intersector, Outcome, ReportedHit, Settings};
+use cyltrace_check::{Class, Intersector, Outcome, ReportedHit, Settings, Witness};
 use glam::{DAffine3, DVec3};
 
 use super::scenes::{prototype, random_cylinder, random_scene};
@@ -187,6 +187,26 @@ fn shifted_hit_is_caught() {
             })
         });
         bites("shifted", &scene, &wrong, 3_000, &Class::ALL);
+    }
+}
+
+/// The oracle judges the sample on its own, whatever the meshes say.
+#[test]
+fn late_hits_are_violations_by_the_oracle() {
+    let scene = scene();
+    let tracer = tracer(&Arc::new(scene.clone()));
+    let late = Tampered(|ray: &Ray| {
+        let hit = Intersector::closest(&tracer, ray)?;
+        let t = hit.t + 0.05;
+        Some(ReportedHit { t, ..hit })
+    });
+    let outcome = checked("late", &scene, &late, &settings(20_000));
+    let oracle = outcome
+        .rows
+        .iter()
+        .filter(|row| row.witness == Witness::Oracle);
+    for row in oracle.filter(|row| row.hits > 0) {
+        assert!(row.violations > 0, "{row:?}");
     }
 }
 

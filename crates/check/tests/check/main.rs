@@ -2,7 +2,6 @@
 //! little does not.
 
 mod bites;
-mod curves;
 mod external_kinds;
 mod extremes;
 mod mesh_verdicts;
