@@ -74,12 +74,12 @@ pub unsafe extern "C" fn cyltrace_check(
     let Some(found) = checked else {
         return CYLTRACE_ERROR;
     };
-    let told = guarded(|| Ok(outcome::of(&found)));
-    let Some(told) = told else {
+    let written = guarded(|| Ok(outcome::of(&found)));
+    let Some(written) = written else {
         return CYLTRACE_ERROR;
     };
     // SAFETY: invariant 1: a null outcome was refused above.
-    unsafe { outcome.write(told) };
+    unsafe { outcome.write(written) };
     if found.holds() {
         CYLTRACE_OK
     } else {

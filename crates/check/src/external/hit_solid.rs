@@ -5,9 +5,9 @@ use glam::{DAffine3, DVec3};
 use super::deviation::{Deviation, Slack};
 use super::nearness::{Frame, PlacedComposition, PlacedSolid};
 use super::tolerance::{Allowance, Margin, farthest, least_radius};
+use crate::solids::scene_solid::{SceneSolid, find};
 use cyltrace::math::Ray;
-use cyltrace::scene::{PrototypeIndex, Scene};
-use cyltrace::solid::{AnySolid, Composition};
+use cyltrace::scene::Scene;
 use cyltrace::tracer::PartialHit;
 
 /// A solid that a ray meets.
@@ -15,7 +15,7 @@ pub(super) struct HitSolid<'a> {
     /// The placements from the root to it, and its number.
     solid: (Vec<u32>, u32),
     frame: Frame,
-    found: Found<'a>,
+    found: SceneSolid<'a>,
     /// How far its box reaches from the world's origin, or those of its leaves.
     pub extent: f64,
     /// At most its least radius in the world, less what its mesh may lack.
@@ -35,12 +35,12 @@ impl<'a> HitSolid<'a> {
             .fold(DAffine3::IDENTITY, |whole, &one| whole * *one);
         let frame = Frame::new(&whole);
         let parts = match &found {
-            Found::Single(solid) => vec![*solid],
-            Found::Composed(solid) => solid.solids(),
+            SceneSolid::Single(solid) => vec![*solid],
+            SceneSolid::Composed(solid) => solid.solids(),
         };
         let slack = match (&found, &parts[..]) {
-            (Found::Single(solid), _) => deviation.slack(solid),
-            (Found::Composed(_), parts) => {
+            (SceneSolid::Single(solid), _) => deviation.slack(solid),
+            (SceneSolid::Composed(_), parts) => {
                 Slack::of_parts(parts.iter().map(|part| deviation.slack(part)))
             }
         };
@@ -80,10 +80,10 @@ impl<'a> HitSolid<'a> {
     pub fn is_crossed(&self, ray: &Ray, (start, end): (f64, f64), margin: Margin) -> bool {
         let frame = &self.frame;
         match self.found {
-            Found::Single(solid) => {
+            SceneSolid::Single(solid) => {
                 PlacedSolid { solid, frame }.is_crossed(ray, (start, end), margin)
             }
-            Found::Composed(solid) => {
+            SceneSolid::Composed(solid) => {
                 let placed = PlacedComposition { solid, frame };
                 placed.is_crossed(ray, (start, end), margin, &self.at)
             }
@@ -94,8 +94,8 @@ impl<'a> HitSolid<'a> {
     pub fn is_far(&self, point: DVec3, margin: Margin) -> bool {
         let frame = &self.frame;
         match self.found {
-            Found::Single(solid) => PlacedSolid { solid, frame }.is_far(point, margin),
-            Found::Composed(_) => false,
+            SceneSolid::Single(solid) => PlacedSolid { solid, frame }.is_far(point, margin),
+            SceneSolid::Composed(_) => false,
         }
     }
 
@@ -103,43 +103,14 @@ impl<'a> HitSolid<'a> {
     pub fn is_near(&self, point: DVec3, margin: Margin) -> bool {
         let frame = &self.frame;
         match self.found {
-            Found::Single(solid) => PlacedSolid { solid, frame }.is_near(point, margin),
+            SceneSolid::Single(solid) => PlacedSolid { solid, frame }.is_near(point, margin),
             // Near one of the surfaces that it is made of, there may be nothing of it.
-            Found::Composed(_) => false,
+            SceneSolid::Composed(_) => false,
         }
     }
 }
 
 /// The path of a hit, which this check requests of all hits.
-pub(super) fn path(hit: &PartialHit) -> &[u32] {
+fn path(hit: &PartialHit) -> &[u32] {
     hit.instance().expect("the check requests paths")
-}
-
-/// A solid of a scene.
-pub(super) enum Found<'a> {
-    Single(AnySolid),
-    Composed(&'a Composition),
-}
-
-/// The placements of a solid, outermost first, and itself.
-pub(super) fn find<'a>(
-    scene: &'a Scene,
-    instance: &[u32],
-    primitive: u32,
-) -> (Vec<&'a DAffine3>, Found<'a>) {
-    let mut prototype = &scene.prototypes[PrototypeIndex::ROOT.0 as usize];
-    let mut placements = Vec::new();
-    for &number in instance {
-        let placement = &prototype.placements[number as usize];
-        placements.push(&placement.parent_from_child);
-        prototype = &scene.prototypes[placement.of.0 as usize];
-    }
-    let composed = || {
-        let composed = &prototype.solids.compositions;
-        let position = composed.binary_search_by_key(&primitive, |record| record.primitive);
-        let position = position.expect("the hit's solid is in the scene");
-        Found::Composed(&composed[position].solid)
-    };
-    let found = prototype.single(primitive).map(Found::Single);
-    (placements, found.unwrap_or_else(composed))
 }

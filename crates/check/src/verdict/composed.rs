@@ -34,8 +34,8 @@
 
 use smallvec::{SmallVec, smallvec};
 
-use super::sandwich::{Crossings, Interval, SolidBounds};
-use crate::bounding_meshes::meshes::LeafCrossings;
+use super::sandwich::{Interval, SolidBounds};
+use crate::bounding_meshes::crossings::{Crossings, LeafCrossings};
 use cyltrace::solid::Composition;
 
 /// Closed intervals of parameters, in order and apart.

@@ -34,8 +34,9 @@ use cyltrace::embree::Ray32;
 use cyltrace::math::{Ray, UNIT_ROUNDOFF};
 use cyltrace_oracle::{Exact, ExactVector, exact, to_f64};
 
-use super::sandwich::Crossings;
-use crate::bounding_meshes::meshes::{LeafCrossings, Meshes, Seen, may_meet, point};
+use super::seen::{Seen, bounds};
+use crate::bounding_meshes::crossings::{Crossings, LeafCrossings};
+use crate::bounding_meshes::meshes::{Meshes, may_meet, point};
 
 /// Bits of the quotient from which a parameter is rounded.
 const QUOTIENT_BITS: usize = 256;
@@ -174,7 +175,7 @@ pub(crate) fn retry(meshes: &Meshes, ray32: &Ray32, ray: &Ray) -> Vec<Seen> {
         let is_met = |leaf: &LeafCrossings| [leaf.outer, leaf.inner] != [Crossings::NONE; 2];
         if crossings.iter().any(is_met) {
             let solid = leaves.start;
-            let bounds = meshes.bounds(solid, ray32, &crossings);
+            let bounds = bounds(meshes, solid, ray32, &crossings);
             seen.push(Seen { solid, bounds });
         }
     }

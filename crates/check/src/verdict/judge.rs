@@ -1,15 +1,14 @@
 //! Whether an answer agrees with what a ray meets of the prisms.
 
 use std::collections::HashMap;
-use std::fmt;
 
 use cyltrace::math::Ray;
 
 use super::sandwich::Interval;
+use super::seen::Seen;
 use super::surface::{WrongSurface, wrong_surface};
-use crate::bounding_meshes::meshes::Seen;
 use crate::bounding_meshes::window::Window;
-use crate::finding::{Place, ReportedHit};
+use crate::reported_hit::{Place, ReportedHit};
 
 /// The solids of a window by their places in the scene.
 pub(crate) struct Directory<'a> {
@@ -81,31 +80,6 @@ impl Wrong {
     /// Whether `t` is right and the part or normal is not.
     pub fn is_surface(&self) -> bool {
         matches!(self, Self::Surface(..))
-    }
-}
-
-impl fmt::Display for Wrong {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Missed(Interval { low, high }) => {
-                write!(f, "missed: there is a hit between {low:?} and {high:?}")
-            }
-            Self::Nothing => f.write_str("a hit where there is nothing"),
-            Self::Range => f.write_str("a hit outside of the ray's range"),
-            Self::Outside(Interval { low, high }) => {
-                write!(f, "the first hit is between {low:?} and {high:?}")
-            }
-            Self::Place => f.write_str("the solid it names is not met by the ray"),
-            Self::Solid(Interval { low, high }) => {
-                write!(f, "the solid it names is met between {low:?} and {high:?}")
-            }
-            Self::Surface(WrongSurface::Part, _) => {
-                f.write_str("the part it names cannot be what is hit")
-            }
-            Self::Surface(WrongSurface::Normal(angle), _) => {
-                write!(f, "the normal is off by {angle:.1e} more than it may be")
-            }
-        }
     }
 }
 

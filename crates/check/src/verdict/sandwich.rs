@@ -65,61 +65,7 @@
 //! converse does not hold, and an answer that isn't settled is judged again by
 //! the whole.
 
-/// Stands for a parameter beyond what was seen.
-pub(crate) const LATER: f64 = f64::MAX;
-
-/// Where a ray crosses the surface of a prism, at or after its start.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Crossings {
-    /// The first way in; infinite if there is none.
-    pub enter: f64,
-    /// The first way out; infinite if there is none.
-    pub leave: f64,
-    /// The last way out; minus infinity if there is none.
-    pub last_leave: f64,
-}
-
-impl Crossings {
-    /// The prism is not met.
-    pub const NONE: Self = Self {
-        enter: f64::INFINITY,
-        leave: f64::INFINITY,
-        last_leave: f64::NEG_INFINITY,
-    };
-
-    /// Adds a crossing.
-    pub fn add(&mut self, t: f64, enters: bool) {
-        if enters {
-            self.enter = self.enter.min(t);
-        } else {
-            self.leave = self.leave.min(t);
-            self.last_leave = self.last_leave.max(t);
-        }
-    }
-
-    /// After crossings were seen in part: whoever is in leaves later.
-    pub fn leave_later(&mut self) {
-        if self.enter < f64::INFINITY && self.leave == f64::INFINITY {
-            self.leave = LATER;
-            self.last_leave = LATER;
-        }
-    }
-
-    pub fn is_none(&self) -> bool {
-        self.enter == f64::INFINITY && self.leave == f64::INFINITY
-    }
-
-    /// Whether the ray certainly starts inside: it is met on the way out first.
-    pub fn starts_inside(&self) -> bool {
-        self.leave < self.enter
-    }
-
-    /// Whether it may: both ways are met at once where two faces join, by a ray that
-    /// grazes the edge from outside or, if the edge is a fold inward, from inside.
-    pub fn may_start_inside(&self) -> bool {
-        self.leave <= self.enter && self.leave < f64::INFINITY
-    }
-}
+use crate::bounding_meshes::crossings::{Crossings, LATER};
 
 /// Between which parameters a first hit is.
 #[derive(Clone, Copy, Debug, PartialEq)]

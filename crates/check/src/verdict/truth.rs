@@ -19,18 +19,17 @@ use std::ops::Range;
 use glam::{DAffine3, DVec3};
 
 use cyltrace::math::Ray;
-use cyltrace::solid::{AnySolid, Crossing, Disk};
-use cyltrace_oracle::ExactAffine;
+use cyltrace::solid::{AnySolid, Crossing, Disk, Part};
+use cyltrace_oracle::{ExactAffine, placed_hits_of_any};
 
 use super::composed::composed_bounds;
-use super::open_ends::ends_of;
-use super::sandwich::{Crossings, Interval, sheet_bounds, solid_bounds};
+use super::sandwich::{Interval, sheet_bounds, solid_bounds};
 use super::surface::LocalRay;
+use crate::bounding_meshes::crossings::{Crossings, LeafCrossings};
 use crate::bounding_meshes::hull::displaced;
-use crate::bounding_meshes::meshes::{LeafCrossings, may_meet};
+use crate::bounding_meshes::meshes::may_meet;
+use crate::bounding_meshes::open_ends::ends_of;
 use crate::bounding_meshes::window::{PlacedSolid, Window, half_width};
-use crate::finding::ReportedHit;
-use crate::report::words::instance_text;
 
 /// Roundings of the ray that an intersector may make up for one of ours: a
 /// solver has some 30 operations from the ray to `t`.
@@ -46,50 +45,49 @@ pub(crate) fn bounds(window: &Window, ray: &Ray) -> Option<Interval> {
     Some(first)
 }
 
-/// The true answer, in words.
-pub(crate) fn in_words(window: &Window, ray: &Ray) -> String {
-    let hits = candidates(window, ray).filter_map(|leaves| {
-        let placed = &window.solids[leaves.start as usize];
-        let (t, what) = match window.composition_of(leaves.start) {
-            None => {
-                let hits =
-                    cyltrace_oracle::placed_hits_of_any(&placed.solid, &placed.frame.exact, ray);
-                let hit = hits.into_iter().next()?;
-                let (kind, part) = (placed.solid.kind().name(), hit.part.name());
-                (hit.t_f64(), format!("{part} of {kind}"))
-            }
-            Some(found) => {
-                let endless = endless(ray);
-                let leaves: Vec<LeafCrossings> = window.solids
-                    [leaves.start as usize..leaves.end as usize]
-                    .iter()
-                    .map(|leaf| {
-                        let crossings = crossings(&leaf.solid, &leaf.frame.exact, &endless);
-                        LeafCrossings {
-                            outer: crossings,
-                            inner: crossings,
-                        }
-                    })
-                    .collect();
-                let bounds = composed_bounds(&found.composition, &leaves, ray.t_min);
-                // Where it is inside over a length: two faces that coincide are no hit.
-                let t = bounds.interval.high;
-                (t <= ray.t_max && t < f64::INFINITY).then_some(())?;
-                (t, String::from(found.composition.kind().name()))
-            }
-        };
-        let instance = instance_text(&placed.frame.instance);
-        Some((t, format!("{what} {} of {instance}", placed.primitive)))
-    });
-    match hits.min_by(|(one, _), (other, _)| one.total_cmp(other)) {
-        None => String::from("truly a miss"),
-        Some((t, what)) => format!("truly t {t:?} on {what}"),
-    }
+/// The exact first hit of a window.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TrueHit {
+    pub t: f64,
+    /// The first leaf of the solid that is hit.
+    pub solid: u32,
+    /// The part of a solid that is not composed.
+    pub part: Option<Part>,
 }
 
-/// Whether bounds allow an answer.
-pub(crate) fn allows(bounds: &Interval, ray: &Ray, answer: Option<&ReportedHit>) -> bool {
-    bounds.allows(answer.map(|finding| finding.t), ray.t_max)
+/// The exact first hit of the scene.
+pub(crate) fn first_hit(window: &Window, ray: &Ray) -> Option<TrueHit> {
+    let hits = candidates(window, ray).filter_map(|leaves| {
+        let solid = leaves.start;
+        let Some(found) = window.composition_of(solid) else {
+            let placed = &window.solids[solid as usize];
+            let hits = placed_hits_of_any(&placed.solid, &placed.frame.exact, ray);
+            let hit = hits.into_iter().next()?;
+            let (t, part) = (hit.t_f64(), Some(hit.part));
+            return Some(TrueHit { t, solid, part });
+        };
+        let endless = endless(ray);
+        let leaves = &window.solids[leaves.start as usize..leaves.end as usize];
+        let both = leaves.iter().map(|leaf| {
+            let crossings = crossings(&leaf.solid, &leaf.frame.exact, &endless);
+            LeafCrossings {
+                outer: crossings,
+                inner: crossings,
+            }
+        });
+        let both: Vec<LeafCrossings> = both.collect();
+        // The upper bound: where two faces coincide, nothing of any length is hit.
+        let t = composed_bounds(&found.composition, &both, ray.t_min)
+            .interval
+            .high;
+        let is_hit = t <= ray.t_max && t < f64::INFINITY;
+        is_hit.then_some(TrueHit {
+            t,
+            solid,
+            part: None,
+        })
+    });
+    hits.min_by(|one, other| one.t.total_cmp(&other.t))
 }
 
 /// The leaves of each solid that the ray may meet.
@@ -196,7 +194,7 @@ fn displaced_disk(
     for side in [-1.0, 1.0] {
         let up = own.normal().normalize() * (side * leeway);
         let sheet = Disk::new(up, own.normal(), own.radius() - leeway).ok()?;
-        let hits = cyltrace_oracle::placed_hits_of_any(&sheet.into(), &placement, ray);
+        let hits = placed_hits_of_any(&sheet.into(), &placement, ray);
         if let Some(hit) = hits.first() {
             inner.add(hit.t_f64(), side > 0.0);
         }
@@ -210,7 +208,7 @@ fn displaced_disk(
 /// Where the ray enters a closed solid and where it leaves it.
 fn crossings(solid: &AnySolid, placement: &ExactAffine, ray: &Ray) -> Crossings {
     let mut crossings = Crossings::NONE;
-    for hit in cyltrace_oracle::placed_hits_of_any(solid, placement, ray) {
+    for hit in placed_hits_of_any(solid, placement, ray) {
         crossings.add(hit.t_f64(), hit.crossing == Crossing::Enter);
     }
     crossings

@@ -66,13 +66,13 @@ fn bites(name: &str, scene: &Scene, wrong: &impl Intersector, rays: u64, classes
         let found: u64 = outcome
             .rows
             .iter()
-            .filter(|row| row.class == class)
+            .filter(|row| row.class == class.name())
             .map(|row| row.violations)
             .sum();
         assert!(found > 0, "{name} went through in class {class}");
         let mut listed = outcome.violations.iter();
         assert!(
-            listed.any(|violation| violation.class == class),
+            listed.any(|violation| violation.class == class.name()),
             "{name}: {class}"
         );
     }

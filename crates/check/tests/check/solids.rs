@@ -229,7 +229,10 @@ fn wrong_parts_are_caught() {
     for kind in 0..KIND_NAMES.len() as u64 {
         let scene = scene_of_kind(kind, 9);
         let outcome = bites("part", &scene, &tampered(&scene, change), 400);
-        let classes = outcome.rows.iter().filter(|row| row.class == Class::Sphere);
+        let classes = outcome
+            .rows
+            .iter()
+            .filter(|row| row.class == Class::Sphere.name());
         assert!(classes.map(|row| row.violations).sum::<u64>() > 0);
     }
 }

@@ -31,9 +31,9 @@ fn solids_below_the_last_bit_are_unwitnessed() {
         let far = bounds.center() + random.direction() * (size * 1e9);
         window.bounds = Some(Bounds::at(far).grown(size));
         let frame = MeshFrame::new(&window);
-        assert_eq!(hulls(&window, &frame, 16, Fit::Inscribed).empty, [0]);
+        assert_eq!(hulls(&window, &frame, 16, Fit::Inscribed).missing, [0]);
         let outer = hulls(&window, &frame, 16, Fit::Circumscribed);
-        assert_eq!(outer.solid_of.len() + outer.unbounded.len(), 1);
+        assert_eq!(outer.solid_of.len() + outer.missing.len(), 1);
     }
 }
 

@@ -1,30 +1,20 @@
-//! A mesh of the scene that somebody made, traced in f64, against the exact hits.
+//! A mesh from a file, traced in f64.
 //!
-//! The triangles are in a tree of boxes of ours, and not in Embree's: in f32 a vertex is as
-//! coarse as the farthest one of the mesh makes it, so that a single far vertex would make
-//! every hit uncertain. In f64 a hit is off by some 2^-50 of the distances from the
-//! ray's origin to the triangle, whatever else is in the file. So what a correct
-//! mesh may be off is its deviation, and what its format rounds of the coordinates of the
-//! solid in question.
+//! The triangles are in a bounding volume hierarchy of our own, because Embree stores f32: there
+//! a single far vertex would make every hit uncertain. In f64 a hit is off by some 2^-50 of the
+//! distances from the ray's origin to the triangle, whatever else is in the file. So a correct
+//! mesh is off by its deviation and by the rounding of coordinates in its format.
 //!
-//! A box is split at the median of the middles of its triangles, along the longest side of
-//! the box of those middles, so that the depth of the tree is the logarithm of the number of triangles.
+//! A box is split at the median of the centers of its triangles, along the longest side of
+//! the box of those centers, so the depth of the tree is the logarithm of the number of triangles.
 
 use glam::DVec3;
 use rayon::join;
 use rayon::prelude::*;
 
-use super::agreement::Agreement;
-use super::deviation::Deviation;
-use super::nearness::ROUNDING;
-use super::surfaces::Surfaces;
-use super::tolerance::Tolerance;
 use super::triangle::ShearedRay;
-use super::user_hits::in_blocks;
-use crate::{Progress, Witness};
 use cyltrace::math::{Bounds, Ray};
 use cyltrace::solid::tessellation::Mesh;
-use cyltrace::tracer::Tracer;
 
 /// Most triangles of a leaf.
 const LEAF: usize = 4;
@@ -204,39 +194,4 @@ fn node(mesh: &Mesh, items: &mut [Item], first: usize) -> Node {
     let bounds = one.bounds.union(&other.bounds);
     let content = Content::Inner(Box::new([one, other]));
     Node { bounds, content }
-}
-
-/// Compares what rays meet of a mesh with the exact hits, on the rays of a class of that name,
-/// in the rayon pool that this is called in. The mesh may be off by
-/// `deviation`, and by the share `rounding` of the coordinates of a solid. `None` when `progress` asked to stop.
-#[must_use]
-pub fn compare_mesh(
-    tracer: &Tracer,
-    mesh: &TracedMesh,
-    (class, rays): (&'static str, &[Ray]),
-    (deviation, rounding): (Deviation, f64),
-    most_listed: usize,
-    progress: &Progress,
-) -> Option<Agreement> {
-    let of_placing = match deviation {
-        Deviation::Everywhere(_) => 0.0,
-        Deviation::Tessellated { .. } => ROUNDING,
-    };
-    let tolerance = Tolerance {
-        deviation,
-        of_way: ROUNDING,
-        of_extent: rounding + of_placing,
-    };
-    let surfaces = Surfaces::new(tracer.scene(), deviation);
-    in_blocks(
-        Agreement::new(class, Witness::UserMesh, tolerance, &surfaces),
-        rays.len() as u64,
-        most_listed,
-        progress,
-        |agreement, index| {
-            let ray = &rays[index as usize];
-            let told = mesh.closest(ray).map(|hit| hit.t);
-            agreement.add((tracer, &surfaces), index, ray, told, most_listed);
-        },
-    )
 }

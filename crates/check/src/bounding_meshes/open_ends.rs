@@ -23,8 +23,8 @@ use glam::DVec3;
 use cyltrace::math::{UNIT_ROUNDOFF, power_of_two};
 use cyltrace_oracle::{Exact, ExactVector, exact, to_f64};
 
-use crate::bounding_meshes::mesh_frame::MeshFrame;
-use crate::bounding_meshes::window::PlacedSolid;
+use super::mesh_frame::MeshFrame;
+use super::window::PlacedSolid;
 use cyltrace::solid::AnySolid;
 
 /// The planes of the disks that a tube does not have, in the mesh's space.
@@ -67,7 +67,7 @@ impl OpenEnds {
 
 /// The ends of a solid that may be open, and whether they are. The disk at an apex is a
 /// point of the wall, and never missing.
-pub(super) fn ends_of(solid: &AnySolid) -> Option<[(DVec3, bool); 2]> {
+pub(crate) fn ends_of(solid: &AnySolid) -> Option<[(DVec3, bool); 2]> {
     match solid {
         AnySolid::Cylinder(one) => Some([
             (one.p0(), !one.caps().at_p0()),

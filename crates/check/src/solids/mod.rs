@@ -1,0 +1,3 @@
+//! What the check has to know about each kind of solid.
+
+pub(crate) mod scene_solid;
