@@ -38,17 +38,16 @@ mod run;
 mod settings;
 mod solids;
 mod tally;
-mod target;
 mod verdict;
 
 pub use external::compare::{compare_hits, compare_mesh};
 pub use external::deviation::Deviation;
-pub use external::rays_around::rays_around;
 pub use external::tolerance::F32_TOLERANCE;
 pub use external::traced_mesh::{TracedMesh, TriangleHit};
 pub use outcome::{
     Convergence, Expected, Outcome, Row, RowTolerance, Shortfall, Violation, Witness,
 };
+pub use rays::around::rays_around;
 pub use replay::Replay;
 pub use report::page::{PageContent, page};
 pub use report::pictures::{Pictures, PicturesError, pictures};

@@ -1,6 +1,6 @@
 //! Where a ray crosses the surfaces of meshes.
 
-/// Stands for a parameter beyond the part of the ray that was traced.
+/// A parameter beyond the part of the ray that was traced.
 pub(crate) const LATER: f64 = f64::MAX;
 
 /// Where a ray crosses the surface of a mesh, at or after its start.

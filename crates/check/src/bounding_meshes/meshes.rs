@@ -18,7 +18,7 @@ use super::hull_list::{HullList, hulls};
 use super::mesh_frame::MeshFrame;
 use super::open_ends::OpenEnds;
 use super::window::{PlacedSolid, Window};
-use cyltrace::solid::AnySolid;
+use crate::solids::shape;
 use cyltrace::solid::tessellation::Fit;
 
 /// A solid without a hull.
@@ -203,7 +203,9 @@ impl<'a> Meshes<'a> {
 
     /// Whether a solid is a disk, with sheets in place of an inner mesh.
     pub fn is_disk(&self, solid: u32) -> bool {
-        matches!(self.window.solids[solid as usize].solid, AnySolid::Disk(_))
+        shape(&self.window.solids[solid as usize].solid)
+            .flat()
+            .is_some()
     }
 
     /// Whether a solid is a composition.

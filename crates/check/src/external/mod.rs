@@ -7,7 +7,6 @@ mod depth;
 pub(crate) mod deviation;
 mod hit_solid;
 mod nearness;
-pub(crate) mod rays_around;
 mod surfaces;
 pub(crate) mod tolerance;
 pub(crate) mod traced_mesh;

@@ -18,12 +18,12 @@ use cyltrace::solid::tessellation::Mesh;
 
 /// Most triangles of a leaf.
 const LEAF: usize = 4;
-/// Least triangles that are worth a thread of their own.
+/// The fewest triangles that are worth a task.
 const WORTH_A_THREAD: usize = 4096;
-/// What the planes of a box may be off along a ray, as a share: three roundings.
+/// The relative error of a box's planes along a ray: three roundings.
 const BOX_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// A mesh that rays are traced through.
+/// A mesh for tracing rays.
 pub struct TracedMesh {
     vertices: Vec<DVec3>,
     /// In the order of the leaves, with their numbers in the file.
@@ -31,7 +31,7 @@ pub struct TracedMesh {
     root: Node,
 }
 
-/// A box of the tree, with what is in it.
+/// A box of the tree, with its content.
 struct Node {
     bounds: Bounds,
     content: Content,
@@ -43,7 +43,7 @@ enum Content {
     Inner(Box<[Node; 2]>),
 }
 
-/// Where a ray meets a mesh.
+/// A hit of a ray with a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleHit {
     /// The ray's parameter.
@@ -59,7 +59,7 @@ impl TracedMesh {
     /// The tree of a mesh, built in the rayon pool that this is called in.
     ///
     /// # Panics
-    /// When a triangle names a vertex that is not there.
+    /// If a triangle names a vertex that does not exist.
     #[must_use]
     pub fn new(mesh: &Mesh) -> Self {
         let corners = mesh.triangles.par_iter().copied().enumerate();
@@ -78,7 +78,7 @@ impl TracedMesh {
         }
     }
 
-    /// The first hit of a ray, of those at the same `t` that of the first triangle.
+    /// The first hit of a ray; at the same `t`, that of the first triangle.
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
         let ray = ShearedRay::new(ray)?;
@@ -93,7 +93,7 @@ impl TracedMesh {
                 Content::Leaf(from, to) => {
                     for &(corners, number) in &self.triangles[*from..*to] {
                         let points = corners.map(|corner| self.vertices[corner as usize]);
-                        let Some(t) = ray.meets(points) else {
+                        let Some(t) = ray.hit(points) else {
                             continue;
                         };
                         let is_in_range = ray.range.0 <= t && t <= ray.range.1;
@@ -126,7 +126,7 @@ impl TracedMesh {
     }
 }
 
-/// Where a ray enters a box before `end`.
+/// The parameter at which a ray enters a box before `end`.
 fn entry(bounds: &Bounds, ray: &ShearedRay, end: f64) -> Option<f64> {
     let (mut near, mut far) = (ray.range.0, end);
     for axis in 0..3 {
@@ -150,7 +150,7 @@ fn entry(bounds: &Bounds, ray: &ShearedRay, end: f64) -> Option<f64> {
 
 /// A triangle while the tree is built.
 struct Item {
-    /// The middle of its box.
+    /// The center of its box.
     middle: DVec3,
     number: u32,
 }
@@ -161,8 +161,8 @@ fn bounds_of(vertices: &[DVec3], corners: [u32; 3]) -> Bounds {
     a.union(&b).union(&c)
 }
 
-/// The tree of some triangles of a mesh, which are put in its order. `first` is the place of
-/// their first one among those of the whole mesh.
+/// The tree of some triangles of a mesh, which are sorted into its order. `first` is the
+/// position of their first one in the whole mesh.
 fn node(mesh: &Mesh, items: &mut [Item], first: usize) -> Node {
     let count = items.len();
     if count <= LEAF {

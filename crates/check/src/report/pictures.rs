@@ -110,12 +110,12 @@ pub fn pictures(
     let mut ordered: Vec<(&Key, &Placed)> = solids.iter().collect();
     ordered.sort_by_key(|(key, _)| *key);
     for (_, solid) in &ordered {
-        let mut prism = mesh_of(&solid.solid, segments, Fit::Inscribed);
-        for vertex in &mut prism.vertices {
+        let mut own = mesh_of(&solid.solid, segments, Fit::Inscribed);
+        for vertex in &mut own.vertices {
             *vertex = solid.world_from_object.transform_point3(*vertex);
         }
-        solid_of.extend(prism.triangles.iter().map(|_| *solid));
-        mesh.append(&prism);
+        solid_of.extend(own.triangles.iter().map(|_| *solid));
+        mesh.append(&own);
     }
     let traced = TracedMesh::new(&mesh);
     let shown: Vec<Shown> = pixels

@@ -57,7 +57,7 @@ pub(crate) fn instance_text(instance: &[u32]) -> String {
     format!("placement {}", numbers.join("/"))
 }
 
-/// The bounds of a hit; infinity stands for a miss.
+/// The bounds of a hit; infinity means a miss.
 pub(crate) fn interval_text(low: f64, high: f64) -> String {
     match (low.is_finite(), high.is_finite()) {
         (false, _) => String::from("a miss"),

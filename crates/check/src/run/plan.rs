@@ -43,7 +43,7 @@ pub(super) fn chosen_windows(
     settings: &Settings,
 ) -> Result<Vec<Window>, CheckError> {
     if settings.rays == 0 || settings.classes.is_empty() || settings.segments.is_empty() {
-        return Err(CheckError::NothingAsked);
+        return Err(CheckError::NothingToCheck);
     }
     for &segments in &settings.segments {
         if !(3..=4096).contains(&segments) {

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use cyltrace::embree::Ray32;
 use cyltrace::math::Ray;
 
-use super::exact_recheck::retry;
+use super::exact_recheck::exact_seen;
 use super::judge::{Directory, Wrong, first, judge, solid_of};
 use super::seen::{Seen, look};
 use super::surface::LocalRay;
@@ -104,7 +104,7 @@ pub(crate) fn verdict(
     let is_odd = scratch.seen.iter().any(|seen| seen.bounds.is_odd);
     let is_suspect = is_odd || judge(directory, ray, answer, &scratch.seen).is_some();
     if is_suspect {
-        scratch.seen = retry(meshes, ray32, ray);
+        scratch.seen = exact_seen(meshes, ray32, ray);
         if let Some(wrong) = judge(directory, ray, answer, &scratch.seen) {
             return Verdict::Wrong(wrong);
         }

@@ -4,7 +4,6 @@ pub(crate) mod answer;
 pub(crate) mod composed;
 pub(crate) mod exact_recheck;
 pub(crate) mod judge;
-pub(crate) mod parts;
 pub(crate) mod sandwich;
 pub(crate) mod seen;
 pub(crate) mod surface;

@@ -1,4 +1,4 @@
-//! Intersectors that are wrong by little, each of which must be caught.
+//! Slightly wrong intersectors, which the check must catch.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use glam::{DAffine3, DVec3};
 use super::scenes::{prototype, random_cylinder, random_scene};
 use super::{checked, tracer};
 
-/// An answer that is tampered with.
+/// An intersector that changes the answers of another.
 pub struct Tampered<F>(pub F);
 
 impl<F: Fn(&Ray) -> Option<ReportedHit> + Sync> Intersector for Tampered<F> {
@@ -124,7 +124,7 @@ fn ignored_range_is_caught() {
 }
 
 #[test]
-fn nothing_asked_is_refused() {
+fn empty_settings_are_rejected() {
     let scene = scene();
     let tracer = tracer(&Arc::new(scene.clone()));
     let settings = Settings {
@@ -134,7 +134,7 @@ fn nothing_asked_is_refused() {
     let refused = cyltrace_check::compare(&scene, &tracer, &settings);
     assert!(matches!(
         refused,
-        Err(cyltrace_check::CheckError::NothingAsked)
+        Err(cyltrace_check::CheckError::NothingToCheck)
     ));
 }
 

@@ -130,7 +130,7 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
     let elapsed = start.elapsed().as_secs_f64();
 
     if let Some(page) = &page_path {
-        // The pictures show the meshes of the check, which external hits have none of.
+        // The pictures show the meshes, which a check of external hits does not have.
         let pictures = if external.is_some() {
             None
         } else {
