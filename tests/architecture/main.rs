@@ -73,6 +73,7 @@ type Rule = fn(file: &str, source: &str) -> Vec<String>;
 #[test]
 fn layers_in_repository_use_only_layers_above() {
     hold("src", layers);
+    hold("crates/check/src", layers);
 }
 
 #[test]
@@ -99,10 +100,26 @@ fn layers_planted_uses_are_found() {
     bites(layers, "src/solid/mod.rs", "use crate as everything;");
     bites(layers, "src/solid/mod.rs", "use crate::*;");
     bites(layers, "src/unknown/mod.rs", "");
+    bites(
+        layers,
+        "crates/check/src/bounding_meshes/meshes.rs",
+        "use crate::verdict::sandwich::SolidBounds;",
+    );
+    bites(
+        layers,
+        "crates/check/src/verdict/truth.rs",
+        "use crate::report::words::truth_text;",
+    );
+    bites(layers, "crates/check/src/tally.rs", "use super::run::plan;");
     spares(
         layers,
         "src/tracer/mod.rs",
         "use crate::{embree::Device, math::Ray, scene};",
+    );
+    spares(
+        layers,
+        "crates/check/src/run/compare.rs",
+        "use crate::report::words;\nuse cyltrace::tracer::Tracer;",
     );
     spares(
         layers,

@@ -30,9 +30,9 @@ pub type CyltraceClosestFunction = unsafe extern "C" fn(
 /// Checks a caller's intersector against meshes of the scene.
 ///
 /// # Safety
-/// `scene` is null or a live scene; `settings` and what it points to are null or
-/// whole; `outcome` is null or may be written to; `closest` may be called as
-/// the header says, with `user`, from as many threads as the settings ask for.
+/// `scene` is null or a live scene; `settings` and its pointers are null or
+/// valid; `outcome` is null or may be written to; `closest` may be called as
+/// the header requires, with `user`, from the number of threads in the settings.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cyltrace_check(
     scene: *const CyltraceScene,
@@ -42,8 +42,8 @@ pub unsafe extern "C" fn cyltrace_check(
     outcome: *mut CyltraceCheckOutcome,
 ) -> c_int {
     if !outcome.is_null() {
-        // SAFETY: invariant 1: not null, so it may be written to; what it held
-        // before is not ours.
+        // SAFETY: invariant 1: not null, so it may be written to; its former content
+        // is not ours.
         unsafe { outcome.write(CyltraceCheckOutcome::NOTHING) };
     }
     let checked = guarded(|| {
@@ -53,10 +53,10 @@ pub unsafe extern "C" fn cyltrace_check(
         }
         // SAFETY: invariants 1 and 2: null or a live scene, which is only read.
         let scene = unsafe { scene.as_ref() }.ok_or_else(|| null("scene"))?;
-        // SAFETY: invariant 1: null or whole settings.
+        // SAFETY: invariant 1: null or valid settings.
         let (settings, threads) = unsafe { settings.as_ref() }.map_or_else(
             || Ok((Settings::default(), None)),
-            // SAFETY: invariant 1: so are the numbers of sides that they name.
+            // SAFETY: invariant 1: so are the numbers of sides that they point to.
             |settings| unsafe { read(settings) },
         )?;
         let caller = Caller {
@@ -74,12 +74,12 @@ pub unsafe extern "C" fn cyltrace_check(
     let Some(found) = checked else {
         return CYLTRACE_ERROR;
     };
-    let told = guarded(|| Ok(outcome::of(&found)));
-    let Some(told) = told else {
+    let written = guarded(|| Ok(outcome::of(&found)));
+    let Some(written) = written else {
         return CYLTRACE_ERROR;
     };
-    // SAFETY: invariant 1: a null outcome was refused above.
-    unsafe { outcome.write(told) };
+    // SAFETY: invariant 1: a null outcome was rejected above.
+    unsafe { outcome.write(written) };
     if found.holds() {
         CYLTRACE_OK
     } else {
@@ -147,7 +147,7 @@ unsafe fn read(given: &CyltraceCheckSettings) -> Result<(Settings, Option<NonZer
     if given.classes & !all != 0 {
         let classes = given.classes;
         return Err(format!(
-            "cyltrace_check: classes is {classes}: there are no such classes"
+            "cyltrace_check: classes is {classes}: it must be a sum of CYLTRACE_CAMERA to CYLTRACE_AXIAL"
         ));
     }
     if given.classes != 0 {
@@ -158,7 +158,7 @@ unsafe fn read(given: &CyltraceCheckSettings) -> Result<(Settings, Option<NonZer
     Ok((settings, NonZeroUsize::new(given.threads as usize)))
 }
 
-/// Refuses a setting that is too large.
+/// Rejects a setting that is too large.
 fn at_most(name: &str, value: u64, greatest: u64) -> Result<(), String> {
     if value > greatest {
         return Err(format!(
@@ -172,12 +172,12 @@ fn at_most(name: &str, value: u64, greatest: u64) -> Result<(), String> {
 struct Caller {
     closest: CyltraceClosestFunction,
     user: *mut c_void,
-    /// The first answer that makes no sense.
+    /// The first invalid answer.
     fault: OnceLock<String>,
 }
 
-// SAFETY: the header asks for a function that may be called, with `user`, from as many
-// threads as the settings ask for; Rust itself never follows `user`.
+// SAFETY: the header requires a function that may be called, with `user`, from the number of
+// threads in the settings; Rust itself never follows `user`.
 unsafe impl Sync for Caller {}
 
 impl Intersector for Caller {

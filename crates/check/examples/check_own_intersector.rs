@@ -1,8 +1,8 @@
-//! Checks an intersector of one's own, the textbook's in f32, against a scene:
+//! Checks your own intersector, here a textbook one in f32, against a scene:
 //! `cargo run --release --example check_own_intersector [SCENE]`.
 //!
-//! It knows the scene's own cylinders and no placements. Exits with 1, as f32 is
-//! found out.
+//! It traces the scene's own cylinders without placements. Exits with 1, because the check
+//! detects the errors of f32.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use cyltrace::math::Ray;
 use cyltrace::scene;
 use cyltrace::solid::Cylinder;
-use cyltrace_check::{Intersector, ReportedHit, Settings, compare};
+use cyltrace_check::{Intersector, ReportedHit, Settings, compare, summary, verdict};
 use glam::Vec3;
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
@@ -28,24 +28,8 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
         .collect());
     let outcome = compare(&scene, &own, &Settings::default())?;
 
-    for row in &outcome.rows {
-        println!(
-            "{:8} {:8} {:>4} {:7} rays {:7} hits {:7} violations",
-            row.class.name(),
-            row.witness.name(),
-            row.segments
-                .map_or_else(String::new, |sides| sides.to_string()),
-            row.rays,
-            row.hits,
-            row.violations
-        );
-    }
-    for violation in outcome.violations.iter().take(3) {
-        println!(
-            "{} ray {}: {}",
-            violation.class, violation.index, violation.what
-        );
-    }
+    print!("{}", summary(&outcome));
+    println!("{}", verdict(&outcome));
     Ok(ExitCode::from(u8::from(!outcome.holds())))
 }
 
@@ -54,7 +38,7 @@ struct Own(Vec<Cylinder>);
 
 impl Intersector for Own {
     fn closest(&self, ray: &Ray) -> Option<ReportedHit> {
-        let hits = self.0.iter().flat_map(|cylinder| meetings(cylinder, ray));
+        let hits = self.0.iter().flat_map(|cylinder| hits(cylinder, ray));
         let t = hits
             .map(f64::from)
             .filter(|t| (ray.t_min..=ray.t_max).contains(t))
@@ -67,8 +51,8 @@ impl Intersector for Own {
     }
 }
 
-/// Where a line meets a cylinder's wall and disks.
-fn meetings(cylinder: &Cylinder, ray: &Ray) -> Vec<f32> {
+/// The parameters at which a line hits a cylinder's wall and disks.
+fn hits(cylinder: &Cylinder, ray: &Ray) -> Vec<f32> {
     let (p0, a) = (cylinder.p0(), cylinder.p1() - cylinder.p0());
     let from_p0 = (ray.origin - p0).as_vec3();
     let (direction, axis) = (ray.direction.as_vec3(), a.normalize().as_vec3());

@@ -1,55 +1,60 @@
-//! Analytic hits against meshes that Embree traces: a regression check with a
-//! proof instead of a tolerance.
+//! Validates hits on analytic solids: a regression check with a proof instead of a tolerance.
 //!
-//! For N sides, the *inscribed* prism lies inside the capped cylinder and the
-//! *circumscribed* one holds it. What a ray meets of the three is therefore
-//! ordered (`sandwich`), and an intersector that answers outside of that order
-//! is wrong, whatever the number of sides. Here is what makes that true of the
-//! meshes that Embree really holds:
+//! For N sides, the *inscribed* mesh of a solid lies inside it and the *circumscribed* mesh
+//! contains it. The crossings of a ray with the three are therefore
+//! ordered, and an intersector whose answer violates that order
+//! is wrong, for any number of sides. The folders, each of which uses only those before it:
 //!
-//! - `prisms`: every solid of a window of the scene, with its placements composed
-//!   exactly (the tracer's own placement code has no part in it), prisms grown or
-//!   shrunk by what f32 rounds, and the exact proof that they contain or are
-//!   contained;
-//! - `rays`: classes of rays that reach what is hard;
-//! - `judging`: the sandwich, bounds of the first hit from what a ray meets of both;
-//!   part and normal; suspects judged again, exactly, on the f32 triangles; and
-//!   the same sandwich with exact cylinders in place of prisms, on a sample;
-//! - `curves`: how often Embree's own cone curves, another solver, agree; the
-//!   oracle judges where they do not;
-//! - `compare`: all of it over many rays, and the outcome; `replay`: one ray again;
-//! - `elsewhere`: hits of another program or of a mesh from a file;
-//! - `telling`: what it will take, tables and the page.
+//! - `solids`: each kind of solid as the check needs it;
+//! - `bounding_meshes`: every solid of a window of the scene, with its placements composed
+//!   exactly (without the tracer's placement code); meshes grown or
+//!   shrunk by the rounding of f32, and the exact proof that they contain or are
+//!   contained; crossings of rays with them in Embree;
+//! - `rays`: classes of rays that reach the hard cases;
+//! - `verdict`: bounds of the first hit from the crossings of both meshes; part and
+//!   normal; suspects judged exactly on the f32 triangles; and, on a sample,
+//!   the same bounds with exact solids in place of meshes;
+//! - `external`: hits of another program or of a mesh from a file;
+//! - `report`: text, JSON and the page;
+//! - `run`: all of it over many rays, and one ray again.
+//!
+//! ```no_run
+//! use cyltrace_check::{Settings, compare, verdict};
+//! # fn check(tracer: &cyltrace::tracer::Tracer) -> Result<(), cyltrace_check::CheckError> {
+//! let outcome = compare(tracer.scene(), tracer, &Settings::default())?;
+//! println!("{}", verdict(&outcome));
+//! # Ok(())
+//! # }
+//! ```
 
 mod bounding_meshes;
-mod compare;
-mod curves;
 mod external;
-mod finding;
 mod outcome;
 mod rays;
 mod replay;
 mod report;
+mod reported_hit;
+mod run;
 mod settings;
+mod solids;
 mod tally;
-mod target;
 mod verdict;
 
-pub use compare::{Progress, compare, compare_with};
-pub use external::agreement::{Agreement, Disagreement};
+pub use external::compare::{compare_hits, compare_mesh};
 pub use external::deviation::Deviation;
-pub use external::rays_around::rays_around;
 pub use external::tolerance::F32_TOLERANCE;
-pub use external::user_hits::compare_hits;
-pub use external::user_mesh::{TracedMesh, TriangleHit, compare_mesh};
-pub use finding::{Intersector, Place, ReportedHit};
-pub use outcome::{ClassRow, Convergence, Outcome, Violation, Witness};
-pub use replay::{Replay, Replayed, replay};
-pub use report::figures::{class_figures, convergence_figures, violation_figures};
-pub use report::pictures::{Pictures, PicturesError, pictures};
-pub use report::plan::{Plan, plan};
-pub use report::report::{
-    PageContent, TABLE_HEADINGS, TABLE_NAMES, disagreement_text, page, percent, table_rows,
-    tolerance_text, verdict, violation_text,
+pub use external::traced_mesh::{TracedMesh, TriangleHit};
+pub use outcome::{
+    Convergence, Expected, Outcome, Row, RowTolerance, Shortfall, Violation, Witness,
 };
+pub use rays::around::rays_around;
+pub use replay::Replay;
+pub use report::page::{PageContent, page};
+pub use report::pictures::{Pictures, PicturesError, pictures};
+pub use report::text::{summary, verdict, violation_text};
+pub use reported_hit::{Intersector, Place, ReportedHit};
+pub use run::compare::{compare, compare_with};
+pub use run::plan::{Plan, plan};
+pub use run::replay::{Replayed, replay};
 pub use settings::{CheckError, Class, Settings};
+pub use tally::Progress;

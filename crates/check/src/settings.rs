@@ -1,18 +1,18 @@
-//! What is to be checked.
+//! The settings of a check, and why it may fail to run.
 
 use std::fmt;
 use std::str::FromStr;
 
 use cyltrace::embree::DeviceOptions;
 
-/// How the rays of a check are made.
+/// A class of rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Class {
     /// From the scene's camera through its picture.
     Camera,
     /// From a sphere around the scene to random points in and around solids.
     Sphere,
-    /// From inside solids, and from between the prisms.
+    /// From inside solids, and from between the meshes.
     Inside,
     /// Aimed at silhouettes and rims.
     Grazing,
@@ -30,7 +30,7 @@ impl Class {
         Self::Axial,
     ];
 
-    /// The name in tables and in what is replayed.
+    /// The name in tables and in words for a replay.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -56,28 +56,28 @@ impl FromStr for Class {
         let known = Self::ALL.into_iter().find(|class| class.name() == name);
         known.ok_or_else(|| {
             let names = Self::ALL.map(Self::name).join(", ");
-            format!("`{name}` is no class of rays: they are {names}")
+            format!("`{name}` is not a class of rays: use one of {names}")
         })
     }
 }
 
-/// How much is checked.
+/// The settings of a check.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Sides of the prisms, at least 3 each; every number is checked with the
+    /// Numbers of sides of the meshes, at least 3; all are checked with the
     /// same rays.
     pub segments: Vec<u32>,
     /// Rays of each class.
     pub rays: u64,
     /// Classes to check.
     pub classes: Vec<Class>,
-    /// Chooses the rays and windows.
+    /// Determines the rays and windows.
     pub seed: u64,
     /// Bytes that the meshes of one window may take with Embree's hierarchy.
     pub max_memory: u64,
     /// Violations that are listed; all are counted.
     pub most_listed: usize,
-    /// Of the Embree that holds the meshes.
+    /// Options of the Embree device of the meshes.
     pub device: DeviceOptions,
 }
 
@@ -98,33 +98,33 @@ impl Default for Settings {
 /// Why nothing could be checked.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckError {
-    /// A prism needs three sides.
-    #[error("{segments} segments: a prism has at least 3 and at most 4096")]
+    /// A mesh needs three sides.
+    #[error("{segments} segments: a mesh has at least 3 and at most 4096")]
     Segments {
         /// The number given.
         segments: u32,
     },
-    /// Not even one prism fits.
+    /// Not even the smallest meshes fit.
     #[error(
-        "the meshes of the smallest part of the scene that was tried take more than the {allowed} \
-         bytes allowed; even eight cylinders take {needed}"
+        "the meshes of the smallest part of the scene that was tried take more than the allowed \
+         {allowed} bytes; even eight cylinders take {needed}"
     )]
     Memory {
-        /// What eight cylinders take.
+        /// The bytes of eight cylinders.
         needed: u64,
         /// [`Settings::max_memory`].
         allowed: u64,
     },
-    /// Progress was told to stop.
+    /// Progress stopped the check.
     #[error("interrupted")]
     Interrupted,
-    /// Nothing is asked for, which would hold.
+    /// The settings require nothing, which proves nothing.
     #[error("no rays, no class of rays or no number of segments: there is nothing to check")]
-    NothingAsked,
+    NothingToCheck,
     /// Nothing to check.
-    #[error("the scene holds no solid")]
+    #[error("the scene contains no solid")]
     Empty,
-    /// Embree refused.
+    /// Embree failed.
     #[error(transparent)]
     Embree(#[from] cyltrace::embree::Error),
 }

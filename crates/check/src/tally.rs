@@ -1,76 +1,87 @@
 //! Counts over many rays, added up in the order of the rays.
 
-use super::outcome::{ClassRow, Convergence, Violation, Witness};
-use super::{Class, ReportedHit};
+use std::ops::{ControlFlow, Range};
 
-/// What some rays of one row came to.
-#[derive(Clone, Debug, Default)]
+use rayon::prelude::*;
+
+use super::outcome::{Convergence, Row, Violation, percent};
+
+/// Rays that a thread takes at a time: enough to be worth a task, few enough to stop soon
+/// after an interrupt.
+pub(crate) const BLOCK: u64 = 512;
+
+/// Receives the number of rays that are done and the number of all rays, and may stop the
+/// check.
+pub type Progress<'a> = dyn Fn(u64, u64) -> ControlFlow<()> + Sync + 'a;
+
+/// A row as it grows.
+#[derive(Clone, Debug)]
 pub(crate) struct Tally {
-    pub rays: u64,
-    pub hits: u64,
-    pub witnessed: u64,
-    pub band: u64,
-    pub unwitnessed: u64,
-    pub triangle_errors: u64,
-    pub violations: u64,
-    pub wrong_normals: u64,
-    pub max_dt_over_chord: f64,
-    /// The differences in `t` to the inner prism, as lengths over the radius.
+    pub row: Row,
+    /// The differences in `t` to the inscribed mesh, as lengths over the radius.
     pub dt_radii: Vec<f64>,
     /// The first violations.
     pub listed: Vec<Violation>,
 }
 
 impl Tally {
-    /// Counts a ray and its answer.
-    pub fn count(&mut self, answer: Option<&ReportedHit>) {
-        self.rays += 1;
-        self.hits += u64::from(answer.is_some());
-    }
-
-    /// Adds the counts of later rays, and lists no more than `most` violations.
-    pub fn add(&mut self, later: Self, most: usize) {
-        self.rays += later.rays;
-        self.hits += later.hits;
-        self.witnessed += later.witnessed;
-        self.band += later.band;
-        self.unwitnessed += later.unwitnessed;
-        self.triangle_errors += later.triangle_errors;
-        self.violations += later.violations;
-        self.wrong_normals += later.wrong_normals;
-        self.max_dt_over_chord = self.max_dt_over_chord.max(later.max_dt_over_chord);
-        self.dt_radii.extend(later.dt_radii);
-        self.listed.extend(later.listed);
-        self.listed.truncate(most);
-    }
-
-    /// The row that the counts make.
-    pub fn row(&self, class: Class, witness: Witness, segments: Option<u32>) -> ClassRow {
-        ClassRow {
-            class,
-            witness,
-            segments,
-            rays: self.rays,
-            hits: self.hits,
-            witnessed: self.witnessed,
-            band: self.band,
-            unwitnessed: self.unwitnessed,
-            triangle_errors: self.triangle_errors,
-            violations: self.violations,
-            wrong_normals: self.wrong_normals,
-            max_dt_over_chord: self.max_dt_over_chord,
+    pub fn new(row: Row) -> Self {
+        Self {
+            row,
+            dt_radii: Vec::new(),
+            listed: Vec::new(),
         }
     }
 
-    /// How near the prisms are; the 99th percentile is the least value that at
-    /// least 99 of 100 do not exceed.
+    /// Counts a ray.
+    pub fn count(&mut self, is_hit: bool) {
+        self.row.rays += 1;
+        self.row.hits += u64::from(is_hit);
+    }
+
+    /// Adds later rays, and lists at most `most_listed` violations.
+    pub fn add(&mut self, later: Self, most_listed: usize) {
+        self.row.add(&later.row);
+        self.dt_radii.extend(later.dt_radii);
+        self.listed.extend(later.listed);
+        self.listed.truncate(most_listed);
+    }
+
+    /// How close the meshes are. The 99th percentile is the least value that at least 99 of
+    /// 100 do not exceed.
     pub fn convergence(&mut self, segments: u32) -> Convergence {
         self.dt_radii.sort_unstable_by(f64::total_cmp);
         let rank = (self.dt_radii.len() * 99).div_ceil(100);
         Convergence {
             segments,
-            band_percent: 100.0 * self.band as f64 / self.rays.max(1) as f64,
+            band_percent: percent(self.row.band, self.row.rays),
             p99_dt_r: rank.checked_sub(1).map_or(0.0, |at| self.dt_radii[at]),
         }
     }
+}
+
+/// Tallies the rays `0..count` of a row in blocks of `size`, on the threads of the rayon pool
+/// that this is called in. The outcome is the same for any number of threads. `progress` gets
+/// the number of rays of each block; `None` if it breaks off.
+pub(crate) fn in_blocks<S: Default>(
+    row: &Row,
+    (count, size): (u64, u64),
+    most_listed: usize,
+    progress: impl Fn(u64) -> ControlFlow<()> + Sync,
+    block: impl Fn(Range<u64>, &mut S, &mut Tally) + Sync,
+) -> Option<Tally> {
+    let blocks: Option<Vec<Tally>> = (0..count.div_ceil(size))
+        .into_par_iter()
+        .map_init(S::default, |scratch, number| {
+            let mut tally = Tally::new(row.clone());
+            let range = number * size..count.min((number + 1) * size);
+            block(range, scratch, &mut tally);
+            progress(tally.row.rays).is_continue().then_some(tally)
+        })
+        .collect();
+    let mut whole = Tally::new(row.clone());
+    for tally in blocks? {
+        whole.add(tally, most_listed);
+    }
+    Some(whole)
 }

@@ -1,6 +1,6 @@
 //! What is known to be wrong with Embree's own straight curves, counted against
-//! the oracle: why cylinders are user geometry here, and which disagreements
-//! with the witness `cone-curve` are the witness's.
+//! the oracle: why cylinders are user geometry here, and why `check` has no witness that is
+//! made of such curves.
 //!
 //! The tests say what the versions in [`SEEN_IN`] do. When one fails, upstream
 //! has changed: it is good news, to be written down here and in

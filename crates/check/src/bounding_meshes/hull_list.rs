@@ -1,11 +1,11 @@
-//! The hulls of all solids of a window as one mesh, and what it takes.
+//! The hulls of all solids of a window as one mesh, and the memory that it takes.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::hull::{Hull, hull};
+use super::hull::{Hull, hull, triangles_needed};
 use super::mesh_frame::MeshFrame;
 use super::mesh_map::MeshMap;
 use super::window::Window;
@@ -14,8 +14,8 @@ use cyltrace::solid::tessellation::Fit;
 /// Solids that a thread builds at a time.
 const CHUNK: usize = 256;
 
-/// Bytes that a triangle takes, with its share of the corners, in our lists and
-/// with Embree. Measured with Embree 3.13.5 on struts of `scenes/lattice.toml`:
+/// Bytes of a triangle with its share of the corners, in these lists and in
+/// Embree. Measured with Embree 3.13.5 on struts of `scenes/lattice.toml`:
 /// 96 with 16 sides, 94 with 64 and 90 with 512.
 const BYTES_PER_TRIANGLE: u64 = 93;
 
@@ -24,14 +24,12 @@ const BYTES_PER_TRIANGLE: u64 = 93;
 pub(crate) struct HullList {
     /// All of them, one after another.
     pub hull: Hull,
-    /// The number in the window of the solid of each hull, rising.
+    /// The position in the window of the solid of each hull, rising.
     pub solid_of: Vec<u32>,
-    /// How many triangles there are up to the end of each hull.
+    /// The number of triangles up to the end of each hull.
     pub triangles_up_to: Vec<u32>,
-    /// Solids without an inscribed hull: f32 leaves nothing of it.
-    pub empty: Vec<u32>,
-    /// Solids without a circumscribed hull: f32 does not resolve them.
-    pub unbounded: Vec<u32>,
+    /// Solids without a hull: f32 does not resolve them.
+    pub missing: Vec<u32>,
 }
 
 impl HullList {
@@ -49,8 +47,7 @@ impl HullList {
         self.solid_of.extend_from_slice(&other.solid_of);
         let ends = other.triangles_up_to.iter();
         self.triangles_up_to.extend(ends.map(|end| triangles + end));
-        self.empty.extend_from_slice(&other.empty);
-        self.unbounded.extend_from_slice(&other.unbounded);
+        self.missing.extend_from_slice(&other.missing);
     }
 
     fn push(&mut self, solid: u32, hull: &Hull) {
@@ -64,8 +61,8 @@ impl HullList {
         self.triangles_up_to.partition_point(|&end| end <= triangle)
     }
 
-    /// Whether a triangle is in the first half of those of its hull: of the sheets of a
-    /// disk, in the one over it.
+    /// Whether a triangle is in the first half of those of its hull: for a disk, in the upper
+    /// sheet.
     pub fn is_in_first_half(&self, triangle: u32) -> bool {
         let all = self.triangles_of(self.hull_of(triangle));
         2 * (triangle as usize - all.start) < all.len()
@@ -79,8 +76,8 @@ impl HullList {
     }
 }
 
-/// The hulls with so many sides of all solids of a window, at least 3 each and
-/// fewer than 2^32 corners in all.
+/// The hulls of all solids of a window, with `segments` sides, at least 3. They have fewer
+/// than 2^32 corners in all.
 pub(crate) fn hulls(window: &Window, frame: &MeshFrame, segments: u32, side: Fit) -> HullList {
     assert!(segments >= 3, "a hull has at least 3 sides, not {segments}");
     let parts: Vec<HullList> = window
@@ -91,7 +88,7 @@ pub(crate) fn hulls(window: &Window, frame: &MeshFrame, segments: u32, side: Fit
             let mut part = HullList::default();
             let mut maps = None;
             for (placed, number) in solids.iter().zip((chunk * CHUNK) as u32..) {
-                // Solids of one place follow each other.
+                // Solids of one placement follow each other.
                 let (_, map) = match &mut maps {
                     Some((place, map)) if Arc::ptr_eq(place, &placed.frame) => (place, map),
                     other => {
@@ -100,10 +97,9 @@ pub(crate) fn hulls(window: &Window, frame: &MeshFrame, segments: u32, side: Fit
                         (place, map)
                     }
                 };
-                match (hull(frame, map, placed, segments, side), side) {
-                    (Some(hull), _) => part.push(number, &hull),
-                    (None, Fit::Inscribed) => part.empty.push(number),
-                    (None, Fit::Circumscribed) => part.unbounded.push(number),
+                match hull(frame, map, placed, segments, side) {
+                    Some(hull) => part.push(number, &hull),
+                    None => part.missing.push(number),
                 }
             }
             part
@@ -126,17 +122,24 @@ pub(crate) fn hulls(window: &Window, frame: &MeshFrame, segments: u32, side: Fit
     all
 }
 
-/// Bytes that both meshes of a window take with so many triangles each, with Embree's
-/// trees over them. While the second tree is built, Embree holds up to a third more of
+/// Bytes of both meshes of a window with this number of triangles each, with Embree's
+/// trees over them. While the second tree is built, Embree uses up to a third more of
 /// its own.
 pub(crate) fn bytes_needed(triangles: u64) -> u64 {
     triangles.saturating_mul(2 * BYTES_PER_TRIANGLE)
 }
 
-/// The triangles of either mesh that fit into so many bytes, and that Embree can count:
-/// no mesh has more corners than twice its triangles.
+/// The triangles of either mesh that fit into this number of bytes, and that Embree can
+/// count: no mesh has more corners than twice its triangles.
 pub(crate) fn triangles_within(bytes: u64) -> u64 {
     (bytes / (2 * BYTES_PER_TRIANGLE)).min(u64::from(u32::MAX / 2))
+}
+
+/// Bytes of the meshes of a window.
+pub(crate) fn window_bytes(window: &Window, segments: u32) -> u64 {
+    let solids = window.solids.iter();
+    let triangles = solids.map(|placed| triangles_needed(&placed.solid, segments));
+    bytes_needed(triangles.sum())
 }
 
 #[cfg(test)]

@@ -1,22 +1,21 @@
 //! The f32 space of a window's meshes, in which rays are exact.
 //!
 //! A point of the mesh is `(world - center) · 2^k`, with `k` such that half the
-//! diagonal of the window is in [1, 2). Embree is given an f32 ray there, the
-//! intersector a f64 ray in the world, and the two must be the same ray, not
-//! nearly. A direction of f32 numbers divided by `2^k` is exact in f64, and `t`
+//! diagonal of the window is in [1, 2). Embree gets an f32 ray there, the
+//! intersector an f64 ray in the world, and the two must be exactly the same ray. A direction of f32 numbers divided by `2^k` is exact in f64, and `t`
 //! means the same in both. The origin is exact if `center + origin / 2^k` is:
 //!
 //! Let `P` be the power of two next above `F = max |center| + 2^11 / 2^k`, with
-//! the wished-for center, and let `s = 2^-52 P`. The center is rounded to
+//! the requested center, and let `s = 2^-52 P`. The center is rounded to
 //! multiples of `s`, which moves it by `s/2` at most; the coordinates of
 //! origins in the mesh are below 2^10 and multiples of `s · 2^k`. So the sum is
 //! a multiple of `s`, in size at most `F + s/2 <= 2^53 s`: at most 2^53 steps,
-//! which f64 holds. An origin is first rounded to f32, then to the multiples;
+//! which f64 represents. An origin is first rounded to f32, then to the multiples;
 //! where those are finer than the f32 number's last bit, it is one already, and
 //! where they are coarser, a multiple has no more bits than it had.
 //!
 //! Numbers below 2^-60 are rounded to 0 (the multiples are at least 2^-60), so
-//! that no subnormal number, which Embree takes for 0, makes the rays differ.
+//! that no subnormal number, which Embree treats as 0, makes the rays differ.
 
 use glam::DVec3;
 
@@ -26,14 +25,14 @@ use cyltrace_oracle::{ExactVector, exact};
 
 use super::window::Window;
 
-/// Sizes of coordinates in the mesh to which origins are held: some 250 to 500
+/// The greatest coordinate of an origin in the mesh: some 250 to 500
 /// diagonals of the window.
 const FARTHEST_ORIGIN: f64 = (1 << 10) as f64;
 
 /// Smaller numbers in rays are 0.
 const LEAST: f64 = power_of_two(-60);
 
-/// Where the meshes of a window are.
+/// The space of a window's meshes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MeshFrame {
     center: DVec3,
@@ -79,12 +78,11 @@ impl MeshFrame {
         &ExactVector::new(self.center) + &from_center
     }
 
-    /// A ray near the wished-for one, as Embree and as an intersector get it:
-    /// one and the same.
+    /// A ray near the requested one, for Embree and for an intersector.
     ///
     /// The origin moves to the grid, and to within [`FARTHEST_ORIGIN`] if it is
     /// farther away; the direction is rounded to f32 and scaled by a power of
-    /// two; the range is given in lengths of the wished-for direction, which is
+    /// two; the range is given in lengths of the requested direction, which is
     /// finite and not zero, and is rounded and scaled likewise.
     pub fn ray(&self, origin: DVec3, direction: DVec3, t_min: f64, t_max: f64) -> (Ray32, Ray) {
         let place = self.mesh_from_world(origin);
@@ -149,8 +147,8 @@ mod tests {
             let in_mesh = ExactVector::new(ray.direction).times(&exact(frame.scale()));
             assert_eq!(ExactVector::new(way).0, in_mesh.0, "case {case}");
 
-            // It is the ray that was wished for, but for f32 and for what f64
-            // leaves of the window so far away.
+            // It is the requested ray, except for the rounding of f32 and of f64 so far
+            // away from the origin.
             let step = size * 2e-6 + away.length() * 8e-16;
             let moved = (ray.origin - wished).length();
             assert!(moved <= step, "case {case}: moved by {moved}");

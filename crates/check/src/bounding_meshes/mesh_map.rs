@@ -1,8 +1,8 @@
 //! A placed solid in the space of the meshes, in f64 with bounds of the errors.
 //!
 //! With `M = 2^k L` of the placement's matrix `L` and `b` the image of the solid's
-//! *anchor* `p` ([`AnySolid::anchor`](cyltrace::solid::AnySolid::anchor)), the point `p + x` is `b + M x` in the mesh. A [`MeshMap`] holds `M`,
-//! which is rounded from the exact product of all placements, so off by at most
+//! *anchor* `p` ([`AnySolid::anchor`](cyltrace::solid::AnySolid::anchor)), the point `p + x` is `b + M x` in the mesh. A [`MeshMap`] contains `M`,
+//! rounded from the exact product of all placements, so off by at most
 //! `u |M|` (Frobenius norm, u = 2^-53), and a computed inverse `G`, whose defect
 //! `‖M G - I‖` is measured:
 //!
@@ -36,7 +36,7 @@ pub(crate) struct MeshMap {
     pub matrix: DMat3,
     /// `G`: from the mesh.
     pub inverse: DMat3,
-    /// At least `|M|`: how much vectors grow on the way to the mesh.
+    /// At least `|M|`.
     pub stretch: f64,
     /// At least `|G|`.
     pub squeeze: f64,
@@ -66,7 +66,7 @@ impl MeshMap {
     }
 }
 
-/// Where the anchor of a placed solid is in the meshes' space.
+/// The anchor of a placed solid in the meshes' space.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MeshAnchor<'a> {
     /// To the mesh and back.
@@ -79,7 +79,7 @@ pub(crate) struct MeshAnchor<'a> {
 const UNIT: f64 = 2.0 * UNIT_ROUNDOFF;
 
 impl<'a> MeshAnchor<'a> {
-    /// The place of `anchor`, a point of the solid's own space.
+    /// The image of `anchor`, a point of the solid's own space.
     pub fn new(frame: &MeshFrame, map: &'a MeshMap, placed: &PlacedSolid, anchor: DVec3) -> Self {
         let in_world = placed.frame.exact.point(&ExactVector::new(anchor));
         let from_center = &in_world - &ExactVector::new(frame.center());
@@ -89,8 +89,8 @@ impl<'a> MeshAnchor<'a> {
         }
     }
 
-    /// `y` for a point of the mesh and the bound of its error, unless the map is too
-    /// rough for it.
+    /// `y` for a point of the mesh and the bound of its error; `None` if the defect is too
+    /// large.
     pub fn seen(&self, vertex: DVec3) -> Option<(DVec3, f64)> {
         let map = self.map;
         if !(map.defect <= 0.25) {

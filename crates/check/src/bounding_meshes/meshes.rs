@@ -1,9 +1,9 @@
-//! The meshes of a window in Embree, and what a ray meets of them.
+//! The meshes of a window in Embree, and the crossings of a ray with them.
 //!
-//! Embree tells which triangles a ray meets; the parameters are computed anew
+//! Embree finds the triangles that a ray crosses. The parameters are computed again
 //! from the planes of those triangles, in f64, so that the bounds are as tight
-//! as the hulls are. They carry no proof: an answer outside of them is a
-//! suspect and is judged again by `retrial`.
+//! as the hulls are. They prove nothing: an answer outside of them is a
+//! suspect, which `verdict::exact_recheck` judges.
 
 use std::ops::Range;
 
@@ -13,16 +13,15 @@ use rayon::prelude::*;
 use cyltrace::embree::{self, Device, GeometryId, MeshHit, Ray32, SceneBuilder};
 use cyltrace::math::{Bounds, Ray};
 
+use super::crossings::LeafCrossings;
 use super::hull_list::{HullList, hulls};
 use super::mesh_frame::MeshFrame;
+use super::open_ends::OpenEnds;
 use super::window::{PlacedSolid, Window};
-use crate::verdict::composed::composed_bounds;
-use crate::verdict::open_ends::OpenEnds;
-use crate::verdict::sandwich::{Crossings, SolidBounds, sheet_bounds, solid_bounds};
-use cyltrace::solid::AnySolid;
+use crate::solids::shape;
 use cyltrace::solid::tessellation::Fit;
 
-/// No hull stands for a solid.
+/// A solid without a hull.
 const NONE: u32 = u32::MAX;
 
 /// Both meshes of every solid of a window.
@@ -31,10 +30,12 @@ pub(crate) struct Meshes<'a> {
     pub segments: u32,
     /// A box around each solid, in the world.
     pub boxes: Vec<Bounds>,
-    window: &'a Window,
+    /// The window of the solids.
+    pub window: &'a Window,
+    /// The missing disks of each solid.
+    pub open_ends: Vec<OpenEnds>,
     inner: Mesh,
     outer: Mesh,
-    open_ends: Vec<OpenEnds>,
     scene: embree::Scene<Vec<MeshHit>>,
 }
 
@@ -45,57 +46,28 @@ struct Mesh {
     geometry: GeometryId,
 }
 
-/// What a ray meets of one solid's meshes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen {
-    /// The position in the window of the solid's only or first leaf.
-    pub solid: u32,
-    /// The bounds of its first hit.
-    pub bounds: SolidBounds,
-}
-
 /// A crossing of one hull.
-pub(crate) struct Crossing {
+struct Crossing {
     solid: u32,
     is_outer: bool,
-    /// Whether it is a way in; of the sheets of a disk, one through that over it.
+    /// Whether it is an entry; for the sheets of a disk, whether it is through the upper one.
     enters: bool,
     t: f64,
 }
 
-/// What a ray meets of the meshes of a leaf.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LeafCrossings {
-    /// Of the mesh around it.
-    pub outer: Crossings,
-    /// Of the mesh within it, or of the sheets of a disk: through that over it are the
-    /// ways in, through that under it the ways out.
-    pub inner: Crossings,
-}
-
-impl LeafCrossings {
-    /// Neither is met.
-    pub const NONE: Self = Self {
-        outer: Crossings::NONE,
-        inner: Crossings::NONE,
-    };
-}
-
-/// What one thread needs to look along rays.
+/// The buffers of a thread that traces rays.
 #[derive(Default)]
-pub(crate) struct Scratch {
+pub(crate) struct Traversal {
     hits: Vec<MeshHit>,
     crossings: Vec<Crossing>,
     leaves: Vec<LeafCrossings>,
-    /// What the last ray met, by solid.
-    pub seen: Vec<Seen>,
 }
 
 impl<'a> Meshes<'a> {
     /// Builds the meshes and Embree's hierarchy over them.
     ///
     /// # Errors
-    /// When Embree refuses.
+    /// If Embree fails.
     pub fn new(
         device: &Device,
         window: &'a Window,
@@ -131,22 +103,25 @@ impl<'a> Meshes<'a> {
         })
     }
 
-    /// Whether all leaves of a solid have an inner mesh: without one, its hits have no
+    /// Whether all leaves of a solid have an inner mesh. Without one, its hits have no
     /// upper bound.
     pub fn has_inner(&self, solid: u32) -> bool {
         let mut leaves = self.window.leaves_with(solid);
         leaves.all(|leaf| self.inner.hull_of[leaf as usize] != NONE)
     }
 
-    /// Solids without an outer hull: nothing bounds the hits of a ray that
-    /// may meet their boxes.
+    /// Solids without an outer hull. Nothing bounds the hits of a ray that may enter their
+    /// boxes.
     pub fn unbounded(&self) -> &[u32] {
-        &self.outer.hulls.unbounded
+        &self.outer.hulls.missing
     }
 
-    /// How many solids have no inner hull.
-    pub fn empty(&self) -> usize {
-        self.inner.hulls.empty.len()
+    /// The number of solids without an inner hull, and without an outer one.
+    pub fn missing(&self) -> [usize; 2] {
+        [
+            self.inner.hulls.missing.len(),
+            self.outer.hulls.missing.len(),
+        ]
     }
 
     /// The triangles of a solid's outer, then of its inner hull.
@@ -154,19 +129,25 @@ impl<'a> Meshes<'a> {
         [&self.outer, &self.inner].map(|mesh| mesh.triangles_of(solid))
     }
 
-    /// Writes what Embree finds the ray to meet up to a parameter, which may be
-    /// infinite, to `scratch.seen`.
-    pub fn look(&self, ray: &Ray32, up_to: f32, scratch: &mut Scratch) {
+    /// Calls `found` with the first leaf of each solid whose meshes the ray crosses up to a
+    /// parameter, which may be infinite, and with the crossings of its leaves.
+    pub fn for_each_solid(
+        &self,
+        ray: &Ray32,
+        up_to: f32,
+        buffers: &mut Traversal,
+        mut found: impl FnMut(u32, &[LeafCrossings]),
+    ) {
         let origin = point(ray.origin);
         let direction = point(ray.direction);
         let whole = Ray32 {
             t_far: up_to,
             ..*ray
         };
-        self.scene.every_hit(&whole, &mut scratch.hits);
-        let crossings = &mut scratch.crossings;
+        self.scene.every_hit(&whole, &mut buffers.hits);
+        let crossings = &mut buffers.crossings;
         crossings.clear();
-        for hit in &scratch.hits {
+        for hit in &buffers.hits {
             let is_outer = hit.geometry == self.outer.geometry;
             let mesh = if is_outer { &self.outer } else { &self.inner };
             let [a, b, c] = mesh.corners(hit.primitive as usize);
@@ -188,17 +169,16 @@ impl<'a> Meshes<'a> {
             }
         }
         crossings.sort_unstable_by_key(|crossing| crossing.solid);
-        scratch.seen.clear();
         let mut left = crossings.as_slice();
         while let Some(first) = left.first() {
             let leaves = self.window.leaves_with(first.solid);
             let count = left.partition_point(|crossing| crossing.solid < leaves.end);
             let (of_solid, others) = left.split_at(count);
             left = others;
-            scratch.leaves.clear();
-            scratch.leaves.resize(leaves.len(), LeafCrossings::NONE);
+            buffers.leaves.clear();
+            buffers.leaves.resize(leaves.len(), LeafCrossings::NONE);
             for crossing in of_solid {
-                let leaf = &mut scratch.leaves[(crossing.solid - leaves.start) as usize];
+                let leaf = &mut buffers.leaves[(crossing.solid - leaves.start) as usize];
                 let hull = if crossing.is_outer {
                     &mut leaf.outer
                 } else {
@@ -207,15 +187,12 @@ impl<'a> Meshes<'a> {
                 hull.add(crossing.t, crossing.enters);
             }
             if up_to < f32::INFINITY {
-                for leaf in &mut scratch.leaves {
+                for leaf in &mut buffers.leaves {
                     leaf.outer.leave_later();
                     leaf.inner.leave_later();
                 }
             }
-            scratch.seen.push(Seen {
-                solid: leaves.start,
-                bounds: self.bounds(leaves.start, ray, &scratch.leaves),
-            });
+            found(leaves.start, &buffers.leaves);
         }
     }
 
@@ -224,26 +201,11 @@ impl<'a> Meshes<'a> {
         self.window.leaves()
     }
 
-    /// The bounds that crossings of the meshes of a solid's leaves make.
-    pub fn bounds(&self, solid: u32, ray: &Ray32, leaves: &[LeafCrossings]) -> SolidBounds {
-        let t_min = f64::from(ray.t_near);
-        if let Some(found) = self.window.composition_of(solid) {
-            return composed_bounds(&found.composition, leaves, t_min);
-        }
-        let LeafCrossings { outer, inner } = &leaves[0];
-        if self.is_disk(solid) {
-            return sheet_bounds(outer, inner, t_min);
-        }
-        let ends = &self.open_ends[solid as usize];
-        let (origin, direction) = (point(ray.origin), point(ray.direction));
-        solid_bounds(outer, inner, t_min, |t| {
-            ends.are_passed(origin, direction, t)
-        })
-    }
-
     /// Whether a solid is a disk, with sheets in place of an inner mesh.
     pub fn is_disk(&self, solid: u32) -> bool {
-        matches!(self.window.solids[solid as usize].solid, AnySolid::Disk(_))
+        shape(&self.window.solids[solid as usize].solid)
+            .flat()
+            .is_some()
     }
 
     /// Whether a solid is a composition.
@@ -276,7 +238,7 @@ pub(crate) fn point(x: [f32; 3]) -> DVec3 {
     DVec3::from_array(x.map(f64::from))
 }
 
-/// Whether a ray may come through a box; `false` is certain.
+/// Whether a ray may enter a box; `false` is certain.
 ///
 /// A slab's parameter is computed with relative error 3 u of the distance's
 /// and the quotient's roundings; the box grows by what the differences round

@@ -1,16 +1,15 @@
 //! The scene without its placements: windows of it, as lists of placed solids.
 //!
-//! Placements are composed in exact numbers, by the oracle's code, and boxes
-//! follow the composed map: what the tracer does on its way down has no part in
-//! it.
+//! The oracle's code composes the placements in exact numbers, and boxes
+//! follow the composed map: the tracer's code has no part in it.
 //!
-//! A scene is one window if all its solids may be checked at a time and f32
-//! resolves them. An f32 mesh about a point `c` knows a coordinate at distance
+//! A scene is one window if its meshes fit into the memory and f32
+//! resolves them. An f32 mesh about a point `c` represents a coordinate at distance
 //! `d` from `c` to `2^-24 d`; with `w` the least half width of a solid (radius or
-//! half length, in the world), prisms lose `2^-24 d / w` of it. A window is
+//! half length, in the world), meshes lose `2^-24 d / w` of it. A window is
 //! resolved if `d / w` is bounded for half of all solids, so that half of them lose less than a
 //! thousandth. Other windows are boxes about a random solid, at most
-//! [`WIDEST`] times as wide as its half width, with all solids that meet them.
+//! [`WIDEST`] times as wide as its half width, with all solids whose boxes overlap them.
 
 use std::sync::Arc;
 
@@ -21,35 +20,35 @@ use cyltrace::solid::{AnySolid, Composition};
 use super::hull::triangles_needed;
 use super::window::{PlacedComposition, PlacedFrame, PlacedSolid, Window};
 
-/// The width of a window in half widths of the solid in its middle.
+/// The width of a window in half widths of the solid at its center.
 const WIDEST: f64 = (1 << 12) as f64;
 
-/// Windows of a scene that is not checked at once.
+/// Windows of a scene that is not a single window.
 const WINDOWS: u64 = 8;
 
-/// How often a window is made smaller by half before it is given up: 2^-40 of
-/// the widest is far below the solid in its middle, where all solids left share
+/// How often a window is halved before it is given up: 2^-40 of
+/// the widest is far smaller than the solid at its center, so all solids left share
 /// a point.
 const MOST_HALVINGS: u32 = 40;
 
 /// The least half width of a window, as a share of its farthest coordinate. The origins of
-/// rays are on a grid of at most 2^-49 of it (`mesh_frame`), which so divides a window into 64
-/// steps or more: what is aimed at the window hits it. A solid so far out that this is wider
-/// than [`WIDEST`] is beyond f32 in any window, and its row reports no witness.
+/// rays are on a grid of at most 2^-49 of it (`mesh_frame`), which divides a window into 64
+/// steps or more: rays aimed at the window hit it. If this is wider than [`WIDEST`], the solid
+/// is beyond f32 in any window, and its row reports no witness.
 const LEAST_REACH: f64 = power_of_two(-44);
 
-/// What the meshes of a window may take.
+/// The size of a window's meshes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Budget {
     /// Triangles of the meshes of either side.
     pub triangles: u64,
-    /// Sides of each prism.
+    /// Sides of each mesh.
     pub segments: u32,
 }
 
-/// The whole scene as one window where that is sound, or else several of at
-/// most an eighth of the triangles each; none if the scene is empty or has more
-/// solids than that in one point wherever it was looked at.
+/// The whole scene as one window if that is resolved, or else several of at
+/// most an eighth of the triangles each; none if the scene is empty or has too many
+/// solids at one point in each of them.
 pub(crate) fn windows(scene: &Scene, budget: Budget, seed: u64) -> Vec<Window> {
     let tree = Tree::new(scene);
     if tree.root().count == 0 {
@@ -71,25 +70,25 @@ pub(crate) fn windows(scene: &Scene, budget: Budget, seed: u64) -> Vec<Window> {
     (0..WINDOWS).filter_map(about_random).collect()
 }
 
-/// What is known of a prototype and all that is placed in it.
+/// A prototype with all that is placed in it.
 struct Node {
-    /// Solids with every placement counted; stays at the greatest number.
+    /// Solids with every placement counted; saturates.
     count: u64,
-    /// Holds all of them, in the prototype's space.
+    /// Contains all of them, in the prototype's space.
     bounds: Bounds,
     /// The boxes of the placements, in the prototype's space.
     placed: Vec<Bounds>,
-    /// Its compositions, to be shared by all places.
+    /// Its compositions, shared by all placements.
     compositions: Vec<Arc<Composition>>,
 }
 
-/// A scene with boxes about everything that is placed.
+/// A scene with boxes about all placements.
 struct Tree<'a> {
     scene: &'a Scene,
     nodes: Vec<Option<Node>>,
 }
 
-/// Solids that meet a region, as they are found.
+/// Solids whose boxes overlap a region, as they are found.
 struct Found {
     triangles_left: u64,
     segments: u32,
@@ -102,7 +101,7 @@ impl Found {
         region.is_none_or(|region| region.meets(bounds))
     }
 
-    /// Adds a solid, single or as its leaves; false if it is too much.
+    /// Adds a solid, single or as its leaves; false if that exceeds the budget.
     fn add(&mut self, solids: &[AnySolid], frame: &Arc<PlacedFrame>, primitive: u32) -> bool {
         for &solid in solids {
             let triangles = triangles_needed(&solid, self.segments);
@@ -128,7 +127,7 @@ impl<'a> Tree<'a> {
         tree
     }
 
-    /// Fills in the node of a prototype, after those that it places.
+    /// Fills in the node of a prototype, after those of its placements.
     fn add(&mut self, index: PrototypeIndex) {
         if self.nodes[index.0 as usize].is_some() {
             return;
@@ -158,14 +157,14 @@ impl<'a> Tree<'a> {
 
     fn node(&self, index: PrototypeIndex) -> &Node {
         let node = &self.nodes[index.0 as usize];
-        node.as_ref().expect("what is placed was added first")
+        node.as_ref().expect("placements are added first")
     }
 
     fn root(&self) -> &Node {
         self.node(PrototypeIndex::ROOT)
     }
 
-    /// All solids that meet the region, or `None` if they take more than the budget.
+    /// All solids whose boxes overlap the region; `None` if they exceed the budget.
     fn window_of(&self, region: Option<Bounds>, budget: Budget) -> Option<Window> {
         let mut found = Found {
             triangles_left: budget.triangles,
@@ -180,8 +179,8 @@ impl<'a> Tree<'a> {
         all_fit.then_some(found.window)
     }
 
-    /// Adds what meets the region in one place of a prototype; false as soon as
-    /// it is too much.
+    /// Adds the solids of one placement of a prototype; false as soon as they exceed the
+    /// budget.
     fn find(&self, index: PrototypeIndex, frame: &Arc<PlacedFrame>, found: &mut Found) -> bool {
         let prototype = &self.scene.prototypes[index.0 as usize];
         let node = self.node(index);
@@ -208,8 +207,8 @@ impl<'a> Tree<'a> {
         }
         let placed = prototype.placements.iter().zip(&node.placed).zip(0..);
         for ((placement, bounds), number) in placed {
-            // The box is in this prototype's space: no map is composed for
-            // what is elsewhere.
+            // The box is in this prototype's space, so no map is composed for placements
+            // outside of the region.
             if !found.meets(&bounds.transformed(&frame.world_from_object)) {
                 continue;
             }
@@ -221,8 +220,7 @@ impl<'a> Tree<'a> {
         true
     }
 
-    /// The center and the half width of a solid of the scene, each with the same
-    /// chance.
+    /// The center and the half width of a random solid of the scene, all equally likely.
     fn pick(&self, random: &mut Random) -> (Bounds, f64) {
         let mut index = PrototypeIndex::ROOT;
         let mut frame = PlacedFrame::root();
@@ -264,8 +262,8 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// The largest window about a point that fits the budget, of those
-    /// that are as wide as [`WIDEST`] allows or half, a quarter, ... of it.
+    /// The largest window about a point that fits the budget: as wide as [`WIDEST`] allows,
+    /// or half, a quarter, ... of it.
     fn window_about(&self, center: Bounds, half_width: f64, budget: Budget) -> Option<Window> {
         let mut reach = WIDEST / 2.0 * half_width;
         let least = LEAST_REACH * center.lower.abs().max_element();
@@ -296,7 +294,7 @@ mod tests {
         cyltrace::scene::load(&path).expect("the scene is there")
     }
 
-    /// What so many cylinders take as prisms of 8 sides.
+    /// The budget of this number of cylinders with 8 sides.
     fn of_cylinders(count: u64) -> Budget {
         Budget {
             triangles: 32 * count,
@@ -317,7 +315,7 @@ mod tests {
 
     /// The windows of the lattice against all solids, one by one.
     #[test]
-    fn windows_hold_exactly_the_solids_that_meet_them() {
+    fn windows_contain_exactly_the_solids_that_overlap_them() {
         let scene = load("lattice.toml");
         let whole = windows(&scene, of_cylinders(1 << 17), 0).remove(0);
         for window in windows(&scene, of_cylinders(20_000), 3) {

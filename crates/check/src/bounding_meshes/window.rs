@@ -1,8 +1,8 @@
 //! Parts of a scene as lists of placed solids.
 //!
 //! A composition is listed by the solids that it is made of, its *leaves*, one
-//! after the other: meshes are made of leaves, and what they say of the whole
-//! follows from the operations (`verdict::composed`). A solid is known by the
+//! after the other: meshes are made of leaves, and the operations combine their bounds
+//! (`verdict::composed`). A solid is identified by the
 //! position of its first leaf, which for a single solid is the only one.
 
 use std::ops::Range;
@@ -15,11 +15,13 @@ use cyltrace::scene::Placement;
 use cyltrace::solid::{AnySolid, Composition, SolidKind};
 use cyltrace_oracle::ExactAffine;
 
+use crate::solids::shape;
+
 /// The most distances from a window's middle in half widths of a solid at which
 /// its prisms are worth tracing: 2^-24 of it is 2^-10 of the half width.
 const RESOLVED: f64 = (1 << 14) as f64;
 
-/// A place in the world where a prototype stands.
+/// A placement of a prototype in the world.
 #[derive(Debug)]
 pub(crate) struct PlacedFrame {
     /// The placements from the root, outermost first.
@@ -31,7 +33,7 @@ pub(crate) struct PlacedFrame {
 }
 
 impl PlacedFrame {
-    /// Where the scene itself stands.
+    /// The placement of the scene itself.
     pub fn root() -> Self {
         Self::new(Vec::new(), ExactAffine::identity())
     }
@@ -45,7 +47,7 @@ impl PlacedFrame {
         }
     }
 
-    /// The place of a placement in this one.
+    /// The placement of a prototype within this one.
     pub fn within(&self, number: u32, placement: &Placement) -> Self {
         let mut instance = self.instance.clone();
         instance.push(number);
@@ -54,19 +56,19 @@ impl PlacedFrame {
     }
 }
 
-/// A single solid, or a leaf of a composition, and where it stands.
+/// A placed solid, or a placed leaf of a composition.
 #[derive(Clone, Debug)]
 pub(crate) struct PlacedSolid {
     /// The solid in its prototype's space.
     pub solid: AnySolid,
-    /// Where its prototype stands.
+    /// The placement of its prototype.
     pub frame: Arc<PlacedFrame>,
     /// The number within the prototype, of a leaf that of its composition.
     pub primitive: u32,
 }
 
 impl PlacedSolid {
-    /// A box in the world that holds the solid.
+    /// A box in the world that contains the solid.
     ///
     /// [`Bounds::transformed`] grows by 8 units where its own roundings need
     /// 6; the rounded entries of the map add one.
@@ -80,29 +82,7 @@ impl PlacedSolid {
     pub fn half_width(&self) -> f64 {
         let placement = &self.frame.world_from_object;
         let shrink = PlacementErrors::new(placement, &ChildFromParent::new(placement)).shrink;
-        shrink * half_width(&self.solid)
-    }
-}
-
-/// At most the distance from the middle of a solid to its surface, in its own
-/// space; for a disk, to its rim.
-pub(crate) fn half_width(solid: &AnySolid) -> f64 {
-    match solid {
-        AnySolid::Cylinder(cylinder) => {
-            let length = (cylinder.p1() - cylinder.p0()).length();
-            cylinder.radius().min(length / 2.0)
-        }
-        // The ball about the middle of the axis that touches the wall has the radius
-        // there times the cosine of the slope, and that is at least a quarter of the
-        // greater radius or of the length.
-        AnySolid::Cone(cone) => {
-            let length = (cone.p1() - cone.p0()).length();
-            0.25 * cone.radius0().max(cone.radius1()).min(length)
-        }
-        AnySolid::RoundedCone(cone) => 0.5 * cone.radius0().max(cone.radius1()),
-        AnySolid::Sphere(sphere) => sphere.radius(),
-        AnySolid::Cuboid(cuboid) => cuboid.half_widths().min_element(),
-        AnySolid::Disk(disk) => disk.radius(),
+        shrink * shape(&self.solid).get().half_width()
     }
 }
 
@@ -120,9 +100,9 @@ pub(crate) struct PlacedComposition {
 pub(crate) struct Window {
     /// Rays are clipped to this box; `None` is the whole scene.
     pub bounds: Option<Bounds>,
-    /// All solids that meet it, compositions as their leaves.
+    /// All solids whose boxes overlap it, compositions as their leaves.
     pub solids: Vec<PlacedSolid>,
-    /// Which of them belong together, in the order of their leaves.
+    /// The compositions among them, in the order of their leaves.
     pub compositions: Vec<PlacedComposition>,
 }
 
@@ -163,13 +143,13 @@ impl Window {
         })
     }
 
-    /// How many solids there are, a composition being one.
+    /// The number of solids; a composition counts as one.
     pub fn count(&self) -> usize {
         let leaves = self.compositions.iter().map(|one| one.leaves.len() - 1);
         self.solids.len() - leaves.sum::<usize>()
     }
 
-    /// The box about which meshes are centerd: the window's own, or that of all
+    /// The box about which meshes are centered: the window's own, or that of all
     /// its solids.
     pub fn extent(&self) -> Bounds {
         let all = || {

@@ -1,7 +1,7 @@
-//! How far a right mesh may be from the surface that it represents.
+//! By how much a right mesh may be off its surface.
 //!
-//! A mesh that `tessellate` made deviates by a length that is derived for each solid on its
-//! own, in the solid's own space, from the number of sides and the fit: `D` of
+//! The deviation of a mesh made by `tessellate` is derived for each solid,
+//! in the solid's own space, from the number of sides and the fit: `D` of
 //! `deviation_of`, on one side of the surface alone, and `E` of `corner_error_of` on both.
 //! The mesh lies between two solids, within `E`:
 //!
@@ -12,8 +12,8 @@
 //!   times `1 + D/R`. A plate is not uncertain along its axis because it is wide;
 //! - of the other kinds, depths are off: between `D` and 0 inward, or 0 and `D` outward.
 //!
-//! A placement maps surface and mesh alike, so that this is true in the solid's own space whatever the
-//! placement is. What rounding the placement of a vertex adds is proportional to the solid's extent
+//! A placement maps surface and mesh alike, so this is true in the solid's own space for any
+//! placement. The rounding of a placed vertex is proportional to the solid's extent
 //! and part of the tolerance.
 //!
 //! # Why a comment cannot widen the tolerance
@@ -34,19 +34,21 @@
 
 use cyltrace::meshes::{MeshFile, Plan};
 use cyltrace::scene::Scene;
+use cyltrace::solid::AnySolid;
 use cyltrace::solid::tessellation::{Fit, corner_error_of, deviation_of};
-use cyltrace::solid::{AnySolid, Cone, Cylinder, Disk};
 
-/// How far a mesh may be from the surface.
+use crate::solids::{Shape, shape};
+
+/// By how much a mesh may be off the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Deviation {
     /// By this length in scene units, everywhere.
     Everywhere(f64),
-    /// By what `tessellate` derives for each solid.
+    /// By the length that `tessellate` derives for each solid.
     Tessellated {
         /// Sides around an axis.
         segments: u32,
-        /// The side of the surface on which the mesh is.
+        /// The side of the surface on which the mesh lies.
         fit: Fit,
     },
 }
@@ -55,10 +57,10 @@ pub enum Deviation {
 /// of this file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Slack {
-    /// The radii of the inner one of both solids, as a share of the true ones.
+    /// The radii of the inner solid, relative to the true ones.
     inner_scale: f64,
-    /// Those of the outer one.
-    outer_scale: f64,
+    /// The radii of the outer one.
+    pub outer_scale: f64,
     /// How far inside of the inner one the mesh may lie.
     pub inward: f64,
     /// How far outside of the outer one.
@@ -106,29 +108,19 @@ impl Deviation {
             Fit::Inscribed => -deviation / solid.radius(),
             Fit::Circumscribed => deviation / solid.radius(),
         };
-        let none = Slack::both(error);
-        let slack = match (scaled(solid, 1.0 + share), fit) {
-            (Some(_), Fit::Inscribed) => Slack {
-                inner_scale: 1.0 + share,
-                ..none
-            },
-            (Some(_), Fit::Circumscribed) => Slack {
-                outer_scale: 1.0 + share,
-                ..none
-            },
-            (None, Fit::Inscribed) => Slack {
-                inward: deviation + error,
-                ..none
-            },
-            (None, Fit::Circumscribed) => Slack {
-                outward: deviation + error,
-                ..none
-            },
-        };
-        Slack {
+        let mut slack = Slack {
             greatest: deviation + error,
-            ..slack
-        }
+            ..Slack::both(error)
+        };
+        let has_disks = shape(solid).with_radii_scaled(1.0).is_some();
+        let (affected, by) = match (has_disks, fit) {
+            (true, Fit::Inscribed) => (&mut slack.inner_scale, share),
+            (true, Fit::Circumscribed) => (&mut slack.outer_scale, share),
+            (false, Fit::Inscribed) => (&mut slack.inward, deviation),
+            (false, Fit::Circumscribed) => (&mut slack.outward, deviation),
+        };
+        *affected += by;
+        slack
     }
 }
 
@@ -152,53 +144,31 @@ impl Slack {
         }
     }
 
-    /// That of a composition, whose operands may be inside out.
+    /// The slack of a composition, whose operands may be inside out.
     pub fn of_parts(parts: impl Iterator<Item = Self>) -> Self {
         Self::both(parts.map(|part| part.greatest).fold(0.0, f64::max))
     }
 
     /// The inner one of both solids.
-    pub fn inner(&self, solid: &AnySolid) -> AnySolid {
-        scaled(solid, self.inner_scale).unwrap_or(*solid)
+    pub fn inner(&self, shape: &Shape) -> Shape {
+        shape.with_radii_scaled(self.inner_scale).unwrap_or(*shape)
     }
 
     /// The outer one.
-    pub fn outer(&self, solid: &AnySolid) -> AnySolid {
-        scaled(solid, self.outer_scale).unwrap_or(*solid)
+    pub fn outer(&self, shape: &Shape) -> Shape {
+        shape.with_radii_scaled(self.outer_scale).unwrap_or(*shape)
     }
 
-    /// What is left of a solid's radius where its mesh lacks most.
+    /// The rest of a solid's radius where its mesh lacks most.
     pub fn spare_radius(&self, radius: f64) -> f64 {
         self.inner_scale * radius - self.inward
-    }
-}
-
-/// A solid whose mesh differs from it by its radii alone, with its radii scaled; `None` for
-/// others, and where there is no such solid.
-fn scaled(solid: &AnySolid, scale: f64) -> Option<AnySolid> {
-    match solid {
-        AnySolid::Cylinder(one) => {
-            let radius = scale * one.radius();
-            let scaled = Cylinder::new(one.p0(), one.p1(), radius, one.caps());
-            scaled.ok().map(AnySolid::from)
-        }
-        AnySolid::Cone(one) => {
-            let radii = [one.radius0(), one.radius1()].map(|radius| scale * radius);
-            let scaled = Cone::new(one.p0(), one.p1(), radii[0], radii[1], one.caps());
-            scaled.ok().map(AnySolid::from)
-        }
-        AnySolid::Disk(one) => {
-            let scaled = Disk::new(one.center(), one.normal(), scale * one.radius());
-            scaled.ok().map(AnySolid::from)
-        }
-        _ => None,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cyltrace::solid::{Caps, Sphere};
+    use cyltrace::solid::{Caps, Cylinder, Sphere};
     use glam::DVec3;
 
     #[test]
@@ -207,12 +177,18 @@ mod tests {
         let solid = AnySolid::from(cylinder);
         // Six sides: cos(π/6) = √3/2.
         let slack = |fit, solid| Deviation::Tessellated { segments: 6, fit }.slack(solid);
+        let radius = |shape: Shape| {
+            let outline = shape.get().outline();
+            assert_eq!(outline.length, 1.0);
+            outline.radius
+        };
+        let own = shape(&solid);
         let inscribed = slack(Fit::Inscribed, &solid);
-        assert!((inscribed.inner(&solid).radius() - 3.0_f64.sqrt()).abs() < 1e-14);
-        assert_eq!(inscribed.outer(&solid), solid);
+        assert!((radius(inscribed.inner(&own)) - 3.0_f64.sqrt()).abs() < 1e-14);
+        assert_eq!(radius(inscribed.outer(&own)), 2.0);
         let circumscribed = slack(Fit::Circumscribed, &solid);
-        assert_eq!(circumscribed.inner(&solid), solid);
-        assert!((circumscribed.outer(&solid).radius() - 4.0 / 3.0_f64.sqrt()).abs() < 1e-14);
+        assert_eq!(radius(circumscribed.inner(&own)), 2.0);
+        assert!((radius(circumscribed.outer(&own)) - 4.0 / 3.0_f64.sqrt()).abs() < 1e-14);
         assert!(circumscribed.inward < 1e-13 && circumscribed.outward < 1e-13);
         let ball = AnySolid::from(Sphere::new(DVec3::ZERO, 2.0).expect("a ball"));
         let inscribed = slack(Fit::Inscribed, &ball);

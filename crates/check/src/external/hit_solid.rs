@@ -1,28 +1,30 @@
-//! A solid that a ray meets: where it stands, how far it reaches, how thick it is.
+//! A solid that a ray hits: its placement, extent and thickness.
 
 use glam::{DAffine3, DVec3};
 
 use super::deviation::{Deviation, Slack};
-use super::nearness::{Frame, PlacedComposition, PlacedSolid};
+use super::nearness::Frame;
 use super::tolerance::{Allowance, Margin, farthest, least_radius};
+use crate::solids::scene_solid::{SceneSolid, find};
 use cyltrace::math::Ray;
-use cyltrace::scene::{PrototypeIndex, Scene};
-use cyltrace::solid::{AnySolid, Composition};
+use cyltrace::scene::Scene;
+use cyltrace::solid::AnySolid;
 use cyltrace::tracer::PartialHit;
 
-/// A solid that a ray meets.
+/// A solid that a ray hits.
 pub(super) struct HitSolid<'a> {
     /// The placements from the root to it, and its number.
     solid: (Vec<u32>, u32),
     frame: Frame,
-    found: Found<'a>,
-    /// How far its box reaches from the world's origin, or those of its leaves.
+    found: SceneSolid<'a>,
+    /// The distance of its box's farthest corner from the world's origin, or of its leaves'
+    /// boxes.
     pub extent: f64,
     /// At most its least radius in the world, less what its mesh may lack.
     pub spare_radius: f64,
-    /// What its mesh may be off.
+    /// By how much its mesh may be off.
     slack: Slack,
-    /// Where the ray meets it, rising.
+    /// The `t` of its hits, rising.
     pub at: Vec<f64>,
 }
 
@@ -35,12 +37,12 @@ impl<'a> HitSolid<'a> {
             .fold(DAffine3::IDENTITY, |whole, &one| whole * *one);
         let frame = Frame::new(&whole);
         let parts = match &found {
-            Found::Single(solid) => vec![*solid],
-            Found::Composed(solid) => solid.solids(),
+            SceneSolid::Single(solid) => vec![*solid],
+            SceneSolid::Composed(solid) => solid.solids(),
         };
         let slack = match (&found, &parts[..]) {
-            (Found::Single(solid), _) => deviation.slack(solid),
-            (Found::Composed(_), parts) => {
+            (SceneSolid::Single(solid), _) => deviation.slack(solid),
+            (SceneSolid::Composed(_), parts) => {
                 Slack::of_parts(parts.iter().map(|part| deviation.slack(part)))
             }
         };
@@ -63,7 +65,7 @@ impl<'a> HitSolid<'a> {
         self.solid.1 == hit.primitive() && self.solid.0 == path(hit)
     }
 
-    /// What an answer about it may be off.
+    /// By how much an answer about it may be off.
     pub fn margin(&self, allowance: &Allowance) -> Margin {
         Margin {
             length: allowance.of(self.extent),
@@ -76,70 +78,40 @@ impl<'a> HitSolid<'a> {
         self.frame.in_world(margin)
     }
 
-    /// Whether the ray is proven to pass through its surface between two `t`.
-    pub fn is_crossed(&self, ray: &Ray, (start, end): (f64, f64), margin: Margin) -> bool {
-        let frame = &self.frame;
-        match self.found {
-            Found::Single(solid) => {
-                PlacedSolid { solid, frame }.is_crossed(ray, (start, end), margin)
-            }
-            Found::Composed(solid) => {
-                let placed = PlacedComposition { solid, frame };
-                placed.is_crossed(ray, (start, end), margin, &self.at)
+    /// Whether the ray is proven to pass through its surface in a range.
+    pub fn is_crossed(&self, ray: &Ray, range: (f64, f64), margin: Margin) -> bool {
+        match &self.found {
+            SceneSolid::Single(solid) => self.frame.is_crossed(solid, ray, range, margin),
+            SceneSolid::Composed(solid) => {
+                let frame = &self.frame;
+                frame.is_composition_crossed(solid, ray, range, margin, &self.at)
             }
         }
     }
 
     /// Whether a point is proven to be farther from its surface than a margin.
     pub fn is_far(&self, point: DVec3, margin: Margin) -> bool {
-        let frame = &self.frame;
-        match self.found {
-            Found::Single(solid) => PlacedSolid { solid, frame }.is_far(point, margin),
-            Found::Composed(_) => false,
-        }
+        let single = self.single();
+        single.is_some_and(|solid| self.frame.is_far(solid, point, margin))
     }
 
     /// Whether a point is proven to be near its surface.
     pub fn is_near(&self, point: DVec3, margin: Margin) -> bool {
-        let frame = &self.frame;
-        match self.found {
-            Found::Single(solid) => PlacedSolid { solid, frame }.is_near(point, margin),
-            // Near one of the surfaces that it is made of, there may be nothing of it.
-            Found::Composed(_) => false,
+        let single = self.single();
+        single.is_some_and(|solid| self.frame.is_near(solid, point, margin))
+    }
+
+    /// Nothing is proven about the distance from a composition: near the surface of one of its
+    /// leaves, its own surface may be missing.
+    fn single(&self) -> Option<&AnySolid> {
+        match &self.found {
+            SceneSolid::Single(solid) => Some(solid),
+            SceneSolid::Composed(_) => None,
         }
     }
 }
 
 /// The path of a hit, which this check requests of all hits.
-pub(super) fn path(hit: &PartialHit) -> &[u32] {
+fn path(hit: &PartialHit) -> &[u32] {
     hit.instance().expect("the check requests paths")
-}
-
-/// A solid of a scene.
-pub(super) enum Found<'a> {
-    Single(AnySolid),
-    Composed(&'a Composition),
-}
-
-/// The placements of a solid, outermost first, and itself.
-pub(super) fn find<'a>(
-    scene: &'a Scene,
-    instance: &[u32],
-    primitive: u32,
-) -> (Vec<&'a DAffine3>, Found<'a>) {
-    let mut prototype = &scene.prototypes[PrototypeIndex::ROOT.0 as usize];
-    let mut placements = Vec::new();
-    for &number in instance {
-        let placement = &prototype.placements[number as usize];
-        placements.push(&placement.parent_from_child);
-        prototype = &scene.prototypes[placement.of.0 as usize];
-    }
-    let composed = || {
-        let composed = &prototype.solids.compositions;
-        let position = composed.binary_search_by_key(&primitive, |record| record.primitive);
-        let position = position.expect("the hit's solid is in the scene");
-        Found::Composed(&composed[position].solid)
-    };
-    let found = prototype.single(primitive).map(Found::Single);
-    (placements, found.unwrap_or_else(composed))
 }

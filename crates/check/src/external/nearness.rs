@@ -1,31 +1,32 @@
 //! How near points and rays come to the surface of placed solids, with bounds.
 //!
-//! A solid's surface is taken in its own space (`depth`). With `M` the linear part of
-//! `world_from_object`, a length `δ` in the world is at most `|M⁻¹| δ` there, and a
+//! Distances and depths are those of the solid's own space (`solids`). With `M` the linear part
+//! of `world_from_object`, a length `δ` in the world is at most `|M⁻¹| δ` there, and a
 //! length there at most `|M|` times as much in the world. The spectral norms are
 //! bounded from above by `|A|² ≤ max row sum of |AᵀA|`, which is equality for a
 //! uniformly scaled rotation, and at most √3 too much otherwise.
 //!
 //! The depth in the closed solid is concave along a ray: its greatest value in a range
-//! is found by sections, its least one is at an end. A disk has no inside: a ray passes
-//! through it that goes from one side of the slab of half thickness `δ` about its plane
+//! is found by sections, its least one is at an end. A disk has no inside: a ray crosses
+//! it if it goes from one side of the slab of half thickness `δ` about its plane
 //! to the other, and is nearer to the axis than the rim by `δ` all the way in between.
 //!
-//! The mesh of a solid lies between an inner and an outer one (`deviation`). A ray crosses it that
-//! passes from outside of the outer one to inside of the inner one, by `δ` each. A disk is crossed
-//! within the rim of the inner one.
+//! The mesh of a solid lies between an inner and an outer one (`deviation`). A ray crosses it if
+//! it goes from outside of the outer one to inside of the inner one, by `δ` each. It crosses a
+//! disk within the rim of the inner one.
 //!
-//! What f64 rounds on the way there is below `64 ε |M| |M⁻¹|` of the lengths that
+//! The rounding of f64 is below `64 ε |M| |M⁻¹|` of the lengths that
 //! are added; it is added to `δ`.
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::depth::{beside_disk, depth, depth_in_composed, open_ends, surface_distance};
+use super::depth::depth_in_composed;
 use super::tolerance::Margin;
+use crate::solids::{Shape, shape};
 use cyltrace::math::Ray;
-use cyltrace::solid::{AnySolid, Composition, Disk};
+use cyltrace::solid::{AnySolid, Composition};
 
-/// Sections of a range, each to 2/3 of it.
+/// The number of sections of a range, each to 2/3 of it.
 const SECTIONS: u32 = 64;
 
 /// See the head of this file.
@@ -41,12 +42,6 @@ pub(super) struct Frame {
     translation: f64,
 }
 
-/// A solid there.
-pub(super) struct PlacedSolid<'a> {
-    pub solid: AnySolid,
-    pub frame: &'a Frame,
-}
-
 impl Frame {
     pub fn new(world_from_object: &DAffine3) -> Self {
         let object_from_world = world_from_object.inverse();
@@ -58,8 +53,7 @@ impl Frame {
         }
     }
 
-    /// At least the length there of `length` around a point of the world, with what is
-    /// rounded there.
+    /// At least the length there of `length` around a point of the world, with the rounding.
     /// The solid's own numbers are at most of the size of `extent`.
     fn local_length(&self, length: f64, point: DVec3, extent: f64) -> f64 {
         let size = self.squeeze * (point.length() + self.translation) + extent;
@@ -81,8 +75,8 @@ impl Frame {
         length / self.squeeze
     }
 
-    /// The ray there, where it is between `start` and `end` and not farther from the
-    /// middle of a solid than twice its `reach` about that: it is outside beyond.
+    /// The ray there, between `start` and `end` and not farther from the
+    /// middle of a solid than twice its `reach`, beyond which the ray is outside.
     fn way(&self, ray: &Ray, (start, end): (f64, f64), (middle, reach): (DVec3, f64)) -> Way {
         let origin = self.local(ray.origin);
         let direction = self.object_from_world.transform_vector3(ray.direction);
@@ -114,14 +108,14 @@ impl Way {
         self.origin + self.direction * t
     }
 
-    /// Whether there is nothing of it; also if an end is no number.
+    /// Whether nothing is left of it; also if an end is NaN.
     fn is_empty(&self) -> bool {
         let is_ordered = self.low < self.high;
         !is_ordered
     }
 }
 
-/// Bounds the size of a solid's own numbers.
+/// A bound of the size of a solid's own numbers.
 fn extent(solid: &AnySolid) -> f64 {
     2.0 * solid.anchor().length() + solid.size()
 }
@@ -132,47 +126,51 @@ fn norm_bound(matrix: &DMat3) -> f64 {
     libm::sqrt(sums.max_element())
 }
 
-impl PlacedSolid<'_> {
+impl Frame {
     /// Whether a point of the world is proven to be farther than a margin from
-    /// the surface.
-    pub fn is_far(&self, point: DVec3, margin: Margin) -> bool {
-        let (solid, Margin { length, slack }) = (&self.solid, margin);
-        let place = self.frame.local(point);
-        let length = self.frame.local_length(length, point, extent(solid));
-        surface_distance(solid, place) > length + slack.greatest
-            || depth(&slack.inner(solid), place) > length + slack.inward
-            || depth(&slack.outer(solid), place) < -(length + slack.outward)
+    /// the surface of a solid.
+    pub fn is_far(&self, solid: &AnySolid, point: DVec3, margin: Margin) -> bool {
+        let (shape, Margin { length, slack }) = (shape(solid), margin);
+        let place = self.local(point);
+        let length = self.local_length(length, point, extent(solid));
+        shape.surface_distance(place) > length + slack.greatest
+            || slack.inner(&shape).get().depth(place) > length + slack.inward
+            || slack.outer(&shape).get().depth(place) < -(length + slack.outward)
     }
 
-    /// As [`PlacedSolid::is_far`], with disks at open ends.
-    pub fn is_far_from_closed(&self, point: DVec3, margin: Margin) -> bool {
-        let extent = extent(&self.solid);
-        let length = self.frame.local_length(margin.length, point, extent);
-        depth(&self.solid, self.frame.local(point)).abs() > length + margin.slack.greatest
+    /// As [`Frame::is_far`], with disks at open ends.
+    pub fn is_far_from_closed(&self, solid: &AnySolid, point: DVec3, margin: Margin) -> bool {
+        let length = self.local_length(margin.length, point, extent(solid));
+        let depth = shape(solid).get().depth(self.local(point));
+        depth.abs() > length + margin.slack.greatest
     }
 
     /// Whether a point of the world is proven to be within a margin of the surface.
-    pub fn is_near(&self, point: DVec3, margin: Margin) -> bool {
-        let distance = surface_distance(&self.solid, self.frame.local(point));
-        (distance - margin.slack.greatest) * self.frame.stretch <= margin.length
+    pub fn is_near(&self, solid: &AnySolid, point: DVec3, margin: Margin) -> bool {
+        let distance = shape(solid).surface_distance(self.local(point));
+        (distance - margin.slack.greatest) * self.stretch <= margin.length
     }
 
-    /// Whether a ray is proven to pass, between `start` and `end`, from farther outside of the
-    /// surface than a margin to farther inside than that, or the other way, and all the way
+    /// Whether a ray is proven to pass through the surface in a range: from farther outside
+    /// than a margin to farther inside than that, or the other way, and all the way
     /// farther than that from an open end.
-    pub fn is_crossed(&self, ray: &Ray, (start, end): (f64, f64), margin: Margin) -> bool {
-        let solid = &self.solid;
-        let length = self
-            .frame
-            .local_length(margin.length, ray.origin, extent(solid));
+    pub fn is_crossed(
+        &self,
+        solid: &AnySolid,
+        ray: &Ray,
+        range: (f64, f64),
+        margin: Margin,
+    ) -> bool {
+        let length = self.local_length(margin.length, ray.origin, extent(solid));
         let slack = margin.slack;
-        let (inner, outer) = (slack.inner(solid), slack.outer(solid));
+        let own = shape(solid);
+        let (inner, outer) = (slack.inner(&own), slack.outer(&own));
         let (inside, outside) = (length + slack.inward, length + slack.outward);
         let deep = inside.max(outside);
-        let reach = outer.size() + 4.0 * deep;
-        let mut way = self.frame.way(ray, (start, end), (solid.center(), reach));
-        for (end, inward) in open_ends(solid) {
-            // Where room + slope t > 0 the end is far enough.
+        let reach = slack.outer_scale * solid.size() + 4.0 * deep;
+        let mut way = self.way(ray, range, (solid.center(), reach));
+        for (end, inward) in own.open_ends() {
+            // The end is far enough while room + slope t > 0.
             let room = (way.origin - end).dot(inward) - deep;
             let slope = way.direction.dot(inward);
             let border = -room / slope;
@@ -186,15 +184,15 @@ impl PlacedSolid<'_> {
         if way.is_empty() {
             return false;
         }
-        if let AnySolid::Disk(disk) = &inner {
-            return is_disk_crossed(disk, way.at(way.low), way.at(way.high), inside);
+        if inner.flat().is_some() {
+            return is_disk_crossed(&inner, &way, inside);
         }
         let (mut low, mut high) = (way.low, way.high);
-        let outer_depth = |t: f64| depth(&outer, way.at(t));
+        let outer_depth = |t: f64| outer.get().depth(way.at(t));
         if !(outer_depth(low).min(outer_depth(high)) < -outside) {
             return false;
         }
-        let depth = |t: f64| depth(&inner, way.at(t));
+        let depth = |t: f64| inner.get().depth(way.at(t));
         for _ in 0..SECTIONS {
             let third = (high - low) / 3.0;
             let (left, right) = (low + third, high - third);
@@ -210,58 +208,55 @@ impl PlacedSolid<'_> {
         }
         false
     }
-}
 
-/// A solid composed of others in its own space.
-pub(super) struct PlacedComposition<'a> {
-    pub solid: &'a Composition,
-    pub frame: &'a Frame,
-}
-
-impl PlacedComposition<'_> {
-    /// As [`PlacedSolid::is_crossed`]. Where the ray is deepest is not known: it is
-    /// looked at in the middle between the places `met`, rising, where it meets the
-    /// solid. Whatever they are, what is found there is a proof.
-    pub fn is_crossed(
+    /// As [`Frame::is_crossed`], for a composition. It is deepest at an unknown place: the
+    /// depth is evaluated halfway between the `hits`, rising, of the ray with the
+    /// solid. Wherever they are, a depth found there is a proof.
+    pub fn is_composition_crossed(
         &self,
+        solid: &Composition,
         ray: &Ray,
-        (start, end): (f64, f64),
+        range: (f64, f64),
         margin: Margin,
-        met: &[f64],
+        hits: &[f64],
     ) -> bool {
-        let bounds = self.solid.bounds();
+        let bounds = solid.bounds();
         if bounds.is_empty() {
             return false;
         }
-        let extents = self.solid.solids().iter().map(extent).fold(0.0, f64::max);
-        let length = self.frame.local_length(margin.length, ray.origin, extents);
+        let extents = solid.solids().iter().map(extent).fold(0.0, f64::max);
+        let length = self.local_length(margin.length, ray.origin, extents);
         let deep = length + margin.slack.greatest;
         let reach = 0.5 * bounds.extent().length() + 4.0 * deep;
-        let way = self.frame.way(ray, (start, end), (bounds.center(), reach));
+        let way = self.way(ray, range, (bounds.center(), reach));
         if way.is_empty() {
             return false;
         }
-        let middles = met.windows(2).map(|ends| 0.5 * (ends[0] + ends[1]));
+        let middles = hits.windows(2).map(|ends| 0.5 * (ends[0] + ends[1]));
         let middles = middles.filter(|t| (way.low..way.high).contains(t));
         let depths: Vec<f64> = middles
             .chain([way.low, way.high])
-            .map(|t| depth_in_composed(self.solid, way.at(t)))
+            .map(|t| depth_in_composed(solid, way.at(t)))
             .collect();
         depths.iter().any(|depth| *depth > deep) && depths.iter().any(|depth| *depth < -deep)
     }
 }
 
-/// Whether the way from `start` to `end` passes a disk, farther than `deep` from
-/// its rim: see the head of this file.
-fn is_disk_crossed(disk: &Disk, start: DVec3, end: DVec3, deep: f64) -> bool {
-    let height = |point: DVec3| beside_disk(disk, point).0;
-    let (from, to) = (height(start), height(end));
-    // Where the way is at a height, between those of its ends.
+/// Whether a part of a ray crosses a disk, farther than `deep` from its rim: see the head of
+/// this file.
+fn is_disk_crossed(disk: &Shape, way: &Way, deep: f64) -> bool {
+    let Some((radius, up)) = disk.flat() else {
+        return false;
+    };
+    let [center, _] = disk.get().end_points();
+    let (start, end) = (way.at(way.low) - center, way.at(way.high) - center);
+    let (from, to) = (start.dot(up), end.dot(up));
+    // The ray at a height between those of its ends.
     let is_within = |at: f64| {
         let point = start + (end - start) * ((at - from) / (to - from));
-        beside_disk(disk, point).1 < -deep
+        (point - up * point.dot(up)).length() - radius < -deep
     };
-    // The distance from the axis is convex along the way.
+    // The distance from the axis is convex along the ray.
     from.abs() > deep
         && to.abs() > deep
         && (from < 0.0) != (to < 0.0)
@@ -273,21 +268,19 @@ fn is_disk_crossed(disk: &Disk, start: DVec3, end: DVec3, deep: f64) -> bool {
 mod tests {
     use super::*;
     use crate::external::deviation::Slack;
+    use cyltrace::solid::Disk;
 
     #[test]
     fn disk_is_crossed_from_side_to_side_and_away_from_its_rim() {
         let disk = Disk::new(DVec3::ZERO, DVec3::Z * 2.0, 1.0).unwrap();
-        let disk = PlacedSolid {
-            solid: disk.into(),
-            frame: &Frame::new(&DAffine3::IDENTITY),
-        };
+        let frame = Frame::new(&DAffine3::IDENTITY);
         let margin = Margin {
             length: 0.1,
             slack: Slack::NONE,
         };
         let is_crossed = |x: f64, direction: DVec3, range: (f64, f64)| {
             let ray = Ray::new(DVec3::new(x, 0.0, -5.0), direction);
-            disk.is_crossed(&ray, range, margin)
+            frame.is_crossed(&disk.into(), &ray, range, margin)
         };
         assert!(is_crossed(0.0, DVec3::Z, (0.0, 10.0)));
         assert!(is_crossed(0.85, DVec3::Z, (4.8, 5.2)));

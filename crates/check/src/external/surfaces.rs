@@ -1,13 +1,13 @@
-//! How near a point comes to any surface of a scene.
+//! Whether a point is near any surface of a scene.
 //!
-//! The surface of a solid that is composed of others is part of theirs, which count as
-//! closed: what is far from those is far from it. What is near one of them may be near
+//! The surface of a composition is part of those of its leaves, which count as
+//! closed: a point far from those is far from it. A point near one of them may be near
 //! it, or not.
 
 use glam::{DAffine3, DVec3};
 
 use super::deviation::{Deviation, Slack};
-use super::nearness::{Frame, PlacedSolid, ROUNDING};
+use super::nearness::{Frame, ROUNDING};
 use super::tolerance::{Allowance, Margin, farthest};
 use cyltrace::math::Bounds;
 use cyltrace::scene::{PrototypeIndex, Scene};
@@ -17,7 +17,7 @@ use cyltrace::solid::AnySolid;
 pub(super) struct Surfaces<'a> {
     scene: &'a Scene,
     deviation: Deviation,
-    /// What is known of each prototype that the root contains.
+    /// The extent of each prototype that the root contains.
     reached: Vec<Option<Reached>>,
 }
 
@@ -25,9 +25,9 @@ pub(super) struct Surfaces<'a> {
 #[derive(Clone, Copy)]
 struct Reached {
     bounds: Bounds,
-    /// At most the least radius; infinite where there are none.
+    /// At most the least radius; infinite without solids.
     radius: f64,
-    /// At least by how much the mesh of any of them may be off, beyond what is the same
+    /// At least the deviation of any of their meshes, beyond that which is the same
     /// everywhere.
     deviation: f64,
     /// Whether the mesh of any of them may lack as much as its radius.
@@ -56,7 +56,7 @@ impl<'a> Surfaces<'a> {
         surfaces
     }
 
-    /// At most the least radius of a solid in the world; infinite where there are none.
+    /// At most the least radius of a solid in the world; infinite without solids.
     pub fn least_radius(&self) -> f64 {
         self.root().radius
     }
@@ -66,7 +66,7 @@ impl<'a> Surfaces<'a> {
         self.deviation.everywhere() >= self.least_radius() || self.root().is_lost
     }
 
-    /// At least by how much the mesh of any solid may be off, in the world, beyond what is the
+    /// At least the deviation of any solid's mesh in the world, beyond that which is the
     /// same everywhere.
     pub fn greatest_deviation(&self) -> f64 {
         self.root().deviation
@@ -89,7 +89,7 @@ impl<'a> Surfaces<'a> {
         let scene = self.scene;
         let prototype = &scene.prototypes[number];
         let own = prototype.solids.bounds();
-        // The numbers of a composition are those of its leaves, which may reach farther.
+        // A composition's numbers are those of its leaves, whose boxes may be larger.
         let composed = prototype.solids.compositions.iter();
         let leaves: Vec<AnySolid> = composed.flat_map(|record| record.solid.solids()).collect();
         let own = leaves
@@ -136,12 +136,12 @@ impl<'a> Surfaces<'a> {
     ) -> bool {
         let prototype = &self.scene.prototypes[index.0 as usize];
         let frame = &Frame::new(world_from_here);
-        // A little more than the allowance, for what is rounded on the way here.
+        // A little more than the allowance, for rounding.
         let distance = |bounds: &Bounds| {
             let placed = bounds.transformed(world_from_here);
             1.001 * allowance.of(farthest(&placed))
         };
-        // At least that of every solid: most are farther than even this.
+        // At least that of every solid: most are farther even than this.
         let whole = self.reached[index.0 as usize].unwrap_or_default();
         let greatest = Margin {
             length: distance(&whole.bounds),
@@ -152,13 +152,11 @@ impl<'a> Surfaces<'a> {
             slack: self.deviation.slack(solid),
         };
         let is_near = |solid: AnySolid| {
-            let placed = PlacedSolid { solid, frame };
-            !placed.is_far(point, greatest) && !placed.is_far(point, margin(&solid))
+            !frame.is_far(&solid, point, greatest) && !frame.is_far(&solid, point, margin(&solid))
         };
         let is_near_closed = |solid: AnySolid| {
-            let placed = PlacedSolid { solid, frame };
-            !placed.is_far_from_closed(point, greatest)
-                && !placed.is_far_from_closed(point, margin(&solid))
+            !frame.is_far_from_closed(&solid, point, greatest)
+                && !frame.is_far_from_closed(&solid, point, margin(&solid))
         };
         let composed = prototype.solids.compositions.iter();
         let mut leaves = composed.flat_map(|record| record.solid.solids());

@@ -1,14 +1,15 @@
-//! How far an answer from elsewhere may be from a solid.
+//! By how much an external answer may be off.
 //!
-//! The allowance is a sum of a mesh's deviation (`deviation`), a share of the way that
-//! arithmetic sees (the ray's origin and the way to the hit), and a share of what the solid in
-//! question reaches from the world's origin. All of it is about this ray and this solid: a far
-//! solid elsewhere in the scene, or a far vertex elsewhere in a mesh, changes nothing.
+//! The allowance is a sum of a mesh's deviation (`deviation`), a share of the distances that
+//! arithmetic sees (of the ray's origin, and of the hit from it), and a share of the distance
+//! of the solid's farthest corner from the world's origin. All of it is about this ray and this
+//! solid: a far solid elsewhere in the scene, or a far vertex elsewhere in a mesh, changes
+//! nothing.
 //!
-//! The way is that to the hit, of two hits to the nearer one: where a reported hit lies before
-//! the exact one, what is beyond has no part in it, and where it lies behind, the exact hit is
-//! on what it passed. A reported hit without an exact one may be anywhere: its way counts up to
-//! where the ray has left the scene, `|o| + 2 R` with `R` the scene's greatest coordinate.
+//! The *way* is the distance to the hit, of two hits to the nearer one: if a reported hit lies
+//! before the exact one, nothing beyond matters, and if it lies behind, the exact hit is on the
+//! surface that it passed. A reported hit without an exact one may be anywhere: its way counts
+//! up to the end of the scene, `|o| + 2 R` with `R` the scene's greatest coordinate.
 
 use super::deviation::{Deviation, Slack};
 use cyltrace::math::{Bounds, Ray};
@@ -17,7 +18,7 @@ use cyltrace::solid::AnySolid;
 /// The unit roundoff of f32.
 const UNIT_ROUNDOFF_32: f64 = 1.0 / (1 << 24) as f64;
 
-/// What a ray's displacement and a surface's come to in an f32 renderer, in
+/// The displacements of a ray and a surface in an f32 renderer, in
 /// units of 2^-24 of the distances: the origin 1, the direction 1, end points
 /// and radius 2, a placement's matrix 4, the ray taken through it 4, and the
 /// solver's last sum and product 4.
@@ -26,10 +27,10 @@ const F32_ROUNDINGS: f64 = 16.0;
 /// The relative tolerance that suits a renderer in f32: 16 · 2^-24.
 pub const F32_TOLERANCE: f64 = F32_ROUNDINGS * UNIT_ROUNDOFF_32;
 
-/// What answers may be off.
+/// By how much answers may be off.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tolerance {
-    /// What a mesh may be off.
+    /// By how much a mesh may be off.
     pub deviation: Deviation,
     /// A share of the distances of a ray's origin from the world's and of the hit from it.
     pub of_way: f64,
@@ -37,13 +38,13 @@ pub(super) struct Tolerance {
     pub of_extent: f64,
 }
 
-/// What the answer for a ray may be off.
+/// By how much the answer for a ray may be off.
 pub(super) struct Allowance {
     fixed: f64,
     of_extent: f64,
 }
 
-/// What an answer about a solid may be off: the sum of both.
+/// By how much an answer about a solid may be off: the sum of both.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Margin {
     /// A length in the world.
@@ -63,25 +64,30 @@ impl Tolerance {
 }
 
 impl Allowance {
-    /// As a length, for a solid or solids within `extent` of the world's origin, but for what
+    /// As a length, for solids within `extent` of the world's origin, without the part that
     /// depends on the solid itself.
     pub fn of(&self, extent: f64) -> f64 {
         self.fixed + self.of_extent * extent
     }
 }
 
-/// The way that counts for a ray; `None` where both answers are a miss.
-pub(super) fn way(ray: &Ray, told: Option<f64>, exact: Option<f64>, greatest: f64) -> Option<f64> {
+/// The way of a ray; `None` if both answers are a miss.
+pub(super) fn way(
+    ray: &Ray,
+    reported: Option<f64>,
+    exact: Option<f64>,
+    greatest: f64,
+) -> Option<f64> {
     let length = |t: f64| t.abs() * ray.direction.length();
-    match (told.map(length), exact.map(length)) {
+    match (reported.map(length), exact.map(length)) {
         (None, None) => None,
-        (Some(told), Some(exact)) => Some(told.min(exact)),
+        (Some(reported), Some(exact)) => Some(reported.min(exact)),
         (None, Some(exact)) => Some(exact),
-        (Some(told), None) => Some(told.min(ray.origin.length() + 2.0 * greatest)),
+        (Some(reported), None) => Some(reported.min(ray.origin.length() + 2.0 * greatest)),
     }
 }
 
-/// The distance of a box's farthest corner from the origin; 0 of an empty one.
+/// The distance of a box's farthest corner from the origin; 0 of an empty box.
 pub(super) fn farthest(bounds: &Bounds) -> f64 {
     match bounds.is_empty() {
         true => 0.0,
@@ -89,7 +95,7 @@ pub(super) fn farthest(bounds: &Bounds) -> f64 {
     }
 }
 
-/// The least radius of some solids; infinite of none.
+/// The least radius of some solids; infinite without solids.
 pub(super) fn least_radius(solids: impl IntoIterator<Item = AnySolid>) -> f64 {
     let radii = solids.into_iter().map(|solid| solid.radius());
     radii.fold(f64::INFINITY, f64::min)

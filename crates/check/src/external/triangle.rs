@@ -6,7 +6,7 @@
 //! triangle that has it. Of these rounded numbers an edge's area `a b - c d` is rounded
 //! monotonically: it has the right sign, or is 0, and its sign is the opposite one in the
 //! triangle on the other side. A triangle is hit where no two of its three areas have opposite
-//! signs, so a ray to a common edge or corner meets at least one of the triangles there.
+//! signs, so a ray to a common edge or corner hits at least one of the triangles there.
 //!
 //! A corner is displaced by the rounding of three operations on its distance from the
 //! origin, some 2^-51 of it, whatever the size of the mesh.
@@ -15,7 +15,7 @@ use glam::DVec3;
 
 use cyltrace::math::{Ray, power_of_two_below};
 
-/// A ray as the triangles of a mesh need it.
+/// A ray in the form that tests of triangles use.
 pub(super) struct ShearedRay {
     pub origin: DVec3,
     /// The direction over `size`, and its longest component.
@@ -30,7 +30,7 @@ pub(super) struct ShearedRay {
 }
 
 impl ShearedRay {
-    /// A ray; `None` where it has no direction or no origin.
+    /// `None` if the ray is not valid.
     pub fn new(ray: &Ray) -> Option<Self> {
         if !ray.is_valid() {
             return None;
@@ -54,8 +54,8 @@ impl ShearedRay {
         scaled / self.size
     }
 
-    /// Where the ray meets a triangle, in the scale of `range`, which it may be out of.
-    pub fn meets(&self, corners: [DVec3; 3]) -> Option<f64> {
+    /// The `t` at which the ray hits a triangle, in the scale of `range`, which may exclude it.
+    pub fn hit(&self, corners: [DVec3; 3]) -> Option<f64> {
         let [a, b, c] = corners.map(|corner| self.sheared(corner));
         let areas = [
             c.x * b.y - c.y * b.x,
@@ -67,7 +67,7 @@ impl ShearedRay {
         }
         let whole = areas[0] + areas[1] + areas[2];
         let t = (areas[0] * a.z + areas[1] * b.z + areas[2] * c.z) / whole;
-        // It is not where the triangle is seen edge-on.
+        // A triangle that is seen edge-on has no area.
         (whole != 0.0 && t.is_finite()).then_some(t)
     }
 
@@ -85,7 +85,7 @@ mod tests {
 
     /// Fans of triangles about a corner, and rays to their corners and edges.
     #[test]
-    fn rays_to_common_corners_and_edges_meet_a_triangle() {
+    fn rays_to_common_corners_and_edges_hit_a_triangle() {
         let mut random = Random::new(17, 0);
         for case in 0..20_000 {
             let scale = random.log_uniform(1e-9, 1e9);
@@ -104,8 +104,8 @@ mod tests {
             // Within the sizes that a direction may have.
             let direction = (target - origin) * random.log_uniform(1e-130, 1e130);
             let ray = ShearedRay::new(&Ray::new(origin, direction)).expect("a ray");
-            let met = (0..6).filter_map(|side| ray.meets([middle, rim[side], rim[(side + 1) % 6]]));
-            let nearest = met.map(|t| (ray.origin + ray.direction * t - target).length());
+            let hits = (0..6).filter_map(|side| ray.hit([middle, rim[side], rim[(side + 1) % 6]]));
+            let nearest = hits.map(|t| (ray.origin + ray.direction * t - target).length());
             let nearest = nearest.fold(f64::INFINITY, f64::min);
             let extent = middle.length() + 10.0 * scale;
             assert!(nearest <= 1e-13 * extent, "case {case}: {nearest}");
@@ -116,23 +116,17 @@ mod tests {
     fn far_corner_does_not_move_what_is_near() {
         let corners = [DVec3::ZERO, DVec3::new(1e12, 1.0, 0.0), DVec3::Y];
         let ray = Ray::new(DVec3::new(0.25, 0.5, 3.0), DVec3::NEG_Z);
-        let t = ShearedRay::new(&ray).expect("a ray").meets(corners);
+        let t = ShearedRay::new(&ray).expect("a ray").hit(corners);
         assert_eq!(t, Some(3.0));
         let beside = Ray::new(DVec3::new(0.25, -1e-9, 3.0), DVec3::NEG_Z);
-        assert_eq!(
-            ShearedRay::new(&beside).expect("a ray").meets(corners),
-            None
-        );
+        assert_eq!(ShearedRay::new(&beside).expect("a ray").hit(corners), None);
     }
 
     #[test]
     fn triangles_edge_on_and_without_area_are_missed() {
         let ray = ShearedRay::new(&Ray::new(DVec3::ZERO, DVec3::X)).expect("a ray");
         let at = |x: f64, z: f64| DVec3::new(x, 0.0, z);
-        assert_eq!(
-            ray.meets([at(1.0, -1.0), at(2.0, 1.0), at(3.0, -1.0)]),
-            None
-        );
-        assert_eq!(ray.meets([DVec3::X; 3]), None);
+        assert_eq!(ray.hit([at(1.0, -1.0), at(2.0, 1.0), at(3.0, -1.0)]), None);
+        assert_eq!(ray.hit([DVec3::X; 3]), None);
     }
 }

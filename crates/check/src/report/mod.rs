@@ -1,7 +1,7 @@
-//! What is said of a check: before it, in tables, on the page.
+//! The outcome of a check as text, as JSON and as a page.
 
-pub(crate) mod figures;
+pub(crate) mod json;
+pub(crate) mod page;
 pub(crate) mod pictures;
-pub(crate) mod plan;
-pub(crate) mod report;
+pub(crate) mod text;
 pub(crate) mod words;

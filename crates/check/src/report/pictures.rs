@@ -1,40 +1,40 @@
-//! The scene from both representations, and where they differ.
+//! Pictures of the scene and of its mesh, and of their differences.
 //!
-//! The mesh is of inscribed prisms of the solids that the picture's own rays
-//! meet. An inscribed prism is inside its solid, so that a ray can meet the
-//! prisms of no others, and the picture is that of the whole scene's mesh
-//! (beyond the first [`DEPTHS`] solids on a ray nothing is looked for).
-//! Compositions have no mesh of their own: where one is met first, it is shown in its
-//! own picture alone.
+//! The mesh consists of the inscribed meshes of the solids that the picture's own rays
+//! hit. An inscribed mesh is inside its solid, so a ray hits the meshes
+//! of no other solids, and the picture is that of the whole scene's mesh
+//! (up to the first [`DEPTHS`] solids on a ray).
+//! Compositions have no mesh of their own: where one is hit first, only the picture of the
+//! solids shows it.
 //!
 //! A difference in `t` is shown in units of the chord error. In the solid's own
-//! space, a wall met with the unit normal `n` by a direction `d` that is
-//! displaced by the sagitta `s` shifts the hit by `s/|n·d|`; `t` means the same
-//! there as in the world, so the unit is `s/|n·d|` whatever the placement. A cuboid is
-//! its own mesh, without any.
+//! space, displacing a wall with the unit normal `n` by the sagitta `s` shifts the hit of a
+//! ray with direction `d` by `s/|n·d|`. `t` is the same
+//! there as in the world, so the unit is `s/|n·d|` for any placement. A cuboid is
+//! its own mesh, with a chord error of 0.
 
 use std::collections::HashMap;
 
 use glam::{DAffine3, DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::external::user_mesh::{TracedMesh, TriangleHit};
+use crate::external::traced_mesh::{TracedMesh, TriangleHit};
+use crate::solids::scene_solid::{SceneSolid, find};
 use cyltrace::math::Ray;
-use cyltrace::scene::{AimedCamera, Film, MaterialIndex, Placement, PrototypeIndex, Scene};
+use cyltrace::scene::{AimedCamera, Film, MaterialIndex, Scene};
 use cyltrace::solid::tessellation::{Fit, Mesh, deviation_of, mesh_of, mesh_size_of};
 use cyltrace::solid::{AnySolid, SolidKind};
 use cyltrace::tracer::{DEFAULT_BATCH, HitFields, PartialHit, Tracer};
 use cyltrace_output::{png_bytes, srgb_encode};
 
-/// Solids along a ray that the mesh may hold: as many of these as the memory
-/// allows.
+/// Numbers of solids along a ray that the mesh contains: the first one that fits into the
+/// memory.
 const DEPTHS: [usize; 4] = [8, 4, 2, 1];
 
-/// Hits along a ray among which solids are looked for.
+/// Hits along a ray that are examined.
 const MOST_HITS: usize = 64;
 
-/// Bytes of a triangle with its share of vertices and of Embree's tree, on the
-/// safe side.
+/// At least the bytes of a triangle with its share of vertices and of the tree.
 const TRIANGLE_BYTES: u64 = 200;
 
 /// Pictures as the bytes of PNG files.
@@ -42,17 +42,17 @@ const TRIANGLE_BYTES: u64 = 200;
 pub struct Pictures {
     /// The solids.
     pub analytic: Vec<u8>,
-    /// The prisms.
+    /// The meshes.
     pub mesh: Vec<u8>,
     /// The mesh's `t` minus the exact one, in units of the chord error: blue
     /// before, red behind.
     pub distance: Vec<u8>,
     /// The angle between the normals, in units of π/N.
     pub normal: Vec<u8>,
-    /// Sides of the prisms.
+    /// Sides of the meshes.
     pub segments: u32,
-    /// Prisms in the mesh.
-    pub prisms: usize,
+    /// Solids in the mesh.
+    pub solids: usize,
     /// Pixels in which both are hit, in which the solids alone are, and the mesh
     /// alone.
     pub counts: [u64; 3],
@@ -63,7 +63,7 @@ pub struct Pictures {
 /// Why there are no pictures.
 #[derive(Debug, thiserror::Error)]
 pub enum PicturesError {
-    /// The encoder refused.
+    /// The encoder failed.
     #[error("cannot encode a picture: {0}")]
     Encoding(String),
 }
@@ -71,7 +71,7 @@ pub enum PicturesError {
 /// A solid by its path and its number.
 type Key = (Vec<u32>, u32);
 
-/// A solid where it is placed.
+/// A placed solid.
 struct Placed {
     solid: AnySolid,
     object_from_world: DAffine3,
@@ -83,7 +83,7 @@ struct Placed {
 /// called in.
 ///
 /// # Errors
-/// When the encoder refuses.
+/// If the encoder fails.
 pub fn pictures(
     tracer: &Tracer,
     segments: u32,
@@ -110,12 +110,12 @@ pub fn pictures(
     let mut ordered: Vec<(&Key, &Placed)> = solids.iter().collect();
     ordered.sort_by_key(|(key, _)| *key);
     for (_, solid) in &ordered {
-        let mut prism = mesh_of(&solid.solid, segments, Fit::Inscribed);
-        for vertex in &mut prism.vertices {
+        let mut own = mesh_of(&solid.solid, segments, Fit::Inscribed);
+        for vertex in &mut own.vertices {
             *vertex = solid.world_from_object.transform_point3(*vertex);
         }
-        solid_of.extend(prism.triangles.iter().map(|_| *solid));
-        mesh.append(&prism);
+        solid_of.extend(own.triangles.iter().map(|_| *solid));
+        mesh.append(&own);
     }
     let traced = TracedMesh::new(&mesh);
     let shown: Vec<Shown> = pixels
@@ -151,13 +151,13 @@ pub fn pictures(
         distance: encode(|shown| shown.distance)?,
         normal: encode(|shown| shown.normal)?,
         segments,
-        prisms: ordered.len(),
+        solids: ordered.len(),
         counts: [0, 1, 2].map(count),
         composed: count(COMPOSED),
     }))
 }
 
-/// What the pictures need of a hit.
+/// A hit as the pictures need it.
 struct Seen {
     t: f64,
     normal: DVec3,
@@ -169,7 +169,7 @@ struct Seen {
 impl Seen {
     const FIELDS: HitFields = HitFields::NORMAL.union(HitFields::PATH);
 
-    /// Of a hit that has these fields.
+    /// `None` unless the hit has these fields.
     fn new(hit: &PartialHit) -> Option<Self> {
         Some(Self {
             t: hit.t(),
@@ -186,7 +186,7 @@ impl Seen {
     }
 }
 
-/// The first hit with each of the first solids that a ray meets.
+/// The first hit with each of the first solids along a ray.
 fn first_of_each_solid(tracer: &Tracer, ray: &Ray) -> Vec<Seen> {
     let mut hits: Vec<Seen> = Vec::new();
     let all = tracer.all_hits(ray, DEFAULT_BATCH).with(Seen::FIELDS);
@@ -201,7 +201,7 @@ fn first_of_each_solid(tracer: &Tracer, ray: &Ray) -> Vec<Seen> {
     hits
 }
 
-/// The solids of the mesh; `None` when there are none, or even the first on each
+/// The solids of the mesh; `None` if there are none, or if even the first ones on each
 /// ray take more than `max_memory`.
 fn chosen(
     scene: &Scene,
@@ -230,11 +230,12 @@ fn chosen(
 /// The solid of a hit.
 fn placed(scene: &Scene, hit: &Seen) -> Placed {
     let (instance, number) = &hit.key;
-    let (world_from_object, prototype) = place(scene, instance);
-    let (_, solid) = scene.prototypes[prototype.0 as usize]
-        .singles()
-        .find(|(primitive, _)| primitive == number)
-        .expect("a hit names a solid of its prototype");
+    let (placements, solid) = find(scene, instance, *number);
+    let SceneSolid::Single(solid) = solid else {
+        unreachable!("compositions have no mesh");
+    };
+    let identity = DAffine3::IDENTITY;
+    let world_from_object = placements.iter().fold(identity, |whole, &one| whole * *one);
     Placed {
         solid,
         object_from_world: world_from_object.inverse(),
@@ -245,19 +246,6 @@ fn placed(scene: &Scene, hit: &Seen) -> Placed {
 
 fn color_of(scene: &Scene, hit: &Seen) -> DVec3 {
     scene.materials[usize::from(hit.material.0)].color
-}
-
-/// The prototype at the end of a path and its placement in the world, rounded.
-fn place(scene: &Scene, path: &[u32]) -> (DAffine3, PrototypeIndex) {
-    let start = (DAffine3::IDENTITY, PrototypeIndex::ROOT);
-    path.iter().fold(start, |(world, prototype), &number| {
-        let placements = &scene.prototypes[prototype.0 as usize].placements;
-        let Placement {
-            of,
-            parent_from_child,
-        } = placements[number as usize];
-        (world * parent_from_child, of)
-    })
 }
 
 const NOTHING: [u8; 4] = [0; 4];
@@ -280,7 +268,7 @@ struct Shown {
 }
 
 impl Shown {
-    /// Of a solid that has no mesh.
+    /// A hit of a composition, which has no mesh.
     fn composition(analytic: [u8; 4]) -> Self {
         Self {
             analytic,
@@ -329,21 +317,21 @@ impl Shown {
     }
 }
 
-/// By how much `t` may differ to first order, as the head of this file has it.
+/// By how much `t` may differ to first order; see the head of this file.
 fn chord_error(ray: &Ray, hit: &Seen, solid: &Placed, segments: u32) -> f64 {
     let direction = solid.object_from_world.transform_vector3(ray.direction);
     let normal = solid.world_from_object.matrix3.transpose() * hit.normal;
     deviation_of(&solid.solid, segments, Fit::Inscribed) / normal.normalize().dot(direction).abs()
 }
 
-/// A colour under a lamp at the eye.
+/// A color under a lamp at the eye.
 fn shade(color: DVec3, normal: DVec3, ray: &Ray) -> [u8; 4] {
     let light = 0.1 + 0.9 * normal.dot(ray.direction.normalize()).abs();
     let [r, g, b] = (color * light).to_array().map(|x| srgb_encode(x as f32));
     [r, g, b, 0xff]
 }
 
-/// A value from -1 to 1 as a colour's opacity, which shows on light and on dark.
+/// A value from -1 to 1 as a color's opacity, visible on light and dark backgrounds.
 fn heat(value: f64, above: [u8; 3], below: [u8; 3]) -> [u8; 4] {
     let [r, g, b] = if value < 0.0 { below } else { above };
     let opacity = 24.0 + 231.0 * value.abs().min(1.0);

@@ -1,47 +1,46 @@
-//! Bounds of the first hit of a composition from what a ray meets of the meshes of
-//! its leaves.
+//! Bounds of the first hit of a composition from the crossings of the meshes of its leaves.
 //!
-//! From `t_min` on, the line is *surely* in a leaf while it is in the mesh within it, and
+//! From `t_min` on, the line is *surely* in a leaf while it is in the mesh inside it, and
 //! *perhaps* while it is in the mesh around it. With sets of parameters for both, the
 //! operations give those of the composition: a union's and an intersection's are the union
-//! and the intersection of either kind, and what is subtracted is taken by its
-//! complement, which is surely there where the solid is not even perhaps:
+//! and the intersection of either kind, and a subtracted leaf is replaced by its
+//! complement, which the line is surely in where it is not even perhaps in the leaf:
 //!
 //! ```text
 //! perhaps (A \ B) = perhaps A ∩ not surely B      surely (A \ B) = surely A ∩ not perhaps B
 //! ```
 //!
-//! A leaf is convex, and so is all that is between two points of the mesh within it: the
-//! line is surely in it from its first way in to its last way out, and perhaps from the
-//! first way into the mesh around it to the last way out.
+//! A leaf is convex, and contains all that is between two points of the mesh inside it: the
+//! line is surely in it from its first entry of that mesh to its last exit, and perhaps from
+//! the first entry of the mesh around it to the last exit.
 //!
-//! The surface is met where the line goes from outside to inside or back. So with the
+//! The line hits the surface where it goes from outside to inside or back. So with the
 //! first parameter `i` at which it is surely inside, and the first `o` at which it is
 //! surely outside, both not before `t_min`:
 //!
 //! - *starting surely outside*, the first hit is not before it is perhaps inside, nor
 //!   after `i`;
 //! - *starting surely inside*, not before it is perhaps outside, nor after `o`;
-//! - else nothing but `t_min` is below it, and it is not after the later of `i` and `o`.
+//! - otherwise the lower bound is `t_min`, and the hit is not after the later of `i` and `o`.
 //!
-//! Exact crossings come rounded so that the sets of each leaf that are surely inside are
-//! smaller by less than an ulp at each end, and those that are perhaps inside greater
-//! (`retrial`). All three operations keep that order, so the bounds are right, if wider by
+//! Exact crossings are rounded so that the sets of each leaf that are surely inside are
+//! smaller by less than an ulp at each end, and those that are perhaps inside larger
+//! (`exact_recheck`). All three operations keep that order, so the bounds are right, if wider by
 //! as much.
 //!
-//! Of what is seen in part (`sandwich`) the sets are not known beyond, and leaves around
-//! the start of the ray are not seen, so answers about compositions are not settled by it.
+//! After a partial traversal (`sandwich`) the sets are unknown beyond its end, and leaves around
+//! the start of the ray are not found, so it does not settle answers about compositions.
 
 use smallvec::{SmallVec, smallvec};
 
-use super::sandwich::{Crossings, Interval, SolidBounds};
-use crate::bounding_meshes::meshes::LeafCrossings;
+use super::sandwich::{Interval, SolidBounds};
+use crate::bounding_meshes::crossings::{Crossings, LeafCrossings};
 use cyltrace::solid::Composition;
 
 /// Closed intervals of parameters, in order and apart.
 type Spans = SmallVec<[(f64, f64); 4]>;
 
-/// Where the line is in something.
+/// The parameters at which the line is inside.
 struct Within {
     surely: Spans,
     perhaps: Spans,
@@ -60,7 +59,7 @@ impl Within {
         let LeafCrossings { outer, inner } = crossings;
         let mut surely = span(inner, inner.starts_inside());
         surely.retain(|span| span.0 <= span.1);
-        // A line that comes in and is not seen to leave is told by `is_odd`.
+        // `is_odd` reports a line that enters and does not leave.
         let mut perhaps = span(outer, outer.may_start_inside());
         perhaps
             .iter_mut()
@@ -236,7 +235,7 @@ mod tests {
 
     const NOTHING: f64 = f64::INFINITY;
 
-    /// A leaf that the line is surely in from 1 to 2, and perhaps a tenth around that.
+    /// A leaf that the line is surely in from start to end, and perhaps a tenth around that.
     fn leaf(start: f64, end: f64) -> LeafCrossings {
         let crossings = |start: f64, end: f64| {
             let mut crossings = Crossings::NONE;
@@ -281,7 +280,7 @@ mod tests {
         assert_eq!(bounds(&common, &[early, late]), (2.9, 3.0));
         assert_eq!(bounds(&less, &[early, late]), (0.9, 1.0));
         assert_eq!(bounds(&less, &[late, early]), (4.0, 4.1));
-        // What is left of a solid without itself is nothing or a skin.
+        // A solid without itself is empty or a skin.
         assert_eq!(bounds(&less, &[early, early]), (0.9, NOTHING));
         assert_eq!(
             bounds(&common, &[early, leaf(5.0, 6.0)]),

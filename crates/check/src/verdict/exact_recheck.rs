@@ -1,32 +1,32 @@
-//! Suspects judged again, exactly.
+//! Exact crossings of suspects.
 //!
-//! The ray and the vertices of the meshes are f32 numbers, so whether the ray
-//! meets a triangle and where is decided by signs of polynomials in them, which
-//! exact arithmetic has without rounding. With the corners `a`, `b`, `c` seen
+//! The ray and the vertices of the meshes are f32 numbers, so signs of polynomials in them,
+//! which exact arithmetic computes without rounding, decide whether the ray
+//! crosses a triangle and where. With the corners `a`, `b`, `c` seen
 //! from the origin and the direction `d`, the *signed volumes*
 //!
 //! ```text
 //! d·(a × b)    d·(b × c)    d·(c × a)
 //! ```
 //!
-//! say on which side of each edge the line passes. It meets the closed triangle
-//! if none is of the opposite sign of another; edges and corners count for
-//! every triangle that has them, so nothing passes between neighbours. With
+//! state the side of each edge on which the line passes. It crosses the closed triangle
+//! if no two have opposite signs; edges and corners count for
+//! every triangle that has them, so nothing passes between neighbors. With
 //! `N = (b - a) × (c - a)` the parameter is `a·N / d·N`; if `d·N` is 0 the ray
-//! is in the plane and meets the prism at other triangles too.
+//! is in the plane and crosses the mesh at other triangles too.
 //!
-//! Most triangles are missed by far: in f64 the differences of the corners to
+//! The line misses most triangles by far: in f64 the differences of the corners to
 //! the origin have relative error u, a cross product 3 u of the sum of its
 //! terms' sizes, and the volume as a whole at most 8 u of
-//! `|d|·(|a| × |b|)` with all signs plus; two volumes beyond 16 u of theirs, of
+//! `|d|·(|a| × |b|)` with all signs plus. Two volumes beyond 16 u of theirs, with
 //! opposite signs, decide.
 //!
-//! The bounds that come of it are rounded so that comparing them with an f64
+//! The resulting bounds are rounded so that comparing them with an f64
 //! decides as the exact number would: a lower bound to the least f64 that is not
-//! below it, an upper one to the greatest that is not above. Of a composition the
-//! parameters are ends of sets (`composed`), and whether two of these have a point in common
-//! must not come of rounding: where a line is surely inside is rounded inward, and where
-//! it perhaps is, outward.
+//! below it, an upper one to the greatest that is not above. For a composition the
+//! parameters are ends of sets (`composed`), and rounding must not decide whether two of these
+//! have a point in common: the ends of surely inside are rounded inward, those of
+//! perhaps inside outward.
 
 use glam::DVec3;
 
@@ -34,8 +34,9 @@ use cyltrace::embree::Ray32;
 use cyltrace::math::{Ray, UNIT_ROUNDOFF};
 use cyltrace_oracle::{Exact, ExactVector, exact, to_f64};
 
-use super::sandwich::Crossings;
-use crate::bounding_meshes::meshes::{LeafCrossings, Meshes, Seen, may_meet, point};
+use super::seen::{Seen, bounds};
+use crate::bounding_meshes::crossings::{Crossings, LeafCrossings};
+use crate::bounding_meshes::meshes::{Meshes, may_meet, point};
 
 /// Bits of the quotient from which a parameter is rounded.
 const QUOTIENT_BITS: usize = 256;
@@ -57,7 +58,7 @@ impl Fraction {
         self.numerator < exact(t) * &self.denominator
     }
 
-    /// The f64 nearest to it, and perhaps one beside where two are as near.
+    /// The f64 nearest to it, or one beside it.
     fn near(&self) -> f64 {
         let long = |x: &Exact| x.clone().with_precision(QUOTIENT_BITS).value();
         to_f64(&(long(&self.numerator) / long(&self.denominator)))
@@ -84,7 +85,7 @@ impl Fraction {
     }
 }
 
-/// The exact crossings of one prism.
+/// The exact crossings of one mesh.
 #[derive(Default)]
 struct ExactCrossings {
     enter: Option<Fraction>,
@@ -107,7 +108,7 @@ impl ExactCrossings {
         }
     }
 
-    /// As numbers; whether ways in, and ways out, are rounded up.
+    /// As numbers, with flags for whether entries and exits are rounded up.
     fn rounded(&self, [is_in_up, is_out_up]: [bool; 2]) -> Crossings {
         let round = |t: &Fraction, up: bool| {
             if up { t.rounded_up() } else { t.rounded_down() }
@@ -119,8 +120,8 @@ impl ExactCrossings {
         if let (Some(leave), Some(last)) = (&self.leave, &self.last_leave) {
             crossings.leave = round(leave, is_out_up);
             crossings.last_leave = round(last, is_out_up);
-            // Which is first is not lost to roundings, nor that neither is. A way out that
-            // comes second may round to the first way in, which claims less.
+            // Rounding keeps which one is first, or that neither is. An exit that
+            // comes second may round to the first entry, which claims less.
             match &self.enter {
                 Some(enter) if enter.is_before(leave) => {
                     crossings.leave = crossings.leave.max(crossings.enter);
@@ -141,8 +142,8 @@ fn as_sets(outer: &ExactCrossings, inner: &ExactCrossings) -> LeafCrossings {
     }
 }
 
-/// The exact bounds of every solid that the ray may meet.
-pub(crate) fn retry(meshes: &Meshes, ray32: &Ray32, ray: &Ray) -> Vec<Seen> {
+/// The exact bounds of every solid that the ray may hit.
+pub(crate) fn exact_seen(meshes: &Meshes, ray32: &Ray32, ray: &Ray) -> Vec<Seen> {
     let line = Line::new(ray32);
     let mut seen = Vec::new();
     for leaves in meshes.leaves() {
@@ -171,10 +172,10 @@ pub(crate) fn retry(meshes: &Meshes, ray32: &Ray32, ray: &Ray) -> Vec<Seen> {
                 }
             })
             .collect();
-        let is_met = |leaf: &LeafCrossings| [leaf.outer, leaf.inner] != [Crossings::NONE; 2];
-        if crossings.iter().any(is_met) {
+        let is_crossed = |leaf: &LeafCrossings| [leaf.outer, leaf.inner] != [Crossings::NONE; 2];
+        if crossings.iter().any(is_crossed) {
             let solid = leaves.start;
-            let bounds = meshes.bounds(solid, ray32, &crossings);
+            let bounds = bounds(meshes, solid, ray32, &crossings);
             seen.push(Seen { solid, bounds });
         }
     }
@@ -211,8 +212,7 @@ impl Line {
         crossings
     }
 
-    /// The crossings of the sheet over a disk, as ways in, and of that under it, as ways
-    /// out.
+    /// The crossings of the upper sheet of a disk, as entries, and of the lower one, as exits.
     fn sheet_crossings(
         &self,
         triangles: Option<impl Iterator<Item = [DVec3; 3]>>,
@@ -229,7 +229,7 @@ impl Line {
     }
 
     /// Where the line crosses a closed triangle at or after its start, and
-    /// whether it goes in.
+    /// whether it enters.
     fn crossing(&self, corners: [DVec3; 3]) -> Option<(Fraction, bool)> {
         if self.is_certain_miss(corners) {
             return None;
@@ -303,8 +303,8 @@ mod tests {
         crossings
     }
 
-    /// Two leaves, of which the line leaves one and enters the other between two
-    /// neighbours of f64: in common they have nothing or something, as the exact numbers do.
+    /// The line leaves one leaf and enters the other between two
+    /// neighbors of f64: their intersection is empty or not, as for the exact numbers.
     #[test]
     fn rounding_makes_no_common_points_and_loses_none() {
         let solid = || Composition::Solid(Sphere::new(DVec3::ZERO, 1.0).unwrap().into());
@@ -329,9 +329,9 @@ mod tests {
         assert_eq!(bounds(6.0, 3.0).low, 1.0);
     }
 
-    /// A way in and a way out at a parameter that is no f64.
+    /// An entry and an exit at a parameter that is no f64.
     #[test]
-    fn edge_that_is_met_between_neighbours_of_f64_stays_one() {
+    fn edge_between_neighbors_of_f64_stays_one() {
         let mut fold = from_to(beside_one(4.0), beside_one(4.0));
         fold.add(beside_one(30.0), false);
         for rounding in [[false, true], [true, false], [true, true], [false, false]] {

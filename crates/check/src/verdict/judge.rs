@@ -1,20 +1,19 @@
-//! Whether an answer agrees with what a ray meets of the prisms.
+//! Whether an answer agrees with the bounds of all solids.
 
 use std::collections::HashMap;
-use std::fmt;
 
 use cyltrace::math::Ray;
 
 use super::sandwich::Interval;
+use super::seen::Seen;
 use super::surface::{WrongSurface, wrong_surface};
-use crate::bounding_meshes::meshes::Seen;
 use crate::bounding_meshes::window::Window;
-use crate::finding::{Place, ReportedHit};
+use crate::reported_hit::{Place, ReportedHit};
 
-/// The solids of a window by their places in the scene.
+/// The solids of a window by their paths in the scene.
 pub(crate) struct Directory<'a> {
     window: &'a Window,
-    /// The frames by their paths, as numbers; then the solids by frame and
+    /// The numbers of the frames by path; then the solids by frame and
     /// primitive.
     frames: HashMap<&'a [u32], u32>,
     solids: HashMap<(u32, u32), u32>,
@@ -29,7 +28,7 @@ impl<'a> Directory<'a> {
             let next = frames.len() as u32;
             let path = solid.frame.instance.as_slice();
             let frame = *frames.entry(path).or_insert(next);
-            // The leaves of a composition have its number; the first stands for it.
+            // The leaves of a composition have its number; the first represents it.
             let leaf = number as u32;
             solids.entry((frame, solid.primitive)).or_insert(leaf);
         }
@@ -50,17 +49,17 @@ impl<'a> Directory<'a> {
 /// What is wrong with an answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Wrong {
-    /// A miss where there is a hit up to here.
+    /// A miss, but there is a hit within the bounds.
     Missed(Interval),
-    /// A hit where there is none.
+    /// A hit, but there is none.
     Nothing,
     /// A hit outside of the range of the ray.
     Range,
     /// A hit before or after where the first one can be.
     Outside(Interval),
-    /// A hit of a solid that is not in the scene, or not along the ray.
+    /// A hit of a solid that is not in the scene, or that the ray misses.
     Place,
-    /// A hit of a solid that is met elsewhere.
+    /// A hit of a solid outside of that solid's bounds.
     Solid(Interval),
     /// The part or the normal.
     Surface(WrongSurface, Interval),
@@ -84,31 +83,6 @@ impl Wrong {
     }
 }
 
-impl fmt::Display for Wrong {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Missed(Interval { low, high }) => {
-                write!(f, "missed: there is a hit between {low:?} and {high:?}")
-            }
-            Self::Nothing => f.write_str("a hit where there is nothing"),
-            Self::Range => f.write_str("a hit outside of the ray's range"),
-            Self::Outside(Interval { low, high }) => {
-                write!(f, "the first hit is between {low:?} and {high:?}")
-            }
-            Self::Place => f.write_str("the solid it names is not met by the ray"),
-            Self::Solid(Interval { low, high }) => {
-                write!(f, "the solid it names is met between {low:?} and {high:?}")
-            }
-            Self::Surface(WrongSurface::Part, _) => {
-                f.write_str("the part it names cannot be what is hit")
-            }
-            Self::Surface(WrongSurface::Normal(angle), _) => {
-                write!(f, "the normal is off by {angle:.1e} more than it may be")
-            }
-        }
-    }
-}
-
 /// The bounds of the scene's first hit.
 pub(crate) fn first(seen: &[Seen]) -> Interval {
     seen.iter().fold(Interval::NOTHING, |first, solid| {
@@ -116,8 +90,8 @@ pub(crate) fn first(seen: &[Seen]) -> Interval {
     })
 }
 
-/// The solid that an answer is about: the one it names, or of those whose
-/// bounds allow its `t` the first to be met.
+/// The solid of an answer: the one it names, or of those whose
+/// bounds allow its `t` the one with the least lower bound.
 pub(crate) fn solid_of<'s>(
     directory: &Directory,
     finding: &ReportedHit,
@@ -140,7 +114,7 @@ fn candidates(t: f64, seen: &[Seen]) -> impl Iterator<Item = &Seen> {
         .filter(move |one| one.bounds.interval.allows(Some(t), f64::INFINITY))
 }
 
-/// What is wrong with an answer, if anything is.
+/// What is wrong with an answer; `None` if it is right.
 pub(crate) fn judge(
     directory: &Directory,
     ray: &Ray,
@@ -179,7 +153,7 @@ pub(crate) fn judge(
         return surface(named);
     }
     finding.normal?;
-    // Any solid that may be the one that is hit may have this normal.
+    // The normal may be that of any solid whose bounds allow `t`.
     let mut wrong = None;
     for one in candidates(t, seen) {
         match surface(one) {

@@ -1,7 +1,7 @@
-//! Bounds of the first hit from what a ray meets of two prisms around it.
+//! Bounds of the first hit from the crossings of two meshes around it.
 //!
-//! For a solid `C` with caps at both ends, let the *inner* prism be a subset of
-//! it and the *outer* one a superset, both convex. The line of a ray meets each
+//! For a solid `C` with caps at both ends, let the *inner* mesh be a subset of
+//! it and the *outer* one a superset, both convex. The line of a ray is inside each
 //! in an interval, and they are nested:
 //!
 //! ```text
@@ -9,32 +9,32 @@
 //! ```
 //!
 //! The first hit of the solid's surface from `t_min` on is `e` if
-//! `e >= t_min`, else `l` if `l >= t_min`. Only what lies at or after `t_min` is
-//! seen of the prisms, and it tells where the ray starts:
+//! `e >= t_min`, else `l` if `l >= t_min`. Only crossings at or after `t_min` are
+//! known, and they determine where the ray starts:
 //!
-//! - *outside the outer prism* (`a` is seen first): `e >= a`. If the inner prism
-//!   is entered at `c`, then `e <= c`; else the solid may be missed.
-//! - *inside the inner prism* (`b` and `d` are seen, `c` isn't): the ray starts
+//! - *outside the outer mesh* (`a` comes first): `e >= a`. If the ray enters the inner mesh
+//!   at `c`, then `e <= c`; else it may miss the solid.
+//! - *inside the inner mesh* (`b` and `d` are known, `c` is not): the ray starts
 //!   in the solid, and the first hit is `l`, `d <= l <= b`: the roles swap.
-//! - *between both* (`b` is seen, `a` isn't): the ray starts in the solid or
-//!   before it. If the inner prism is entered, the solid is left after
-//!   `t_min`, so a first hit is at most `b`; else there may be none. Nothing
-//!   but `t_min` is below it.
-//! - Without a hit of the outer prism nothing of the solid is hit.
+//! - *between both* (`b` is known, `a` is not): the ray starts in the solid or
+//!   before it. If it enters the inner mesh, it leaves the solid after
+//!   `t_min`, so a first hit is at most `b`; else there may be none. The lower bound is
+//!   `t_min`.
+//! - If the ray misses the outer mesh, it misses the solid.
 //!
-//! *Faces.* A side of a prism of f32 vertices is two triangles that are not
-//! quite in one plane, so a line may cross the surface more than twice. What is
-//! used stays true: an outer prism is the surface of a star-shaped body that
-//! holds the solid (`bounding_meshes::hull::proof`), so `a`, its first entry, is not behind the
-//! solid, nor its last exit `b` before the solid's end; each point of the inner
-//! prism's triangles is between its vertices and hence in the solid, so any
+//! *Faces.* A side of a mesh of f32 vertices is two triangles that are not
+//! quite in one plane, so a line may cross the surface more than twice. The bounds above
+//! stay true: an outer mesh is the surface of a star-shaped body that
+//! contains the solid (`bounding_meshes::hull::proof`), so `a`, its first entry, is not behind the
+//! solid, nor its last exit `b` before the solid's end. Each point of the inner
+//! mesh's triangles is between its vertices and hence in the solid, so any
 //! entry is at or after `e`, any exit at or before `l`. A ray starts inside a
-//! prism if it meets an exit before any entry. Where it meets both at once, where two
-//! faces join, it may start on either side: it is taken to start inside of an outer
-//! prism and outside of an inner one, which claims less.
+//! mesh if an exit comes before any entry. If both coincide, where two
+//! faces join, it may start on either side: it counts as inside of an outer
+//! mesh and outside of an inner one, which claims less.
 //!
 //! *Tubes.* Without one of its disks the surface is a part of the boundary of
-//! `C`: a first hit is that of the boundary or later, so the lower bounds hold.
+//! `C`: a first hit is that of the boundary or later, so the lower bounds stay true.
 //! A crossing of the boundary between two parameters is on the surface unless it
 //! is in the open disk that is missing. That lies in a plane with `C` on one
 //! side. Going in between `a` and `c`, the ray starts at `a`; if the point at
@@ -43,90 +43,35 @@
 //! and then enters there through the rim, which belongs to the wall. So the
 //! entry is *certain* if the point at `a` is strictly on the solid's side of
 //! the planes of all missing disks, and, by the same argument backwards, the
-//! exit between `d` and `b` if the point at `b` is. Where the entry isn't
+//! exit between `d` and `b` if the point at `b` is. If the entry is not
 //! certain, a certain exit still is a hit: the upper bound is `b`.
 //!
-//! *Disks* have no inside; in place of an inner prism they have two sheets (`hull`). A
-//! ray that meets both from `t_min` on, whichever first, meets the disk between the two,
-//! and anything else of the sheets tells nothing. The mesh around a disk is as any: the
-//! disk is not met before it is entered, nor after it is left. The sheets may be within
+//! *Disks* have no inside; in place of an inner mesh they have two sheets (`hull`). A
+//! ray that crosses both from `t_min` on, in either order, hits the disk between the two.
+//! Other crossings of the sheets prove nothing. The ray does not hit the
+//! disk before it enters the mesh around it, nor after it leaves it. The sheets may be within
 //! that mesh or beyond it.
 //!
 //! *Many solids.* The first hit of all is between the least lower and the least
 //! upper bound.
 //!
-//! *Seen in part.* What a ray meets beyond some `T` may be left out to settle an
-//! answer `t <= T`. A prism that is entered and not left by then is left *later*.
-//! A bound that is not seen is above `T`, hence above `t`: an upper one allows
-//! `t`, and a solid whose lower one is not seen cannot come before it. A solid
-//! that starts around the ray and is left after `T` isn't seen either; it has
+//! *Partial traversal.* To settle an answer `t <= T`, crossings beyond some `T` may be left
+//! out. A mesh that the ray enters and does not leave by then is left *later*.
+//! An unknown bound is above `T`, hence above `t`: an upper one allows
+//! `t`, and a solid whose lower one is unknown cannot come before it. A solid
+//! that starts around the ray and ends after `T` is not found either; it has
 //! `t_min` for a lower and more than `T` for an upper bound, and both allow `t`.
-//! So what agrees with the bounds in part agrees with those of the whole. The
-//! converse does not hold, and an answer that isn't settled is judged again by
-//! the whole.
+//! So an answer that agrees with the partial bounds agrees with those of the whole ray. The
+//! converse is not true, and other answers are judged by the whole ray.
 
-/// Stands for a parameter beyond what was seen.
-pub(crate) const LATER: f64 = f64::MAX;
+use crate::bounding_meshes::crossings::{Crossings, LATER};
 
-/// Where a ray crosses the surface of a prism, at or after its start.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Crossings {
-    /// The first way in; infinite if there is none.
-    pub enter: f64,
-    /// The first way out; infinite if there is none.
-    pub leave: f64,
-    /// The last way out; minus infinity if there is none.
-    pub last_leave: f64,
-}
-
-impl Crossings {
-    /// The prism is not met.
-    pub const NONE: Self = Self {
-        enter: f64::INFINITY,
-        leave: f64::INFINITY,
-        last_leave: f64::NEG_INFINITY,
-    };
-
-    /// Adds a crossing.
-    pub fn add(&mut self, t: f64, enters: bool) {
-        if enters {
-            self.enter = self.enter.min(t);
-        } else {
-            self.leave = self.leave.min(t);
-            self.last_leave = self.last_leave.max(t);
-        }
-    }
-
-    /// After crossings were seen in part: whoever is in leaves later.
-    pub fn leave_later(&mut self) {
-        if self.enter < f64::INFINITY && self.leave == f64::INFINITY {
-            self.leave = LATER;
-            self.last_leave = LATER;
-        }
-    }
-
-    pub fn is_none(&self) -> bool {
-        self.enter == f64::INFINITY && self.leave == f64::INFINITY
-    }
-
-    /// Whether the ray certainly starts inside: it is met on the way out first.
-    pub fn starts_inside(&self) -> bool {
-        self.leave < self.enter
-    }
-
-    /// Whether it may: both ways are met at once where two faces join, by a ray that
-    /// grazes the edge from outside or, if the edge is a fold inward, from inside.
-    pub fn may_start_inside(&self) -> bool {
-        self.leave <= self.enter && self.leave < f64::INFINITY
-    }
-}
-
-/// Between which parameters a first hit is.
+/// The parameters between which a first hit is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Interval {
-    /// No hit is before this; infinite where there is none at all.
+    /// No hit is before this; infinite without a hit.
     pub low: f64,
-    /// There is a hit up to here; infinite where there may be none.
+    /// There is a hit up to here; infinite if there may be none.
     pub high: f64,
 }
 
@@ -159,18 +104,18 @@ impl Interval {
     }
 }
 
-/// What both prisms of one solid say.
+/// The bounds from both meshes of one solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SolidBounds {
     /// Of the first hit of this solid.
     pub interval: Interval,
-    /// The crossing of the inner prism that stands for the first hit, if the
-    /// ray starts outside of the outer prism or inside of the inner one and
+    /// The crossing of the inner mesh next to the first hit, if the
+    /// ray starts outside of the outer mesh or inside of the inner one and
     /// that crossing is certain.
     pub inner: Option<f64>,
     /// No hit of this solid is after this.
     pub last: f64,
-    /// Whether the crossings contradict that the prisms are nested.
+    /// Whether the crossings contradict that the meshes are nested.
     pub is_odd: bool,
 }
 
@@ -225,8 +170,8 @@ pub(crate) fn solid_bounds(
     }
 }
 
-/// The bounds for a disk. The ways in of `sheets` are those through the one over the disk,
-/// the ways out those through the one under it.
+/// The bounds for a disk. The entries of `sheets` are crossings of the upper one, the exits
+/// of the lower one.
 pub(crate) fn sheet_bounds(outer: &Crossings, sheets: &Crossings, t_min: f64) -> SolidBounds {
     let both = sheets.enter.max(sheets.leave);
     let is_through = both < LATER;
@@ -271,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn starts_are_told_apart() {
+    fn starts_are_distinguished() {
         let (enter, leave) = (true, false);
         let outer = [(1.0, enter), (4.0, leave)];
         let inner = [(2.0, enter), (3.0, leave)];
@@ -287,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn ray_that_meets_an_edge_may_start_on_either_side_of_it() {
+    fn ray_through_an_edge_may_start_on_either_side_of_it() {
         let (enter, leave) = (true, false);
         let fold = [(1.0, enter), (1.0, leave), (4.0, leave)];
         // The solid is left at 0.9, or entered at 2.
@@ -309,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn disk_is_met_between_both_sheets() {
+    fn disk_is_hit_between_both_sheets() {
         let (over, under) = (true, false);
         let outer = [(1.0, true), (4.0, false)];
         let high = |sheets: &[(f64, bool)]| {

@@ -1,26 +1,26 @@
-//! Which part of a solid and which normal an answer may name.
+//! The parts and the normals that an answer may name.
 //!
-//! The bounds say that the solid's first hit is between two parameters. In the
-//! solid's own space the ray is `q + t d` from its anchor. Which parts may be met
-//! between two points of it, and the normals that they have there, is in `parts`; the
-//! normals are taken to the world by the inverse transposed. With `n1`, `n2` those at the
-//! ends and `A` the angle between them, the true one is within `A` of both, and what
-//! `parts` says of the way between.
+//! The solid's first hit is between two parameters. In the
+//! solid's own space the ray is `q + t d` from its anchor. `solids::between` bounds the parts
+//! that the ray may hit between two of its points, and their normals, which the inverse
+//! transpose takes to the world. With `n1`, `n2` those at the
+//! ends and `A` the angle between them, the true one is within `A` of both, and the bound of
+//! `between` for the normals in between.
 //!
 //! *Rounding.* A point at distance `D = |o - T| + |t d|` from the placement's
 //! origin is displaced by at most `inverse_error D` in the world
 //! (`math::placement`), and by one rounding of the composed placement's
 //! entries, `u κ D` more; the placement shrinks no vector by more than `shrink`.
-//! Taking the anchor `p` away costs `2 u` of its size and of the difference. So a point of
+//! Subtracting the anchor `p` rounds by `2 u` of its size and of the difference. So a point of
 //! the solid's space is right within
 //! `δ = (inverse_error + u κ) D / shrink + 2 u (|p| + |q|)`, doubled here, and the
 //! direction of a vector `v` from the axis within `2 δ / |v|`, which the
 //! placement turns into at most `κ` times that.
 //!
-//! *Compositions.* A ray may hit any leaf, with the leaf's own parts. The normals of a leaf that
-//! is taken away point into it, those of others out of it, unless faces of several leaves
-//! coincide: then the composition may be on the side of the leaf that another one has, and
-//! the normal is the other one's. So the part and the normal of an answer may be those of
+//! *Compositions.* A ray may hit any leaf, with the leaf's own parts. The normals of a
+//! subtracted leaf point into it, those of others out of it, unless faces of several leaves
+//! coincide: then the composition may be on the other side of a leaf, and
+//! the normal is another leaf's. So the part and the normal of an answer may be those of
 //! two leaves, if the ray may hit both.
 
 use glam::DVec3;
@@ -29,11 +29,11 @@ use cyltrace::math::{ChildFromParent, PlacementErrors, Ray, UNIT_ROUNDOFF};
 use cyltrace::solid::tessellation::{Fit, deviation_of};
 use cyltrace::solid::{AnySolid, Part};
 
-use super::parts::{Between, PartNormals};
-use crate::bounding_meshes::window::{PlacedSolid, Window, half_width};
+use crate::bounding_meshes::window::{PlacedSolid, Window};
+use crate::solids::between::{Between, PartNormals, Parts, angle};
+use crate::solids::shape;
 
-/// What a normal may be off by beyond what is derived: intersectors that shade
-/// with f32 normals are welcome.
+/// The allowed error of a normal beyond the derived bound, so that f32 normals are right.
 const NORMAL_SLACK: f64 = 1e-3;
 
 /// A ray in the space of one solid.
@@ -58,7 +58,7 @@ pub(crate) enum WrongSurface {
 }
 
 /// What is wrong with the part and the normal that an answer names for a solid of a
-/// window, given by its first leaf, of which the first hit is between `low` and `high`.
+/// window, given by its first leaf, whose first hit is between `low` and `high`.
 pub(crate) fn wrong_surface(
     window: &Window,
     solid: u32,
@@ -70,7 +70,7 @@ pub(crate) fn wrong_surface(
     let composition = window.composition_of(solid);
     let operands = composition.map(|found| found.composition.operands());
     let leaves: Vec<_> = window.leaves_with(solid).zip(0..).collect();
-    // By the first leaf that allows both, or by what the leaves allow together.
+    // The first leaf that allows both, or leaves that allow them together.
     let judge = |part: Option<Part>, normal: Option<DVec3>| {
         let mut wrong = Some(WrongSurface::Part);
         for &(leaf, position) in &leaves {
@@ -94,7 +94,7 @@ pub(crate) fn wrong_surface(
 }
 
 impl<'a> LocalRay<'a> {
-    /// The ray as the solid sees it.
+    /// The ray in the solid's space.
     pub fn new(placed: &'a PlacedSolid, ray: &Ray) -> Self {
         let placement = &placed.frame.world_from_object;
         let back = ChildFromParent::new(placement);
@@ -148,7 +148,7 @@ impl<'a> LocalRay<'a> {
         };
         let mut least_angle = f64::INFINITY;
         let mut is_possible = false;
-        for (one, normals) in between.parts(self.solid) {
+        for (one, normals) in self.parts(&between) {
             if part.is_some_and(|part| part != one) {
                 continue;
             }
@@ -165,7 +165,13 @@ impl<'a> LocalRay<'a> {
         }
     }
 
-    /// By how much a normal is off from what it may be; 0 or less if it isn't.
+    fn parts(&self, between: &Between) -> Parts {
+        let mut parts = Parts::new();
+        shape(self.solid).get().add_parts(between, &mut parts);
+        parts
+    }
+
+    /// By how much a normal is off beyond what is allowed; 0 or less if it is right.
     fn excess_angle(&self, normals: &PartNormals, normal: DVec3) -> f64 {
         if !((normal.length() - 1.0).abs() <= NORMAL_SLACK) {
             return f64::INFINITY;
@@ -179,37 +185,23 @@ impl<'a> LocalRay<'a> {
 
     /// The length of `dt` of the ray in radii, or half widths.
     pub fn radii(&self, dt: f64) -> f64 {
-        dt * self.direction.length() / radius(self.solid)
+        dt * self.direction.length() / shape(self.solid).get().unit_length()
     }
 
-    /// The depth below the surface's tangent plane at a point of `part` at `t` that `dt`
-    /// makes, in units of how far an inscribed mesh falls short; `None` if it does not
-    /// there.
+    /// The depth of `dt` below the tangent plane at the point of `part` at `t`, in units of the
+    /// deviation of an inscribed mesh; `None` on a flat part.
     pub fn sagittas(&self, t: f64, dt: f64, part: Part, segments: u32) -> Option<f64> {
         let here = self.at(t);
-        // The part is known, so whatever the point is beside is left open.
+        // The part is known, so the point may be anywhere beside it.
         let between = Between {
             low: here,
             high: here,
             rounding: [self.solid.size(); 2],
         };
-        let parts = between.parts(self.solid).into_iter();
+        let parts = self.parts(&between).into_iter();
         let mut curved = parts.filter(|(one, normals)| *one == part && normals.is_curved);
         let normal = curved.next()?.1.ends[0];
         let depth = dt * (self.direction.dot(normal) / normal.length()).abs();
         Some(depth / deviation_of(self.solid, segments, Fit::Inscribed))
     }
-}
-
-/// What lengths are measured by.
-fn radius(solid: &AnySolid) -> f64 {
-    match solid {
-        AnySolid::Cylinder(cylinder) => cylinder.radius(),
-        other => half_width(other),
-    }
-}
-
-/// The angle between two vectors, without loss when it is small.
-pub(super) fn angle(one: DVec3, other: DVec3) -> f64 {
-    libm::atan2(one.cross(other).length(), one.dot(other))
 }

@@ -1,43 +1,40 @@
 //! Answers against the exact oracle, on a sample.
 //!
-//! An intersector computes in f64 and cannot be right to the last digit. It is
-//! taken to be right if it answers for the scene with every solid displaced by
-//! at most `δ` in its own space: [`LEEWAY`] times what taking the ray to that
-//! space rounds (`surface`), at the farthest point of the solid. The solid
-//! grown by `δ` holds everything within `δ` of it, the one shrunk by `δ` is held by
-//! whatever is displaced by `δ` (`hull::displaced`). So they stand for the outer and the
+//! An intersector computes in f64 and cannot be right to the last digit. An answer is
+//! right if it is right for the scene with every solid displaced by
+//! at most `δ` in its own space: [`LEEWAY`] times the rounding of the ray on its way to that
+//! space (`surface`), at the farthest point of the solid. The solid
+//! grown by `δ` contains everything within `δ` of it, and every solid that is displaced by `δ`
+//! contains the one shrunk by `δ` (`solids::displaced`). So they replace the outer and the
 //! inner mesh, with exact crossings in place of triangles, and the same bounds follow
-//! (`sandwich`, `composed`). In place of the sheets of a disk are the disks `δ` over and under it,
+//! (`sandwich`, `composed`). The sheets of a disk are the disks `δ` above and below it,
 //! smaller by `δ`.
 //!
 //! A crossing of a tube is certain if its height is more than `2 δ` from the
-//! missing disks. A ray that comes in through one and goes out through another
-//! has no upper bound: that it misses is not certain to the sandwich.
+//! missing disks. A ray that enters through one and leaves through another
+//! has no upper bound: the sandwich cannot prove that it misses.
 
 use std::ops::Range;
 
 use glam::{DAffine3, DVec3};
 
 use cyltrace::math::Ray;
-use cyltrace::solid::{AnySolid, Crossing, Disk};
-use cyltrace_oracle::ExactAffine;
+use cyltrace::solid::{AnySolid, Crossing, Disk, Part};
+use cyltrace_oracle::{ExactAffine, placed_hits_of_any};
 
 use super::composed::composed_bounds;
-use super::open_ends::ends_of;
-use super::sandwich::{Crossings, Interval, sheet_bounds, solid_bounds};
+use super::sandwich::{Interval, sheet_bounds, solid_bounds};
 use super::surface::LocalRay;
-use crate::bounding_meshes::hull::displaced;
-use crate::bounding_meshes::meshes::{LeafCrossings, may_meet};
-use crate::bounding_meshes::window::{PlacedSolid, Window, half_width};
-use crate::finding::ReportedHit;
-use crate::report::words::instance_text;
+use crate::bounding_meshes::crossings::{Crossings, LeafCrossings};
+use crate::bounding_meshes::meshes::may_meet;
+use crate::bounding_meshes::window::{PlacedSolid, Window};
+use crate::solids::{at_origin, displaced, shape};
 
-/// Roundings of the ray that an intersector may make up for one of ours: a
+/// The allowed roundings of an intersector for each rounding of the ray: a
 /// solver has some 30 operations from the ray to `t`.
 const LEEWAY: f64 = 32.0;
 
-/// The bounds of the scene's first hit; `None` if a solid is too small for its
-/// distance to be displaced.
+/// The bounds of the scene's first hit; `None` if a solid is smaller than its displacement.
 pub(crate) fn bounds(window: &Window, ray: &Ray) -> Option<Interval> {
     let mut first = Interval::NOTHING;
     for leaves in candidates(window, ray) {
@@ -46,55 +43,54 @@ pub(crate) fn bounds(window: &Window, ray: &Ray) -> Option<Interval> {
     Some(first)
 }
 
-/// The true answer, in words.
-pub(crate) fn in_words(window: &Window, ray: &Ray) -> String {
+/// The exact first hit of a window.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TrueHit {
+    pub t: f64,
+    /// The first leaf of the solid that is hit.
+    pub solid: u32,
+    /// The part of a solid that is not composed.
+    pub part: Option<Part>,
+}
+
+/// The exact first hit of the scene.
+pub(crate) fn first_hit(window: &Window, ray: &Ray) -> Option<TrueHit> {
     let hits = candidates(window, ray).filter_map(|leaves| {
-        let placed = &window.solids[leaves.start as usize];
-        let (t, what) = match window.composition_of(leaves.start) {
-            None => {
-                let hits =
-                    cyltrace_oracle::placed_hits_of_any(&placed.solid, &placed.frame.exact, ray);
-                let hit = hits.into_iter().next()?;
-                let (kind, part) = (placed.solid.kind().name(), hit.part.name());
-                (hit.t_f64(), format!("{part} of {kind}"))
-            }
-            Some(found) => {
-                let endless = endless(ray);
-                let leaves: Vec<LeafCrossings> = window.solids
-                    [leaves.start as usize..leaves.end as usize]
-                    .iter()
-                    .map(|leaf| {
-                        let crossings = crossings(&leaf.solid, &leaf.frame.exact, &endless);
-                        LeafCrossings {
-                            outer: crossings,
-                            inner: crossings,
-                        }
-                    })
-                    .collect();
-                let bounds = composed_bounds(&found.composition, &leaves, ray.t_min);
-                // Where it is inside over a length: two faces that coincide are no hit.
-                let t = bounds.interval.high;
-                (t <= ray.t_max && t < f64::INFINITY).then_some(())?;
-                (t, String::from(found.composition.kind().name()))
-            }
+        let solid = leaves.start;
+        let Some(found) = window.composition_of(solid) else {
+            let placed = &window.solids[solid as usize];
+            let hits = placed_hits_of_any(&placed.solid, &placed.frame.exact, ray);
+            let hit = hits.into_iter().next()?;
+            let (t, part) = (hit.t_f64(), Some(hit.part));
+            return Some(TrueHit { t, solid, part });
         };
-        let instance = instance_text(&placed.frame.instance);
-        Some((t, format!("{what} {} of {instance}", placed.primitive)))
+        let endless = endless(ray);
+        let leaves = &window.solids[leaves.start as usize..leaves.end as usize];
+        let both = leaves.iter().map(|leaf| {
+            let crossings = crossings(&leaf.solid, &leaf.frame.exact, &endless);
+            LeafCrossings {
+                outer: crossings,
+                inner: crossings,
+            }
+        });
+        let both: Vec<LeafCrossings> = both.collect();
+        // The upper bound: where two faces coincide, nothing of any length is hit.
+        let t = composed_bounds(&found.composition, &both, ray.t_min)
+            .interval
+            .high;
+        let is_hit = t <= ray.t_max && t < f64::INFINITY;
+        is_hit.then_some(TrueHit {
+            t,
+            solid,
+            part: None,
+        })
     });
-    match hits.min_by(|(one, _), (other, _)| one.total_cmp(other)) {
-        None => String::from("truly a miss"),
-        Some((t, what)) => format!("truly t {t:?} on {what}"),
-    }
+    hits.min_by(|one, other| one.t.total_cmp(&other.t))
 }
 
-/// Whether bounds allow an answer.
-pub(crate) fn allows(bounds: &Interval, ray: &Ray, answer: Option<&ReportedHit>) -> bool {
-    bounds.allows(answer.map(|finding| finding.t), ray.t_max)
-}
-
-/// The leaves of each solid that the ray may meet.
+/// The leaves of each solid that the ray may hit.
 fn candidates<'a>(window: &'a Window, ray: &'a Ray) -> impl Iterator<Item = Range<u32>> + 'a {
-    // A ray that passes this near to a box may, displaced, meet its solid.
+    // A ray this near to a box may hit the displaced solid in it.
     const NEAR: f64 = 1e-12;
     let farthest = ray.origin.abs().max_element();
     let may_meet = move |solid: &PlacedSolid| {
@@ -126,7 +122,7 @@ fn displaced_bounds(window: &Window, leaves: Range<u32>, ray: &Ray) -> Option<In
     let LeafCrossings { outer, inner } = &crossings[0];
     let bounds = if let Some(found) = window.composition_of(leaves.start) {
         composed_bounds(&found.composition, &crossings, ray.t_min)
-    } else if let AnySolid::Disk(_) = placed.solid {
+    } else if shape(&placed.solid).flat().is_some() {
         sheet_bounds(outer, inner, ray.t_min)
     } else {
         let local = LocalRay::new(placed, ray);
@@ -148,32 +144,26 @@ fn displaced_bounds(window: &Window, leaves: Range<u32>, ray: &Ray) -> Option<In
 }
 
 /// Whether the point at a parameter is farther than `margin` from the planes
-/// of the disks that the solid does not have, on its side of them.
+/// of the solid's missing disks, on its side of them.
 fn is_between_ends(placed: &PlacedSolid, local: &LocalRay, t: f64, margin: f64) -> bool {
-    let Some([(p0, is_open0), (p1, is_open1)]) = ends_of(&placed.solid) else {
-        return true;
-    };
-    if !is_open0 && !is_open1 {
-        return true;
-    }
-    let (axis, length) = ((p1 - p0).normalize(), (p1 - p0).length());
-    let height = local.at(t).dot(axis);
-    t.is_finite() && (!is_open0 || height > margin) && (!is_open1 || height < length - margin)
+    let anchor = placed.solid.anchor();
+    let mut ends = shape(&placed.solid).open_ends();
+    ends.all(|(end, inward)| t.is_finite() && (local.at(t) - (end - anchor)).dot(inward) > margin)
 }
 
 /// The crossings of a solid grown and shrunk by the leeway; `None` if it is too small.
 fn displaced_crossings(placed: &PlacedSolid, ray: &Ray) -> Option<LeafCrossings> {
     let leeway = LEEWAY * LocalRay::new(placed, ray).rounding_at_solid();
-    if leeway > 0.5 * half_width(&placed.solid) {
+    let shape = shape(&placed.solid);
+    if leeway > 0.5 * shape.get().half_width() {
         return None;
     }
-    let placement = &placed.frame.exact;
-    if let AnySolid::Disk(disk) = &placed.solid {
-        return displaced_disk(disk, leeway, placement, ray);
+    if let Some(disk) = shape.flat() {
+        return displaced_disk(placed, disk, leeway, ray);
     }
     let of = |outward: f64| {
         let solid = displaced(&placed.solid, outward)?;
-        Some(crossings(&solid, placement, ray))
+        Some(crossings(&solid, &placed.frame.exact, ray))
     };
     Some(LeafCrossings {
         outer: of(leeway)?,
@@ -181,36 +171,35 @@ fn displaced_crossings(placed: &PlacedSolid, ray: &Ray) -> Option<LeafCrossings>
     })
 }
 
-/// A disk is moved to the origin, and the placement with it: what is as thin as the
-/// leeway would tilt by what its ends round elsewhere.
+/// A disk is moved to the origin, and the placement with it: a solid as thin as the
+/// leeway would tilt by the rounding of its ends elsewhere.
 fn displaced_disk(
-    disk: &Disk,
+    placed: &PlacedSolid,
+    (radius, up): (f64, DVec3),
     leeway: f64,
-    placement: &ExactAffine,
     ray: &Ray,
 ) -> Option<LeafCrossings> {
-    let center = DAffine3::from_translation(disk.center());
-    let placement = placement.after(&ExactAffine::new(&center));
-    let own = Disk::new(DVec3::ZERO, disk.normal(), disk.radius()).ok()?;
+    let center = DAffine3::from_translation(placed.solid.center());
+    let placement = placed.frame.exact.after(&ExactAffine::new(&center));
     let mut inner = Crossings::NONE;
     for side in [-1.0, 1.0] {
-        let up = own.normal().normalize() * (side * leeway);
-        let sheet = Disk::new(up, own.normal(), own.radius() - leeway).ok()?;
-        let hits = cyltrace_oracle::placed_hits_of_any(&sheet.into(), &placement, ray);
+        let sheet = Disk::new(up * (side * leeway), up, radius - leeway).ok()?;
+        let hits = placed_hits_of_any(&sheet.into(), &placement, ray);
         if let Some(hit) = hits.first() {
             inner.add(hit.t_f64(), side > 0.0);
         }
     }
+    let grown = displaced(&at_origin(&placed.solid)?, leeway)?;
     Some(LeafCrossings {
-        outer: crossings(&displaced(&own.into(), leeway)?, &placement, ray),
+        outer: crossings(&grown, &placement, ray),
         inner,
     })
 }
 
-/// Where the ray enters a closed solid and where it leaves it.
+/// The entry and the exit of a closed solid.
 fn crossings(solid: &AnySolid, placement: &ExactAffine, ray: &Ray) -> Crossings {
     let mut crossings = Crossings::NONE;
-    for hit in cyltrace_oracle::placed_hits_of_any(solid, placement, ray) {
+    for hit in placed_hits_of_any(solid, placement, ray) {
         crossings.add(hit.t_f64(), hit.crossing == Crossing::Enter);
     }
     crossings

@@ -1,4 +1,4 @@
-//! Intersectors that are wrong by little, each of which must be caught.
+//! Slightly wrong intersectors, which the check must catch.
 
 use std::sync::Arc;
 
@@ -6,13 +6,13 @@ use cyltrace::math::{Random, Ray};
 use cyltrace::scene::{CylinderRecord, MaterialIndex, Scene};
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::Tracer;
-use cyltrace_check::{Class, Intersector, Outcome, ReportedHit, Settings};
+use cyltrace_check::{Class, Intersector, Outcome, ReportedHit, Settings, Witness};
 use glam::{DAffine3, DVec3};
 
 use super::scenes::{prototype, random_cylinder, random_scene};
 use super::{checked, tracer};
 
-/// An answer that is tampered with.
+/// An intersector that changes the answers of another.
 pub struct Tampered<F>(pub F);
 
 impl<F: Fn(&Ray) -> Option<ReportedHit> + Sync> Intersector for Tampered<F> {
@@ -66,13 +66,13 @@ fn bites(name: &str, scene: &Scene, wrong: &impl Intersector, rays: u64, classes
         let found: u64 = outcome
             .rows
             .iter()
-            .filter(|row| row.class == class)
+            .filter(|row| row.class == class.name())
             .map(|row| row.violations)
             .sum();
         assert!(found > 0, "{name} went through in class {class}");
         let mut listed = outcome.violations.iter();
         assert!(
-            listed.any(|violation| violation.class == class),
+            listed.any(|violation| violation.class == class.name()),
             "{name}: {class}"
         );
     }
@@ -124,7 +124,7 @@ fn ignored_range_is_caught() {
 }
 
 #[test]
-fn nothing_asked_is_refused() {
+fn empty_settings_are_rejected() {
     let scene = scene();
     let tracer = tracer(&Arc::new(scene.clone()));
     let settings = Settings {
@@ -134,7 +134,7 @@ fn nothing_asked_is_refused() {
     let refused = cyltrace_check::compare(&scene, &tracer, &settings);
     assert!(matches!(
         refused,
-        Err(cyltrace_check::CheckError::NothingAsked)
+        Err(cyltrace_check::CheckError::NothingToCheck)
     ));
 }
 
@@ -187,6 +187,26 @@ fn shifted_hit_is_caught() {
             })
         });
         bites("shifted", &scene, &wrong, 3_000, &Class::ALL);
+    }
+}
+
+/// The oracle judges the sample on its own, whatever the meshes say.
+#[test]
+fn late_hits_are_violations_by_the_oracle() {
+    let scene = scene();
+    let tracer = tracer(&Arc::new(scene.clone()));
+    let late = Tampered(|ray: &Ray| {
+        let hit = Intersector::closest(&tracer, ray)?;
+        let t = hit.t + 0.05;
+        Some(ReportedHit { t, ..hit })
+    });
+    let outcome = checked("late", &scene, &late, &settings(20_000));
+    let oracle = outcome
+        .rows
+        .iter()
+        .filter(|row| row.witness == Witness::Oracle);
+    for row in oracle.filter(|row| row.hits > 0) {
+        assert!(row.violations > 0, "{row:?}");
     }
 }
 

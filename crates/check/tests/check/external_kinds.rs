@@ -1,9 +1,9 @@
-//! Verdicts on meshes and hits from elsewhere, on solids of every kind and on composed
-//! ones: none is false, and real defects are found.
+//! Verdicts on meshes and on hits of other programs, for solids of every kind and
+//! compositions: none is false, and real defects are found.
 
 use std::sync::Arc;
 
-use crate::meshes::{compared_with, go_on};
+use crate::meshes::{compared_with, go_on, row};
 use cyltrace::math::{Orientation, Ray};
 use cyltrace::scene::{MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, SolidRecord};
 use cyltrace::solid::tessellation::{Fit, Mesh, deviation_of, mesh_of};
@@ -11,7 +11,7 @@ use cyltrace::solid::{
     AnySolid, Caps, Composition, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere,
 };
 use cyltrace::tracer::{Options, Tracer};
-use cyltrace_check::{Agreement, F32_TOLERANCE, compare_hits, rays_around};
+use cyltrace_check::{F32_TOLERANCE, Row, compare_hits, rays_around};
 use glam::{DAffine3, DMat3, DVec3};
 use test_support::solids::prototype_of;
 
@@ -93,29 +93,32 @@ fn tracer(scene: Arc<Scene>) -> Tracer {
     Tracer::new(scene, &Options::default()).expect("a tracer")
 }
 
-/// What is found where `told` tells of each ray's exact answer.
-fn compared(tracer: &Tracer, rays: &[Ray], told: impl Fn(Option<f64>) -> Option<f64>) -> Agreement {
+/// The row of the exact answers after a change.
+fn compared(tracer: &Tracer, rays: &[Ray], change: impl Fn(Option<f64>) -> Option<f64>) -> Row {
     let answers = rays.iter().map(|ray| tracer.closest(ray).map(|hit| hit.t));
-    let told: Vec<_> = answers.map(told).collect();
-    compare_hits(tracer, rays, &told, F32_TOLERANCE, 3, &go_on).expect("an end")
+    let reported: Vec<_> = answers.map(change).collect();
+    row(compare_hits(
+        tracer,
+        rays,
+        &reported,
+        F32_TOLERANCE,
+        3,
+        &go_on,
+    ))
 }
 
-/// Hits of a renderer in f32 are never called wrong, and those that are wrong are told.
+/// Hits of a renderer in f32 are never called wrong, and wrong ones are found.
 fn judge_hits(scene: Arc<Scene>, what: &str) {
     let tracer = tracer(scene);
     let rays = rays_around(&tracer, 7, RAYS);
     let right = compared(&tracer, &rays, |t| t);
     assert!(right.hits > RAYS / 10, "{what}: {}", right.hits);
-    assert_eq!((right.disagreements, right.silhouette), (0, 0), "{what}");
+    assert_eq!((right.violations, right.band), (0, 0), "{what}");
     let rounded = compared(&tracer, &rays, |t| t.map(|t| f64::from(t as f32)));
-    assert_eq!(
-        (rounded.disagreements, rounded.silhouette),
-        (0, 0),
-        "{what}"
-    );
+    assert_eq!((rounded.violations, rounded.band), (0, 0), "{what}");
     for factor in [1.0 - 1e-3, 1.0 + 1e-3] {
         let moved = compared(&tracer, &rays, |t| t.map(|t| t * factor));
-        let [found, all] = [moved.disagreements, moved.hits];
+        let [found, all] = [moved.violations, moved.hits];
         println!("{what}: {found} of {all} at {factor}");
         assert!(
             100 * found > 98 * all,
@@ -123,20 +126,20 @@ fn judge_hits(scene: Arc<Scene>, what: &str) {
         );
     }
     let lost = compared(&tracer, &rays, |_| None);
-    println!("{what}: {} of {} lost", lost.disagreements, lost.hits);
+    println!("{what}: {} of {} lost", lost.violations, lost.hits);
     assert!(
-        10 * lost.disagreements > 8 * lost.hits,
+        10 * lost.violations > 8 * lost.hits,
         "{what}: {}",
-        lost.disagreements
+        lost.violations
     );
     let invented = compared(&tracer, &rays, |t| t.or(Some(1.0)));
-    let [found, all] = [invented.disagreements, invented.rays - invented.hits];
+    let [found, all] = [invented.violations, invented.rays - invented.hits];
     println!("{what}: {found} of {all} invented");
     assert!(100 * found > 98 * all, "{what}: {found} of {all} invented");
 }
 
 #[test]
-fn wrong_hits_of_every_kind_are_told_and_right_ones_agree() {
+fn wrong_hits_of_every_kind_are_found_and_right_ones_agree() {
     for solids in kinds() {
         let what = solids[0].kind().name();
         judge_hits(scene(prototype_of(&solids)), what);
@@ -144,7 +147,7 @@ fn wrong_hits_of_every_kind_are_told_and_right_ones_agree() {
 }
 
 #[test]
-fn wrong_hits_of_composed_solids_are_told_and_right_ones_agree() {
+fn wrong_hits_of_composed_solids_are_found_and_right_ones_agree() {
     judge_hits(scene_of_composed(), "composed");
 }
 
@@ -153,9 +156,16 @@ fn wrong_hits_of_composed_solids_are_told_and_right_ones_agree() {
 #[test]
 fn hits_on_what_is_taken_away_are_never_said_to_agree() {
     let tracer = tracer(scene_of_composed());
-    let told = |ray: Ray, t: f64| {
-        let told = [Some(t)];
-        compare_hits(&tracer, &[ray], &told, F32_TOLERANCE, 3, &go_on).expect("an end")
+    let at = |ray: Ray, t: f64| {
+        let reported = [Some(t)];
+        row(compare_hits(
+            &tracer,
+            &[ray],
+            &reported,
+            F32_TOLERANCE,
+            3,
+            &go_on,
+        ))
     };
     // Past the block, and through the drill above it to its top.
     let past = Ray::new(DVec3::new(-5.0, 0.0, 1.5), DVec3::X);
@@ -164,9 +174,9 @@ fn hits_on_what_is_taken_away_are_never_said_to_agree() {
     let t = tracer.closest(&above).expect("the top").t;
     assert!((t - 1.0).abs() < 1e-12, "{t}");
     for (ray, at_drill, before) in [(past, 4.5, 4.4), (above, 4.5 / 5.65, 0.7)] {
-        let found = told(ray, at_drill);
-        assert_eq!((found.disagreements, found.silhouette), (0, 1));
-        assert_eq!(told(ray, before).disagreements, 1);
+        let found = at(ray, at_drill);
+        assert_eq!((found.violations, found.band), (0, 1));
+        assert_eq!(at(ray, before).violations, 1);
     }
 }
 
@@ -202,8 +212,8 @@ fn right_meshes_of_every_kind_agree_and_wrong_ones_do_not() {
                 let (meshes, deviation) = meshes(&scene, segments, fit);
                 let found = compared_with(&tracer, &meshes, (0, RAYS), deviation);
                 let what = format!("{what} {segments} {fit:?}");
-                assert_eq!(found.disagreements, 0, "{what}: {:?}", found.listed);
-                let share = found.silhouette as f64 / RAYS as f64;
+                assert_eq!(found.violations, 0, "{what}");
+                let share = found.band as f64 / RAYS as f64;
                 println!("{what}: band {share}");
                 assert!(share < 1.5 / f64::from(segments), "{what}: band {share}");
             }
@@ -212,15 +222,15 @@ fn right_meshes_of_every_kind_agree_and_wrong_ones_do_not() {
         for missing in 0..right.len() {
             let mut some = right.clone();
             some.remove(missing);
-            let found = compared_with(&tracer, &some, (0, RAYS), deviation).disagreements;
+            let found = compared_with(&tracer, &some, (0, RAYS), deviation).violations;
             println!("{what} without {missing}: {found}");
             assert!(found > RAYS / 100, "{what} without {missing}: {found}");
-            // Moved by some deviations, it is told as well.
+            // A solid that is moved by some deviations is found as well.
             let mut moved = right.clone();
             for vertex in &mut moved[missing].vertices {
                 *vertex += DVec3::new(0.1, 0.1, 0.1);
             }
-            let found = compared_with(&tracer, &moved, (0, RAYS), deviation).disagreements;
+            let found = compared_with(&tracer, &moved, (0, RAYS), deviation).violations;
             assert!(found > RAYS / 100, "{what}: {missing} moved: {found}");
         }
     }

@@ -1,8 +1,6 @@
-//! Hits checked against meshes: the tracer passes, and whatever is wrong by
-//! little does not.
+//! Hits checked against meshes: the tracer passes, and slightly wrong intersectors fail.
 
 mod bites;
-mod curves;
 mod external_kinds;
 mod extremes;
 mod mesh_verdicts;
@@ -165,15 +163,15 @@ fn replayed_rays_are_the_same() {
         segments: vec![8],
         ..Settings::default()
     };
-    let told = |text: &str| {
+    let replayed = |text: &str| {
         let which: Replay = text.parse().expect("a ray");
         assert_eq!(which.to_string(), text);
         replay(&scene, &tracer, &settings, &which).expect("replayed")
     };
-    let drawn = told("grazing:17");
+    let drawn = replayed("grazing:17");
     assert!(drawn.violations.is_empty());
     let bits = drawn.lines[0].strip_prefix("ray ").expect("a ray");
-    assert_eq!(told(bits).lines, drawn.lines);
+    assert_eq!(replayed(bits).lines, drawn.lines);
     assert!("grazing".parse::<Replay>().is_err());
     assert!("0:0:0:0:0:0:0:0".parse::<Replay>().is_err());
 }

@@ -1,5 +1,5 @@
-//! Solids of all kinds, single and composed, are checked; whatever is wrong by little
-//! is found.
+//! Solids of all kinds, single and composed, are checked, and slightly wrong answers
+//! are found.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use super::{checked, tracer};
 use test_support::solids::{KIND_NAMES, any_solid, prototype_of};
 use test_support::trees::{draw_solid, draw_tree};
 
-/// So many solids of a kind with all caps, most of them placed several times.
+/// Solids of a kind with all caps, most of them placed several times.
 fn scene_of_kind(kind: u64, seed: u64) -> Scene {
     let mut random = Random::new(seed, kind);
     let mut solids = |count: u64| -> Vec<AnySolid> {
@@ -163,7 +163,7 @@ fn shrunk_scene(scene: &Scene) -> Tracer {
     tracer(&Arc::new(scene))
 }
 
-/// The tampered intersector is found wrong by the meshes.
+/// The meshes find the wrong intersector.
 fn bites(name: &str, scene: &Scene, wrong: &impl Intersector, rays: u64) -> Outcome {
     let outcome = checked(name, scene, wrong, &settings(rays, 0));
     assert!(!outcome.holds(), "{name} went through");
@@ -180,7 +180,7 @@ fn sizes_off_by_a_ten_thousandth_are_caught() {
     bites("compositions", &scene, &shrunk_scene(&scene), 2_000);
 }
 
-/// Tampers with what the tracer finds.
+/// The tracer with changed hits.
 fn tampered(scene: &Scene, change: impl Fn(&mut ReportedHit) + Sync) -> impl Intersector {
     let tracer = tracer(&Arc::new(scene.clone()));
     Tampered(move |ray: &Ray| {
@@ -203,7 +203,7 @@ fn flipped_normals_are_caught() {
             .filter(|row| row.segments.is_some())
             .map(|row| row.hits)
             .sum();
-        // Of thin things, both normals may be met.
+        // A thin solid may be hit with either normal.
         assert!(3 * normals > hits, "{normals} of {hits}");
     }
 }
@@ -228,7 +228,10 @@ fn wrong_parts_are_caught() {
     for kind in 0..KIND_NAMES.len() as u64 {
         let scene = scene_of_kind(kind, 9);
         let outcome = bites("part", &scene, &tampered(&scene, change), 400);
-        let classes = outcome.rows.iter().filter(|row| row.class == Class::Sphere);
+        let classes = outcome
+            .rows
+            .iter()
+            .filter(|row| row.class == Class::Sphere.name());
         assert!(classes.map(|row| row.violations).sum::<u64>() > 0);
     }
 }

@@ -1,4 +1,4 @@
-//! Hits from elsewhere: of another program, or of a mesh.
+//! External hits: of another program, or of a mesh.
 
 use anyhow::{anyhow, bail};
 use cyltrace::math::Ray;
@@ -6,40 +6,40 @@ use cyltrace::meshes::{MeshFile, read_mesh_within};
 use cyltrace::scene::{GivenHit, GivenHits};
 use cyltrace::tracer::Tracer;
 use cyltrace_check::{
-    Agreement, Deviation, F32_TOLERANCE, Outcome, Progress, TracedMesh, compare_hits, compare_mesh,
+    Deviation, F32_TOLERANCE, Outcome, Progress, TracedMesh, compare_hits, compare_mesh,
     rays_around,
 };
 
-use super::{Found, MOST_LISTED};
+use super::MOST_LISTED;
 use crate::arguments::{CheckArguments, Rays};
 use crate::interrupt::Interrupted;
 use crate::memory::readable;
 use crate::print;
 use crate::trace::for_each_batch;
 
-/// Bytes that a triangle takes with its vertices and in the tree, on the safe side: in STL
+/// At least the bytes of a triangle with its vertices and in the tree. In STL
 /// each has three vertices of its own, which are stored twice. 32 are for building the tree.
 const TRIANGLE_BYTES: u64 = 290;
 
 /// Why the segments and the fit in a file's comments are not used.
-const NOT_AS_STATED: &str = "the mesh is not what `cyltrace tessellate` makes of this scene with the segments and fit in its comments: the one deviation that they state applies to every solid";
+const NOT_AS_STATED: &str = "the mesh is not what `cyltrace tessellate` makes of this scene with the segments and fit in its comments: the deviation in the comments applies to every solid";
 
-/// What is compared.
+/// What is compared with the exact hits.
 pub enum ExternalInput {
     /// The rays, and a hit for each.
     Hits(Vec<Ray>, Vec<GivenHit>, String),
-    /// The rays where they are given, the mesh, and what it may be off where an argument says so.
+    /// The rays if they are given, the mesh, and its deviation if an argument states it.
     Mesh(Option<Vec<Ray>>, MeshFile, Option<f64>),
 }
 
 impl ExternalInput {
-    /// Reads what the arguments name; `None` when they name nothing.
+    /// Reads the files that the arguments name; `None` if they name none.
     pub fn read(arguments: &CheckArguments) -> anyhow::Result<Option<Self>> {
         if let Some(path) = &arguments.mesh {
             let file = read_mesh_within(path, arguments.max_memory)?;
             if arguments.deviation.or(file.deviation).is_none() {
                 bail!(
-                    "{}: no comment says its deviation, as those of `cyltrace tessellate` do: give --deviation X",
+                    "{}: no comment states the deviation, as those of `cyltrace tessellate` do: use --deviation X",
                     path.display()
                 );
             }
@@ -51,7 +51,7 @@ impl ExternalInput {
                 + made_rays * size_of::<Ray>() as u64;
             if needed > arguments.max_memory {
                 bail!(
-                    "{}: the mesh and the rays take about {}, which is more than the {} of --max-memory",
+                    "{}: the mesh and the rays take about {}, more than the {} of --max-memory",
                     path.display(),
                     readable(needed),
                     readable(arguments.max_memory)
@@ -75,7 +75,7 @@ impl ExternalInput {
         }
         if hits.is_empty() {
             bail!(
-                "{}: there is no row, so there is nothing to compare",
+                "{}: the table has no rows, so there is nothing to compare",
                 path.display()
             );
         }
@@ -96,34 +96,25 @@ impl ExternalInput {
         Ok(Some(Self::Hits(rays, hits, name)))
     }
 
-    /// Where the answer for a ray stands, as an addition to its number.
-    pub fn source(&self, index: u64) -> String {
-        match (self, self.line(index)) {
-            (Self::Hits(_, _, name), Some(line)) => format!(" ({name}:{line})"),
-            _ => String::new(),
-        }
-    }
-
-    /// The line of a table of hits in which the answer for a ray stands.
-    pub fn line(&self, index: u64) -> Option<u64> {
-        match self {
-            Self::Hits(_, hits, _) => Some(hits[index as usize].line),
-            Self::Mesh(..) => None,
-        }
-    }
-
-    /// Compares.
+    /// Compares them with the exact hits.
     pub fn compare(
         &self,
         tracer: &Tracer,
         arguments: &CheckArguments,
         progress: &Progress,
-    ) -> anyhow::Result<Found> {
-        let agreement: Option<Agreement> = match self {
-            Self::Hits(rays, hits, _) => {
-                let told: Vec<Option<f64>> = hits.iter().map(|hit| hit.t).collect();
+    ) -> anyhow::Result<Outcome> {
+        let outcome = match self {
+            Self::Hits(rays, hits, name) => {
+                let reported: Vec<Option<f64>> = hits.iter().map(|hit| hit.t).collect();
                 let tolerance = arguments.tolerance.unwrap_or(F32_TOLERANCE);
-                compare_hits(tracer, rays, &told, tolerance, MOST_LISTED, progress)
+                let mut outcome =
+                    compare_hits(tracer, rays, &reported, tolerance, MOST_LISTED, progress);
+                let wrong = outcome.iter_mut().flat_map(|found| &mut found.violations);
+                for violation in wrong {
+                    let line = hits[violation.index as usize].line;
+                    violation.source = Some((name.clone(), line));
+                }
+                outcome
             }
             Self::Mesh(rays, file, deviation) => {
                 let mesh = TracedMesh::new(&file.mesh);
@@ -150,19 +141,16 @@ impl ExternalInput {
                 compare_mesh(tracer, &mesh, rays, off, MOST_LISTED, progress)
             }
         };
-        Ok(Found {
-            outcome: Outcome::default(),
-            agreements: vec![agreement.ok_or(Interrupted::NothingWritten)?],
-        })
+        Ok(outcome.ok_or(Interrupted::NothingWritten)?)
     }
 }
 
-/// The rays of the table; `None` when a number of rays is asked for.
+/// The rays of the table; `None` if the argument is a number of rays.
 fn given_rays(arguments: &CheckArguments) -> anyhow::Result<Option<Vec<Ray>>> {
     let Rays::Table(path) = &arguments.rays else {
         return Ok(None);
     };
-    // The rays and their hits; a list that grows is in memory twice.
+    // The rays and their hits. A growing list is in memory twice.
     let bytes = 2 * (size_of::<Ray>() + size_of::<GivenHit>()) as u64;
     let mut rays = Vec::new();
     let note = for_each_batch(path, &arguments.format, |blocks: Vec<Vec<Ray>>| {

@@ -1,7 +1,6 @@
 //! `cyltrace check`.
 
 mod external_input;
-mod figures;
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -12,11 +11,9 @@ use anyhow::bail;
 use cyltrace::embree::DeviceOptions;
 use cyltrace::scene::Film;
 use cyltrace::tracer::{Options, Tracer};
-use cyltrace_check::{
-    self, Agreement, Class, Outcome, PageContent, Replay, Settings, TABLE_HEADINGS, TABLE_NAMES,
-};
+use cyltrace_check::{self, Class, Outcome, PageContent, Replay, Settings};
 use cyltrace_output::NewFile;
-use cyltrace_output::{Table, figure};
+use serde_json::{Value, json};
 
 use super::arguments::{CheckArguments, Rays};
 use super::limit::{MemoryLimit, Need};
@@ -26,39 +23,35 @@ use super::outputs::Files;
 use super::print::print;
 use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
 use external_input::ExternalInput;
-use figures::figures;
+
+/// The fields of the rows that depend on Embree's f32 arithmetic, whose last bits depend
+/// on the instruction set.
+const ISA_DEPENDENT: [&str; 6] = [
+    "band_percent",
+    "witnessed_percent",
+    "unwitnessed_percent",
+    "triangle_errors",
+    "max_dt_over_chord",
+    "p99_dt_r",
+];
 
 /// Wrong answers that are listed, of each kind.
 const MOST_LISTED: usize = 20;
 
-/// Pixels across the pictures of the page; they have the shape of the scene's.
+/// The width of the page's pictures; they have the aspect ratio of the scene's.
 const PICTURE_WIDTH: u32 = 320;
 
-/// Sides of the prisms in the pictures: few enough to see the difference.
+/// Sides of the meshes in the pictures: few enough to see the difference.
 const PICTURE_SEGMENTS: u32 = 16;
 
-/// Everything that was found.
-struct Found {
-    outcome: Outcome,
-    agreements: Vec<Agreement>,
-}
-
-impl Found {
-    /// Whether nothing is wrong and the witnesses say enough.
-    fn holds(&self) -> bool {
-        let told_hold = self.agreements.iter().all(Agreement::holds);
-        self.outcome.holds() && told_hold
-    }
-}
-
-/// Runs the check; the exit code says whether it holds.
+/// Runs the check. The exit code is 0 if it holds.
 pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
     let common = &arguments.common;
     let page_path = arguments.report.as_ref().map(|dir| dir.join("index.html"));
     let files = files(arguments, page_path.as_ref());
     files.check()?;
     if let (Some(_), Rays::Count(_)) = (&arguments.hits, &arguments.rays) {
-        bail!("--hits needs the rays that they are of: --rays FILE");
+        bail!("--hits requires --rays FILE");
     }
     if let (Rays::Table(path), None, None) = (&arguments.rays, &arguments.hits, &arguments.mesh) {
         bail!(
@@ -71,7 +64,7 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         && directory.is_file()
     {
         bail!(
-            "--report {}: it is a file, not a directory",
+            "--report {}: this is a file, not a directory",
             directory.display()
         );
     }
@@ -82,7 +75,7 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
     let workers = scene::workers(common)?;
     let file = scene::read(&arguments.scene, MemoryLimit::available())?;
     files.check_with(&file)?;
-    let told = workers.install(|| ExternalInput::read(arguments))?;
+    let external = workers.install(|| ExternalInput::read(arguments))?;
     let loaded = Arc::new(scene::load(
         common,
         file,
@@ -99,7 +92,7 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         return workers.install(|| replay(&tracer, which, &settings));
     }
 
-    if told.is_none() && common.prints() {
+    if external.is_none() && common.prints() {
         let plan = workers.install(|| cyltrace_check::plan(&loaded, &settings))?;
         print(&format!(
             "meshes: about {} for {} solids, {}\n",
@@ -113,7 +106,7 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
     }
     let stop = interrupt::end_in_order();
     let bar = progress::bar(common, 0, "rays");
-    let report_progress = |done: u64, total: u64, _: &str| {
+    let report_progress = |done: u64, total: u64| {
         bar.set_length(total);
         bar.set_position(done);
         if stop.load(std::sync::atomic::Ordering::Relaxed) {
@@ -123,25 +116,22 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         }
     };
     let start = Instant::now();
-    let found = workers.install(|| match &told {
-        Some(told) => told.compare(&tracer, arguments, &report_progress),
+    let outcome = workers.install(|| match &external {
+        Some(external) => external.compare(&tracer, arguments, &report_progress),
         None => {
             let outcome =
                 cyltrace_check::compare_with(&loaded, &tracer, &settings, &report_progress);
             interrupt::check()?;
-            Ok(Found {
-                outcome: outcome?,
-                agreements: Vec::new(),
-            })
+            Ok(outcome?)
         }
     });
     bar.finish_and_clear();
-    let found = found?;
+    let outcome = outcome?;
     let elapsed = start.elapsed().as_secs_f64();
 
     if let Some(page) = &page_path {
-        // Hits from elsewhere have nothing to do with these prisms.
-        let pictures = if told.is_some() {
+        // The pictures show the meshes, which a check of external hits does not have.
+        let pictures = if external.is_some() {
             None
         } else {
             workers.install(|| {
@@ -156,20 +146,15 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         interrupt::check()?;
         let text = cyltrace_check::page(&PageContent {
             scene: &arguments.scene.display().to_string(),
-            sentence: &sentence(arguments, &tracer, &found),
-            outcome: &found.outcome,
-            agreements: &found.agreements,
-            source: &|index| source(told.as_ref(), index),
+            sentence: &sentence(arguments, &tracer, &outcome),
+            outcome: &outcome,
             pictures: pictures.as_ref(),
         });
         write_text(page, &text)?;
     }
-    json::write(
-        common,
-        &figures(arguments, &tracer, &found, told.as_ref(), elapsed),
-    )?;
+    json::write(common, &figures(arguments, &tracer, &outcome, elapsed))?;
     if common.prints() {
-        let mut text = summary(&found, told.as_ref());
+        let mut text = cyltrace_check::summary(&outcome);
         text += &format!(
             "time: {elapsed:.2} s on {} threads\n",
             workers.current_num_threads()
@@ -180,14 +165,14 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         text += &format!(
             "{} {}\n",
             arguments.scene.display(),
-            cyltrace_check::verdict(&found.outcome, &found.agreements)
+            cyltrace_check::verdict(&outcome)
         );
         print(&text)?;
     }
-    Ok(if found.holds() { GOOD } else { CHECK_FAILED })
+    Ok(if outcome.holds() { GOOD } else { CHECK_FAILED })
 }
 
-/// Prints one ray and what everyone says of it.
+/// Prints one ray with all that is known about it.
 fn replay(tracer: &Tracer, which: &Replay, settings: &Settings) -> anyhow::Result<u8> {
     let replayed = cyltrace_check::replay(tracer.scene(), tracer, settings, which)?;
     let mut text: String = replayed
@@ -206,7 +191,7 @@ fn replay(tracer: &Tracer, which: &Replay, settings: &Settings) -> anyhow::Resul
     })
 }
 
-/// What is read and written.
+/// The files that are read and written.
 fn files<'a>(arguments: &'a CheckArguments, page: Option<&'a PathBuf>) -> Files<'a> {
     let mut files = Files::new(&arguments.scene, arguments.common.json.as_deref());
     if let Rays::Table(path) = &arguments.rays {
@@ -252,7 +237,7 @@ fn device_options(arguments: &CheckArguments) -> DeviceOptions {
     }
 }
 
-/// A small picture of the same shape, but for extreme ones.
+/// A small picture of the same aspect ratio, unless that is extreme.
 fn picture_film(film: Film) -> Film {
     let height = u64::from(PICTURE_WIDTH) * u64::from(film.height) / u64::from(film.width);
     Film {
@@ -261,18 +246,18 @@ fn picture_film(film: Film) -> Film {
     }
 }
 
-/// What the page is about, without anything that differs from run to run.
-fn sentence(arguments: &CheckArguments, tracer: &Tracer, found: &Found) -> String {
+/// What was checked, without anything that differs from run to run.
+fn sentence(arguments: &CheckArguments, tracer: &Tracer, outcome: &Outcome) -> String {
     let compared = arguments.hits.as_ref().or(arguments.mesh.as_ref());
     let compared = compared.map_or_else(String::new, |path| format!("{}: ", path.display()));
-    let told: u64 = found.agreements.iter().map(|one| one.rays).sum();
+    let given = outcome.rays();
     let rays = match &arguments.rays {
-        Rays::Table(path) => format!("{compared}{told} rays of {}", path.display()),
+        Rays::Table(path) => format!("{compared}{given} rays of {}", path.display()),
         Rays::Count(count) if compared.is_empty() => {
             format!("{count} rays of each class, seed {}", arguments.seed)
         }
         Rays::Count(_) => format!(
-            "{compared}{told} rays around the scene, seed {}",
+            "{compared}{given} rays around the scene, seed {}",
             arguments.seed
         ),
     };
@@ -283,43 +268,27 @@ fn sentence(arguments: &CheckArguments, tracer: &Tracer, found: &Found) -> Strin
     )
 }
 
-/// The lines for people.
-fn summary(found: &Found, told: Option<&ExternalInput>) -> String {
-    let Found {
-        outcome,
-        agreements,
-    } = found;
-    let mut text = String::new();
-    for window in &outcome.windows {
-        text += &format!("{window}\n");
+/// The figures as JSON: those of the outcome, and of this run.
+fn figures(arguments: &CheckArguments, tracer: &Tracer, outcome: &Outcome, elapsed: f64) -> Value {
+    let statistics = tracer.statistics();
+    let is_external = outcome.rows.iter().any(|row| row.tolerance.is_some());
+    let mut figures = json!({ "scene": arguments.scene });
+    let all = json!(outcome);
+    let solids = json::Solids::of(&statistics);
+    let of_run = json!({
+        "seed": arguments.seed,
+        "solids": solids.by_kind(),
+        "cylinders": solids.cylinders(),
+        "embree": statistics.embree_version,
+        "isa": statistics.isa,
+        // External hits are compared in f64.
+        "isa_dependent": if is_external { &[][..] } else { &ISA_DEPENDENT },
+        "check_s": elapsed,
+    });
+    for part in [all, of_run] {
+        if let (Value::Object(figures), Value::Object(part)) = (&mut figures, part) {
+            figures.extend(part);
+        }
     }
-    let mut table = Table::new(&TABLE_HEADINGS, TABLE_NAMES);
-    for row in cyltrace_check::table_rows(outcome, agreements) {
-        table.push(row);
-    }
-    text += &table.to_string();
-    for row in agreements {
-        text += &cyltrace_check::tolerance_text(row);
-    }
-    for row in &outcome.convergence {
-        text += &format!(
-            "{} sides: {} % of rays in the silhouette band, 99 % of hits within {} r of the prism\n",
-            row.segments,
-            figure(row.band_percent),
-            figure(row.p99_dt_r)
-        );
-    }
-    for violation in &outcome.violations {
-        text += &cyltrace_check::violation_text(violation);
-    }
-    for disagreement in agreements.iter().flat_map(|one| &one.listed) {
-        let source = source(told, disagreement.index);
-        text += &cyltrace_check::disagreement_text(disagreement, &source);
-    }
-    text
-}
-
-/// Where the answer for a ray stands, when it is not the tracer's.
-fn source(told: Option<&ExternalInput>, index: u64) -> String {
-    told.map_or_else(String::new, |told| told.source(index))
+    figures
 }

@@ -227,9 +227,9 @@ fn wrong_hits_fail_both_ways_with_ray_line_and_both_answers() {
     };
     type Change = fn(Option<f64>) -> Option<f64>;
     let changes: [(bool, Change, &str); 3] = [
-        (true, |_| None, "told a miss, exactly t "),
-        (false, |_| Some(1.0), "told t 1.0, exactly a miss"),
-        (true, |t| t.map(|t| t * 1.001), "told t "),
+        (true, |_| None, "answered a miss, exactly t "),
+        (false, |_| Some(1.0), "answered t 1.0, exactly a miss"),
+        (true, |t| t.map(|t| t * 1.001), "answered t "),
     ];
     for (of_hits, change, expected) in changes {
         let wrong = first(of_hits);

@@ -327,7 +327,7 @@ fn far_solid_does_not_loosen_the_tolerance_of_others() {
     let scene = format!("{SCENE}[[sphere]]\ncenter = [1e8, 0, 0]\nradius = 100\n");
     let (code, text) = hits_in(&scene, "0,0,9,0,0,-1\n", "1,7.4\n", &[]);
     assert_eq!(code, 1, "{text}");
-    assert!(text.contains("told t 7.4, exactly t 7.0"), "{text}");
+    assert!(text.contains("answered t 7.4, exactly t 7.0"), "{text}");
 }
 
 /// Rays to points of the scene's box hardly ever meet small solids far apart.

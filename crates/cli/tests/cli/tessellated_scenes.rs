@@ -14,7 +14,7 @@ use cyltrace::scene::{Scene, load};
 use cyltrace::solid::Cylinder;
 use cyltrace::solid::tessellation::{Fit, Mesh};
 use cyltrace::tracer::{Options, Tracer};
-use cyltrace_check::{Agreement, Deviation, TracedMesh, compare_mesh};
+use cyltrace_check::{Deviation, Outcome, TracedMesh, compare_mesh};
 use glam::{DAffine3, DVec3};
 use program::{cyltrace, folder_of};
 use serde_json::Value;
@@ -141,13 +141,13 @@ impl Strut {
     }
 }
 
-fn verdict(tracer: &Tracer, file: &MeshFile, rays: &[Ray]) -> Agreement {
+fn verdict(tracer: &Tracer, file: &MeshFile, rays: &[Ray]) -> Outcome {
     let deviation = Deviation::stated(file, tracer.scene()).expect("the file states it");
     assert!(
         matches!(deviation, Deviation::Tessellated { .. }),
         "{deviation:?}"
     );
-    let go_on = |_: u64, _: u64, _: &str| ControlFlow::Continue(());
+    let go_on = |_: u64, _: u64| ControlFlow::Continue(());
     let mesh = TracedMesh::new(&file.mesh);
     compare_mesh(tracer, &mesh, ("given", rays), (deviation, 0.0), 3, &go_on).expect("an end")
 }
@@ -165,11 +165,10 @@ fn faults_of_thin_solids_beside_a_large_one_are_found() {
         let strut = Strut::new(&scene, number);
         let count = strut.rays.len() as u64;
         let found = verdict(&tracer, &right, &strut.rays);
-        assert_eq!(
-            (found.hits, found.judged(), found.disagreements),
-            (count, count, 0)
-        );
-        assert!(found.holds() && found.max_allowance < 0.04 * strut.radius);
+        let row = &found.rows[0];
+        assert_eq!((row.hits, row.witnessed, row.violations), (count, count, 0));
+        let tolerance = row.tolerance.expect("a tolerance");
+        assert!(found.holds() && tolerance.greatest < 0.04 * strut.radius);
         let mut missing = right.mesh.clone();
         missing
             .triangles
@@ -184,7 +183,7 @@ fn faults_of_thin_solids_beside_a_large_one_are_found() {
                 ..right.clone()
             };
             let found = verdict(&tracer, &file, &strut.rays);
-            let wrong = found.disagreements;
+            let wrong = found.violation_count();
             assert_eq!(wrong, count, "{what} {number} {fit:?}: {found:?}");
         }
     }
@@ -205,7 +204,7 @@ fn faults_of_a_wide_plate_are_found_along_its_axis() {
     for fit in [Fit::Inscribed, Fit::Circumscribed] {
         tessellate(folder.path(), &path, "m.ply", 8, fit);
         let right = read_mesh(&folder.path().join("m.ply")).expect("a mesh");
-        assert_eq!(verdict(&tracer, &right, &rays).judged(), 3);
+        assert_eq!(verdict(&tracer, &right, &rays).rows[0].witnessed, 3);
         assert!(verdict(&tracer, &right, &rays).holds());
         let mut low = right.clone();
         low.mesh
@@ -225,7 +224,7 @@ fn faults_of_a_wide_plate_are_found_along_its_axis() {
             .retain(|corners| corners.iter().all(is_twig));
         for (what, file) in [("low", low), ("high", high), ("missing", missing)] {
             let found = verdict(&tracer, &file, &rays);
-            assert_eq!(found.disagreements, 3, "{what} {fit:?}: {found:?}");
+            assert_eq!(found.violation_count(), 3, "{what} {fit:?}: {found:?}");
         }
     }
 }

@@ -2,24 +2,22 @@
 //!
 //! Rounding moves a vertex by at most `ε` in the mesh (`vertex_error`), which is at most
 //! `δ = ε |M⁻¹|` in the solid's own space. So the mesh around a solid is the
-//! circumscribed one (`solid::tessellation`) of the solid grown by δ: whatever
-//! rounding does to its corners, each stays beyond the supporting plane of its facet,
-//! for which the normal of the facet that is not rounded serves as the `m` of
+//! circumscribed one (`solid::tessellation`) of the solid grown by δ. However
+//! its corners are rounded, each stays beyond the supporting plane of its facet; the normal of
+//! the facet before rounding serves as the `m` of
 //! `proof`. The mesh inside is the inscribed one of the solid shrunk by δ. Every mesh
 //! is verified as built. One that fails is built again with a larger margin, in the end
 //! with fewer sides as well, because narrow facets of f32 corners may turn over.
 //!
-//! *Disks* have no inside. Around one is a flat cylinder. In place of a mesh within there
-//! are two polygons, or *sheets*, one over and one under the disk, with all corners in
-//! the infinite cylinder of the disk's radius: a line from one through the other meets the
-//! disk between them, since the cylinder is convex. Rounding bends a sheet, so that a
-//! line may come in and go out again through the same one. So it is the sheet that
-//! counts, not the side of it that is met: the triangles of the one over the disk are the
+//! A *disk* has no inside. The mesh around it is a flat cylinder. In place of a mesh inside,
+//! it has two polygons, or *sheets*, one above and one below it, with all corners in
+//! the infinite cylinder of the disk's radius. A line that crosses both crosses the
+//! disk between them, since the cylinder is convex. Rounding bends a sheet, so a
+//! line may cross the same one twice. So the sheet
+//! counts, not the side from which it is crossed: the triangles of the upper one are the
 //! first half of all.
 
-mod displaced;
 mod filter;
-mod form;
 mod proof;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -31,20 +29,18 @@ use cyltrace::math::{ChildFromParent, PlacementErrors, UNIT_ROUNDOFF, power_of_t
 use cyltrace::solid::tessellation::{
     Fit, Mesh, corner_error_of, deviation_of, mesh_of, mesh_size_of,
 };
-use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
+use cyltrace::solid::{AnySolid, Disk};
 use cyltrace_oracle::ExactVector;
 
-pub(crate) use displaced::displaced;
 use filter::Rounded;
-use form::Form;
 use proof::Proven;
 
 use super::mesh_frame::MeshFrame;
 use super::mesh_map::MeshMap;
 use super::window::PlacedSolid;
+use crate::solids::{at_origin, displaced, shape};
 
-/// Vertices nearer to 0 than this are put there: Embree takes subnormal numbers
-/// for 0.
+/// Coordinates smaller than this are 0: Embree treats subnormal numbers as 0.
 const LEAST: f64 = power_of_two(-100);
 
 /// Margins in δ, and how often the number of sides is halved for them.
@@ -62,13 +58,14 @@ pub(crate) struct Hull {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// At least the triangles of either mesh of a solid with so many sides.
+/// At least the triangles of either mesh of a solid with this number of sides.
 pub(crate) fn triangles_needed(solid: &AnySolid, segments: u32) -> u64 {
-    match solid {
-        // That around it is a prism with both disks.
-        AnySolid::Disk(_) => 4 * u64::from(segments),
-        other => mesh_size_of(&closed(other), segments).1,
+    if shape(solid).flat().is_some() {
+        // Around it is a cylinder with both disks.
+        return 4 * u64::from(segments);
     }
+    let closed = at_origin(solid);
+    mesh_size_of(closed.as_ref().unwrap_or(solid), segments).1
 }
 
 /// The mesh of a solid on one side of it, proven to be there; `None` if f32 does not
@@ -80,13 +77,11 @@ pub(crate) fn hull(
     segments: u32,
     side: Fit,
 ) -> Option<Hull> {
-    let form = Form::new(&placed.solid);
     let builder = Builder {
         frame,
         map,
         placed,
-        form,
-        here: Rounded::new(frame, map, placed, form),
+        here: Rounded::new(frame, map, placed),
         own: at_origin(&placed.solid)?,
     };
     let world_from_object = &placed.frame.world_from_object;
@@ -96,51 +91,11 @@ pub(crate) fn hull(
     ATTEMPTS.into_iter().find_map(|(margins, halvings)| {
         let segments = (segments >> halvings).max(FEWEST.min(segments));
         let margin = margins * margin;
-        match (&placed.solid, side) {
+        match (shape(&placed.solid).flat(), side) {
             (_, Fit::Circumscribed) => builder.around(segments, margin),
-            (AnySolid::Disk(disk), Fit::Inscribed) => builder.sheets(disk, segments, margin),
-            (_, Fit::Inscribed) => builder.inside(segments, margin),
+            (Some(disk), Fit::Inscribed) => builder.sheets(disk, segments, margin),
+            (None, Fit::Inscribed) => builder.inside(segments, margin),
         }
-    })
-}
-
-/// The solid with both disks.
-fn closed(solid: &AnySolid) -> AnySolid {
-    match solid {
-        AnySolid::Cylinder(one) => one.with_caps(Caps::Both).into(),
-        AnySolid::Cone(one) => one.with_caps(Caps::Both).into(),
-        other => *other,
-    }
-}
-
-/// The solid moved so that its anchor is at the origin, closed; rounded by a few u of
-/// its own size.
-fn at_origin(solid: &AnySolid) -> Option<AnySolid> {
-    let zero = DVec3::ZERO;
-    Some(match solid {
-        AnySolid::Cylinder(one) => {
-            let axis = one.p1() - one.p0();
-            Cylinder::new(zero, axis, one.radius(), Caps::Both)
-                .ok()?
-                .into()
-        }
-        AnySolid::Cone(one) => {
-            let axis = one.p1() - one.p0();
-            Cone::new(zero, axis, one.radius0(), one.radius1(), Caps::Both)
-                .ok()?
-                .into()
-        }
-        AnySolid::RoundedCone(one) => {
-            let axis = one.p1() - one.p0();
-            RoundedCone::new(zero, axis, one.radius0(), one.radius1())
-                .ok()?
-                .into()
-        }
-        AnySolid::Sphere(one) => Sphere::new(zero, one.radius()).ok()?.into(),
-        AnySolid::Cuboid(one) => Cuboid::new(zero, one.half_widths(), one.orientation())
-            .ok()?
-            .into(),
-        AnySolid::Disk(one) => Disk::new(zero, one.normal(), one.radius()).ok()?.into(),
     })
 }
 
@@ -149,7 +104,6 @@ struct Builder<'a> {
     frame: &'a MeshFrame,
     map: &'a MeshMap,
     placed: &'a PlacedSolid,
-    form: Form,
     here: Rounded<'a>,
     /// The solid with its anchor at the origin.
     own: AnySolid,
@@ -199,7 +153,7 @@ impl Builder<'_> {
     }
 
     fn proven<'c>(&self, cell: &'c mut Option<Proven>) -> &'c Proven {
-        cell.get_or_insert_with(|| Proven::new(self.placed, self.form))
+        cell.get_or_insert_with(|| Proven::new(self.placed))
     }
 
     fn in_world(&self, vertex: [f32; 3]) -> ExactVector {
@@ -211,11 +165,11 @@ impl Builder<'_> {
         let mesh = mesh_of(&shrunk, segments, Fit::Inscribed);
         let vertices = self.placed(&mesh)?;
         let mut exactly = None;
-        let are_held = vertices.iter().all(|&vertex| {
-            self.here.surely_holds(wide(vertex))
-                || self.proven(&mut exactly).holds(&self.in_world(vertex))
+        let are_inside = vertices.iter().all(|&vertex| {
+            self.here.surely_contains(wide(vertex))
+                || self.proven(&mut exactly).contains(&self.in_world(vertex))
         });
-        are_held.then(|| self.hull(mesh, vertices))
+        are_inside.then(|| self.hull(mesh, vertices))
     }
 
     fn around(&self, segments: u32, margin: f64) -> Option<Hull> {
@@ -259,11 +213,10 @@ impl Builder<'_> {
         are_beyond && is_closed
     }
 
-    /// The sheets over and under a disk.
-    fn sheets(&self, disk: &Disk, segments: u32, margin: f64) -> Option<Hull> {
-        let up = disk.normal().normalize();
-        let radius = disk.radius() - margin;
-        // One margin is what rounding may take; what is left is a distance apart.
+    /// The sheets above and below a disk with this radius and unit normal.
+    fn sheets(&self, (radius, up): (f64, DVec3), segments: u32, margin: f64) -> Option<Hull> {
+        let radius = radius - margin;
+        // Rounding moves a sheet by at most one margin, and another one separates them.
         let sheet = |side: f64| {
             let (center, normal) = (up * (side * 2.0 * margin), up * side);
             let sheet = Disk::new(center, normal, radius).ok()?;

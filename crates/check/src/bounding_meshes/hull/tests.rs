@@ -5,47 +5,12 @@ use glam::{DAffine3, DMat3};
 use super::*;
 use crate::bounding_meshes::placed::{Budget, windows};
 use crate::bounding_meshes::window::Window;
-use cyltrace::math::{Orientation, Random};
+use crate::solids::tests::random_solid;
+use cyltrace::math::Random;
 use cyltrace::scene::{MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, SolidRecord};
 use cyltrace_oracle::ExactVector;
 
 const BOTH: [Fit; 2] = [Fit::Inscribed, Fit::Circumscribed];
-
-/// A solid of any kind but a disk, about unit size and not far away; some
-/// have an apex, radii nearly equal or ends as large as they are long.
-pub(crate) fn random_solid(random: &mut Random) -> AnySolid {
-    let center = random.direction() * random.log_uniform(1e-3, 10.0);
-    let along = random.direction() * random.log_uniform(0.1, 3.0);
-    let radius = random.log_uniform(0.05, 1.0);
-    let other = match random.below(4) {
-        0 => 0.0,
-        1 => radius * (1.0 + random.log_uniform(1e-12, 1e-3)),
-        _ => random.log_uniform(0.05, 1.0),
-    };
-    let (radius0, radius1) = if random.below(2) == 0 {
-        (radius, other)
-    } else {
-        (other, radius)
-    };
-    match random.below(5) {
-        0 => Sphere::new(center, radius).unwrap().into(),
-        1 => {
-            let mut width = || random.log_uniform(0.05, 1.0);
-            let half_widths = DVec3::new(width(), width(), width());
-            let turned = Orientation::IDENTITY.rotated(random.direction(), 360.0 * random.unit());
-            Cuboid::new(center, half_widths, turned).unwrap().into()
-        }
-        2 => Cylinder::new(center, center + along, radius, Caps::Both)
-            .unwrap()
-            .into(),
-        3 => Cone::new(center, center + along, radius0, radius1, Caps::Both)
-            .unwrap()
-            .into(),
-        _ => RoundedCone::new(center, center + along, radius0, radius1)
-            .unwrap()
-            .into(),
-    }
-}
 
 fn random_disk(random: &mut Random) -> AnySolid {
     let center = random.direction() * random.log_uniform(1e-3, 10.0);
@@ -100,7 +65,7 @@ fn with_hulls(
 ) {
     let frame = MeshFrame::new(window);
     let map = MeshMap::new(&frame, &placed.frame);
-    let proven = Proven::new(placed, Form::new(&placed.solid));
+    let proven = Proven::new(placed);
     let hulls = BOTH.map(|side| hull(&frame, &map, placed, segments, side));
     check(&frame, &proven, hulls);
 }
@@ -122,7 +87,7 @@ fn random_solids_have_proven_meshes() {
                     };
                     let world = |vertex| frame.exact_world_from_mesh(wide(vertex));
                     for &vertex in &inner.vertices {
-                        assert!(proven.holds(&world(vertex)), "case {case}: {solid:?}");
+                        assert!(proven.contains(&world(vertex)), "case {case}: {solid:?}");
                     }
                     // No facet's plane passes on the wrong side of the middle, and
                     // no corner is in the solid.
@@ -131,7 +96,7 @@ fn random_solids_have_proven_meshes() {
                         assert_ne!(proven.is_around_middle(&corners), Some(false));
                     }
                     for &vertex in &outer.vertices {
-                        assert!(!proven.holds(&world(vertex)), "case {case}: {solid:?}");
+                        assert!(!proven.contains(&world(vertex)), "case {case}: {solid:?}");
                     }
                     let [inner, outer] = [&inner, &outer].map(volume);
                     assert!(0.0 < inner && inner < outer, "case {case}: {inner} {outer}");
@@ -178,12 +143,10 @@ fn filters_are_never_wrong_near_the_surface() {
         let solid = random_solid(&mut random);
         let window = random_window(solid, &mut random);
         let placed = &window.solids[0];
-        let (frame, form) = (MeshFrame::new(&window), Form::new(&solid));
+        let frame = MeshFrame::new(&window);
         let map = MeshMap::new(&frame, &placed.frame);
-        let (here, proven) = (
-            Rounded::new(&frame, &map, placed, form),
-            Proven::new(placed, form),
-        );
+        let here = Rounded::new(&frame, &map, placed);
+        let proven = Proven::new(placed);
         let (anchor, direction) = (solid.anchor(), random.direction());
         let from_anchor = solid.center() - anchor;
         let Some(chord) = solid.chord(from_anchor, direction) else {
@@ -196,7 +159,7 @@ fn filters_are_never_wrong_near_the_surface() {
         let vertex = here.anchor().base + map.matrix * point;
         let world: ExactVector = frame.exact_world_from_mesh(vertex);
         for (count, (is_sure, is_so)) in counts.iter_mut().zip([
-            (here.surely_holds(vertex), proven.holds(&world)),
+            (here.surely_contains(vertex), proven.contains(&world)),
             (
                 here.is_surely_beyond(vertex, surface.normal),
                 proven.is_beyond(&world, surface.normal),
@@ -206,7 +169,7 @@ fn filters_are_never_wrong_near_the_surface() {
             count[0] += u32::from(is_so);
             count[1] += u32::from(is_sure);
         }
-        assert!(!(proven.holds(&world) && proven.is_beyond(&world, surface.normal)));
+        assert!(!(proven.contains(&world) && proven.is_beyond(&world, surface.normal)));
     }
     for [so, sure] in counts {
         assert!(sure > so / 3 && sure < so, "{counts:?}");
@@ -222,14 +185,13 @@ fn meshes_without_margins_are_caught() {
         let solid = random_solid(&mut random);
         let window = random_window(solid, &mut random);
         let placed = &window.solids[0];
-        let (frame, form) = (MeshFrame::new(&window), Form::new(&solid));
+        let frame = MeshFrame::new(&window);
         let map = MeshMap::new(&frame, &placed.frame);
         let builder = Builder {
             frame: &frame,
             map: &map,
             placed,
-            form,
-            here: Rounded::new(&frame, &map, placed, form),
+            here: Rounded::new(&frame, &map, placed),
             own: at_origin(&solid).expect("a solid"),
         };
         tried += 1;

@@ -1,10 +1,11 @@
-//! Hulls of a whole scene, and what they take.
+//! Hulls of a whole scene, and their memory.
 
 use std::path::Path;
 
 use super::*;
-use crate::bounding_meshes::hull::tests::{random_solid, random_window};
+use crate::bounding_meshes::hull::tests::random_window;
 use crate::bounding_meshes::placed::{Budget, windows};
+use crate::solids::tests::random_solid;
 use cyltrace::embree::{Device, DeviceOptions, SceneBuilder};
 use cyltrace::math::{Bounds, Random};
 
@@ -19,7 +20,7 @@ fn whole(scene: &cyltrace::scene::Scene) -> Window {
     windows(scene, budget, 0).remove(0)
 }
 
-/// Solids too small for f32 where they are have no hulls, and say so.
+/// Solids too small for f32 at their distance have no hulls, and are listed as missing.
 #[test]
 fn solids_below_the_last_bit_are_unwitnessed() {
     let mut random = Random::new(73, 0);
@@ -31,9 +32,9 @@ fn solids_below_the_last_bit_are_unwitnessed() {
         let far = bounds.center() + random.direction() * (size * 1e9);
         window.bounds = Some(Bounds::at(far).grown(size));
         let frame = MeshFrame::new(&window);
-        assert_eq!(hulls(&window, &frame, 16, Fit::Inscribed).empty, [0]);
+        assert_eq!(hulls(&window, &frame, 16, Fit::Inscribed).missing, [0]);
         let outer = hulls(&window, &frame, 16, Fit::Circumscribed);
-        assert_eq!(outer.solid_of.len() + outer.unbounded.len(), 1);
+        assert_eq!(outer.solid_of.len() + outer.missing.len(), 1);
     }
 }
 
@@ -51,7 +52,7 @@ fn lattice_has_all_hulls() {
     }
 }
 
-/// The estimate against what lists and Embree hold.
+/// The estimate against the memory of the lists and of Embree.
 #[test]
 fn memory_is_near_the_estimate() {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("scenes/lattice.toml");
@@ -61,19 +62,19 @@ fn memory_is_near_the_estimate() {
         window.solids.truncate(solids);
         let frame = MeshFrame::new(window);
         let device = Device::new(&DeviceOptions::default()).expect("a device");
-        let mut held = 0;
+        let mut used = 0;
         let scenes = BOTH.map(|side| {
             let hulls = hulls(window, &frame, segments, side);
-            held += size_of_val(&*hulls.hull.vertices) + size_of_val(&*hulls.hull.triangles);
+            used += size_of_val(&*hulls.hull.vertices) + size_of_val(&*hulls.hull.triangles);
             let mut builder = SceneBuilder::<()>::new(&device).expect("a scene");
             let attached = builder.attach_triangles(&hulls.hull.vertices, &hulls.hull.triangles);
             attached.expect("a legal mesh");
             builder.commit().expect("built")
         });
-        let held = held + device.memory_bytes();
+        let used = used + device.memory_bytes();
         drop(scenes);
         let estimate = bytes_needed(solids as u64 * 4 * u64::from(segments));
-        let ratio = held as f64 / estimate as f64;
+        let ratio = used as f64 / estimate as f64;
         assert!(
             (0.9..1.1).contains(&ratio),
             "{solids} solids of {segments} sides: {ratio} of the estimate"

@@ -1,11 +1,14 @@
 //! The rays of each class.
 //!
-//! A ray is fixed by seed, window, class and number: it is drawn from the stream
-//! of random numbers that these name, wished for in the world, and put to where
-//! it is exact in both spaces (`mesh_frame`). In a window that is not the whole
+//! Seed, window, class and number determine a ray: it is drawn from their own stream
+//! of random numbers in the world, and moved to the nearest ray that
+//! is exact in both spaces (`mesh_frame`). In a window that is not the whole
 //! scene, a ray is clipped to the window's box, inward by more than the clipping
-//! rounds, so that whatever it meets is in the window; rays that miss the box
+//! rounds, so that all its hits are in the window. Rays that miss the box
 //! are drawn again.
+
+pub(crate) mod around;
+mod target;
 
 use glam::{DVec2, DVec3};
 
@@ -13,19 +16,19 @@ use cyltrace::embree::Ray32;
 use cyltrace::math::{Bounds, Random, Ray};
 use cyltrace::scene::{AimedCamera, Scene};
 
-use super::Class;
-use super::bounding_meshes::mesh_frame::MeshFrame;
-use super::bounding_meshes::window::Window;
-use super::target::Target;
+use crate::bounding_meshes::mesh_frame::MeshFrame;
+use crate::bounding_meshes::window::Window;
+use crate::settings::Class;
+use target::Target;
 
-/// Draws of a ray before the window's box is aimed at itself.
+/// Draws of a ray before one is aimed at the window's box itself.
 const MOST_DRAWS: u32 = 32;
 
-/// A part of the range that is given away at each end of a clipped ray: the
+/// The share of the range by which each end of a clipped ray is shortened: the
 /// parameters are computed with a few roundings of f64 and rounded to f32.
 const INWARD: f64 = 4.0 * f32::EPSILON as f64;
 
-/// Where the rays of a window come from.
+/// The rays of a window.
 pub(crate) struct RaySource<'a> {
     window: &'a Window,
     frame: &'a MeshFrame,
@@ -60,13 +63,13 @@ impl<'a> RaySource<'a> {
         }
     }
 
-    /// The ray `index` of a class: as Embree gets it, and the same in the world.
+    /// The ray `index` of a class, for Embree and in the world.
     pub fn ray(&self, class: Class, index: u64) -> (Ray32, Ray) {
         let class_number = Class::ALL.iter().position(|&one| one == class).unwrap_or(0);
         let family = Random::new(self.seed, 8 * self.number + class_number as u64).bits();
         let mut random = Random::new(family, index);
         for _ in 0..MOST_DRAWS {
-            let (origin, direction) = self.wish(class, &mut random);
+            let (origin, direction) = self.draw(class, &mut random);
             if let Some(rays) = self.exact_ray(origin, direction) {
                 return match class {
                     Class::Sphere => rays,
@@ -79,13 +82,13 @@ impl<'a> RaySource<'a> {
         rays.unwrap_or_else(|| self.point())
     }
 
-    /// A ray of no length, about which nothing can be wrong: for a window that the roundings
-    /// of rays do not hit.
+    /// A ray of no length, which cannot be answered wrongly: for a window that rounded rays
+    /// miss.
     fn point(&self) -> (Ray32, Ray) {
         self.frame.ray(self.center, DVec3::Z, 0.0, 0.0)
     }
 
-    /// The exact ray near a wished-for one, clipped to the window.
+    /// The exact ray near a drawn one, clipped to the window.
     pub fn exact_ray(&self, origin: DVec3, direction: DVec3) -> Option<(Ray32, Ray)> {
         let is_good = |v: DVec3| v.is_finite() && v.length_squared() > 0.0;
         if !origin.is_finite() || !is_good(direction) {
@@ -106,7 +109,7 @@ impl<'a> RaySource<'a> {
         Some((ray32, ray))
     }
 
-    /// One ray in four is asked about within a part of its range only.
+    /// Limits one ray in four to a part of its range.
     fn in_part(&self, (mut ray32, mut ray): (Ray32, Ray), random: &mut Random) -> (Ray32, Ray) {
         let way = self.reach / ray.direction.length();
         let near = ray.t_min + random.uniform(0.0, 2.0) * way;
@@ -120,7 +123,7 @@ impl<'a> RaySource<'a> {
     }
 
     /// An origin far outside moves along the ray to two diagonals before the
-    /// middle: there f32 is finer, and nothing has been passed.
+    /// middle: there f32 is finer, and the ray has not entered the window yet.
     fn nearer(&self, origin: DVec3, direction: DVec3) -> DVec3 {
         let unit = (direction / direction.abs().max_element()).normalize();
         let before_middle = (self.center - origin).dot(unit);
@@ -131,7 +134,7 @@ impl<'a> RaySource<'a> {
         }
     }
 
-    fn wish(&self, class: Class, random: &mut Random) -> (DVec3, DVec3) {
+    fn draw(&self, class: Class, random: &mut Random) -> (DVec3, DVec3) {
         match class {
             Class::Camera => self.camera_ray(random),
             Class::Sphere => self.sphere_ray(random),
@@ -146,8 +149,8 @@ impl<'a> RaySource<'a> {
         Target::new(&self.window.solids[number as usize])
     }
 
-    /// Through any point of the picture; for a part of the scene, through a
-    /// point of a solid of it, seen from where the camera is.
+    /// From the camera through any point of the picture; in a part of the scene, through a
+    /// point of one of its solids.
     fn camera_ray(&self, random: &mut Random) -> (DVec3, DVec3) {
         let mut position = DVec2::new(random.unit(), random.unit()) * self.film;
         if self.window.bounds.is_some() {
@@ -164,7 +167,7 @@ impl<'a> RaySource<'a> {
         (origin, point - origin)
     }
 
-    /// Past a wall or a rim, from up to the whole extent away or from close by.
+    /// Beside a wall or a rim, from close by or from up to the whole extent away.
     fn grazing(&self, random: &mut Random) -> (DVec3, DVec3) {
         let target = self.target(random);
         let (point, heading) = if random.below(3) == 0 {
@@ -183,7 +186,7 @@ impl<'a> RaySource<'a> {
     }
 }
 
-/// The part of a ray within a box, smaller by what rounds; `None` where little
+/// The part of a ray within a box, shortened by its rounding; `None` if little
 /// or nothing is left.
 fn clipped(bounds: &Bounds, ray: &Ray) -> Option<(f32, f32)> {
     let (mut near, mut far) = (ray.t_min, ray.t_max);

@@ -1,13 +1,12 @@
-//! Rays that look for what a mesh lacks.
+//! Rays that search for missing parts of a mesh.
 //!
-//! A ray to a random point of the scene's box meets large solids, and of a sparse scene
-//! hardly any. So every other ray goes to a point of a solid, and all solids that
-//! placements make are equally likely: a small one beside a floor of a kilometre gets as many
-//! rays as the floor.
+//! A ray to a random point of the scene's box hits large solids, and in a sparse scene
+//! hardly any. So every other ray is aimed at a point of a solid, and all placed solids are
+//! equally likely: a small one gets as many rays as a floor of a kilometer beside it.
 
 use glam::{DAffine3, DVec3};
 
-use crate::target::any_point_of;
+use super::target::any_point_of;
 use cyltrace::math::{Bounds, Random, Ray};
 use cyltrace::scene::{Prototype, PrototypeIndex, Scene};
 use cyltrace::tracer::Tracer;
@@ -43,16 +42,16 @@ fn random_point(bounds: &Bounds, random: &mut Random) -> DVec3 {
 /// All solids of a scene, to choose among.
 struct Targets<'a> {
     scene: &'a Scene,
-    /// What is known of each prototype that the root contains.
+    /// The contents of each prototype that the root contains.
     members: Vec<Option<Members>>,
 }
 
-/// What a prototype contains.
+/// The contents of a prototype.
 struct Members {
-    /// The boxes of set operations.
+    /// The boxes of compositions.
     composed: Vec<Bounds>,
-    /// After each placement, the number of solids of it and of all before it. Rounding
-    /// only makes some of them a little more likely.
+    /// The number of solids up to and including each placement. Rounding makes some of
+    /// them slightly more likely.
     placed: Vec<f64>,
 }
 
@@ -62,7 +61,7 @@ impl Members {
         prototype.solids.len()
     }
 
-    /// All solids, with those of what is placed.
+    /// All solids, including placed ones.
     fn all(&self, prototype: &Prototype) -> f64 {
         self.own(prototype) as f64 + self.placed.last().unwrap_or(&0.0)
     }
@@ -103,7 +102,7 @@ impl<'a> Targets<'a> {
         all
     }
 
-    /// A point of a solid, in the world; of a set operation one of its box.
+    /// A point of a solid in the world; for a composition, of its box.
     fn point(&self, random: &mut Random) -> DVec3 {
         let mut world_from_here = DAffine3::IDENTITY;
         let mut index = PrototypeIndex::ROOT;

@@ -1,39 +1,29 @@
-//! A mesh of the scene that somebody made, traced in f64, against the exact hits.
+//! A mesh from a file, traced in f64.
 //!
-//! The triangles are in a tree of boxes of ours, and not in Embree's: in f32 a vertex is as
-//! coarse as the farthest one of the mesh makes it, so that a single far vertex would make
-//! every hit uncertain. In f64 a hit is off by some 2^-50 of the distances from the
-//! ray's origin to the triangle, whatever else is in the file. So what a correct
-//! mesh may be off is its deviation, and what its format rounds of the coordinates of the
-//! solid in question.
+//! The triangles are in a bounding volume hierarchy of our own, because Embree stores f32: there
+//! a single far vertex would make every hit uncertain. In f64 a hit is off by some 2^-50 of the
+//! distances from the ray's origin to the triangle, whatever else is in the file. So a correct
+//! mesh is off by its deviation and by the rounding of coordinates in its format.
 //!
-//! A box is split at the median of the middles of its triangles, along the longest side of
-//! the box of those middles, so that the depth of the tree is the logarithm of the number of triangles.
+//! A box is split at the median of the centers of its triangles, along the longest side of
+//! the box of those centers, so the depth of the tree is the logarithm of the number of triangles.
 
 use glam::DVec3;
 use rayon::join;
 use rayon::prelude::*;
 
-use super::agreement::Agreement;
-use super::deviation::Deviation;
-use super::nearness::ROUNDING;
-use super::surfaces::Surfaces;
-use super::tolerance::Tolerance;
 use super::triangle::ShearedRay;
-use super::user_hits::in_blocks;
-use crate::{Progress, Witness};
 use cyltrace::math::{Bounds, Ray};
 use cyltrace::solid::tessellation::Mesh;
-use cyltrace::tracer::Tracer;
 
 /// Most triangles of a leaf.
 const LEAF: usize = 4;
-/// Least triangles that are worth a thread of their own.
+/// The fewest triangles that are worth a task.
 const WORTH_A_THREAD: usize = 4096;
-/// What the planes of a box may be off along a ray, as a share: three roundings.
+/// The relative error of a box's planes along a ray: three roundings.
 const BOX_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// A mesh that rays are traced through.
+/// A mesh for tracing rays.
 pub struct TracedMesh {
     vertices: Vec<DVec3>,
     /// In the order of the leaves, with their numbers in the file.
@@ -41,7 +31,7 @@ pub struct TracedMesh {
     root: Node,
 }
 
-/// A box of the tree, with what is in it.
+/// A box of the tree, with its content.
 struct Node {
     bounds: Bounds,
     content: Content,
@@ -53,7 +43,7 @@ enum Content {
     Inner(Box<[Node; 2]>),
 }
 
-/// Where a ray meets a mesh.
+/// A hit of a ray with a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleHit {
     /// The ray's parameter.
@@ -69,7 +59,7 @@ impl TracedMesh {
     /// The tree of a mesh, built in the rayon pool that this is called in.
     ///
     /// # Panics
-    /// When a triangle names a vertex that is not there.
+    /// If a triangle names a vertex that does not exist.
     #[must_use]
     pub fn new(mesh: &Mesh) -> Self {
         let corners = mesh.triangles.par_iter().copied().enumerate();
@@ -88,7 +78,7 @@ impl TracedMesh {
         }
     }
 
-    /// The first hit of a ray, of those at the same `t` that of the first triangle.
+    /// The first hit of a ray; at the same `t`, that of the first triangle.
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
         let ray = ShearedRay::new(ray)?;
@@ -103,7 +93,7 @@ impl TracedMesh {
                 Content::Leaf(from, to) => {
                     for &(corners, number) in &self.triangles[*from..*to] {
                         let points = corners.map(|corner| self.vertices[corner as usize]);
-                        let Some(t) = ray.meets(points) else {
+                        let Some(t) = ray.hit(points) else {
                             continue;
                         };
                         let is_in_range = ray.range.0 <= t && t <= ray.range.1;
@@ -136,7 +126,7 @@ impl TracedMesh {
     }
 }
 
-/// Where a ray enters a box before `end`.
+/// The parameter at which a ray enters a box before `end`.
 fn entry(bounds: &Bounds, ray: &ShearedRay, end: f64) -> Option<f64> {
     let (mut near, mut far) = (ray.range.0, end);
     for axis in 0..3 {
@@ -160,7 +150,7 @@ fn entry(bounds: &Bounds, ray: &ShearedRay, end: f64) -> Option<f64> {
 
 /// A triangle while the tree is built.
 struct Item {
-    /// The middle of its box.
+    /// The center of its box.
     middle: DVec3,
     number: u32,
 }
@@ -171,8 +161,8 @@ fn bounds_of(vertices: &[DVec3], corners: [u32; 3]) -> Bounds {
     a.union(&b).union(&c)
 }
 
-/// The tree of some triangles of a mesh, which are put in its order. `first` is the place of
-/// their first one among those of the whole mesh.
+/// The tree of some triangles of a mesh, which are sorted into its order. `first` is the
+/// position of their first one in the whole mesh.
 fn node(mesh: &Mesh, items: &mut [Item], first: usize) -> Node {
     let count = items.len();
     if count <= LEAF {
@@ -204,39 +194,4 @@ fn node(mesh: &Mesh, items: &mut [Item], first: usize) -> Node {
     let bounds = one.bounds.union(&other.bounds);
     let content = Content::Inner(Box::new([one, other]));
     Node { bounds, content }
-}
-
-/// Compares what rays meet of a mesh with the exact hits, on the rays of a class of that name,
-/// in the rayon pool that this is called in. The mesh may be off by
-/// `deviation`, and by the share `rounding` of the coordinates of a solid. `None` when `progress` asked to stop.
-#[must_use]
-pub fn compare_mesh(
-    tracer: &Tracer,
-    mesh: &TracedMesh,
-    (class, rays): (&'static str, &[Ray]),
-    (deviation, rounding): (Deviation, f64),
-    most_listed: usize,
-    progress: &Progress,
-) -> Option<Agreement> {
-    let of_placing = match deviation {
-        Deviation::Everywhere(_) => 0.0,
-        Deviation::Tessellated { .. } => ROUNDING,
-    };
-    let tolerance = Tolerance {
-        deviation,
-        of_way: ROUNDING,
-        of_extent: rounding + of_placing,
-    };
-    let surfaces = Surfaces::new(tracer.scene(), deviation);
-    in_blocks(
-        Agreement::new(class, Witness::UserMesh, tolerance, &surfaces),
-        rays.len() as u64,
-        most_listed,
-        progress,
-        |agreement, index| {
-            let ray = &rays[index as usize];
-            let told = mesh.closest(ray).map(|hit| hit.t);
-            agreement.add((tracer, &surfaces), index, ray, told, most_listed);
-        },
-    )
 }

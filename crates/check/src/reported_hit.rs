@@ -13,14 +13,15 @@ pub trait Intersector: Sync {
     fn closest(&self, ray: &Ray) -> Option<ReportedHit>;
 }
 
-/// A hit as an intersector tells it.
+/// A hit as an intersector reports it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReportedHit {
     /// The ray's parameter, in lengths of its direction.
     pub t: f64,
-    /// The outward unit normal, if it is told.
+    /// The outward unit normal, if the intersector reports it.
     pub normal: Option<DVec3>,
-    /// What is hit, if it is told. It allows a stricter check: of the very solid.
+    /// What is hit, if the intersector reports it. It makes the check stricter: the
+    /// bounds are then those of this solid.
     pub place: Option<Place>,
 }
 

@@ -1,4 +1,4 @@
-//! On which side of a missing disk's plane a point is.
+//! The side of a missing disk's plane on which a point is.
 //!
 //! With the axis `a = p1 - p0`, the placement `x -> M x + T` and the adjugate
 //! `J` of `M` (`J M = det M`), the solid is on the side `s >= 0` of the planes
@@ -8,26 +8,26 @@
 //! s(x) = -σ (a·J (x - T) - det M a·p1)     of the disk at p1
 //! ```
 //!
-//! where σ is the sign of `det M`. Put in for `x` is the point of the mesh's
-//! space, `x = center + m / scale`; the four coefficients of `s` are found
+//! where σ is the sign of `det M`. With a point of the mesh's
+//! space, `x = center + m / scale`, the four coefficients of `s` are computed
 //! exactly, divided by a power of two and rounded once.
 //!
 //! A point `m = o + t d` is computed with at most 2 roundings a coordinate, the
 //! products and the sum of three and the constant take 4 more, and the
 //! coefficients 1. With `t` itself off by an ulp, the computed `s` is within
 //! `10 u` of the sum of the sizes of its terms, where a coordinate counts as
-//! `|o| + |t d|`; 16 u are taken.
+//! `|o| + |t d|`; the code uses 16 u.
 
 use glam::DVec3;
 
 use cyltrace::math::{UNIT_ROUNDOFF, power_of_two};
 use cyltrace_oracle::{Exact, ExactVector, exact, to_f64};
 
-use crate::bounding_meshes::mesh_frame::MeshFrame;
-use crate::bounding_meshes::window::PlacedSolid;
-use cyltrace::solid::AnySolid;
+use super::mesh_frame::MeshFrame;
+use super::window::PlacedSolid;
+use crate::solids::shape;
 
-/// The planes of the disks that a tube does not have, in the mesh's space.
+/// The planes of a solid's missing disks, in the mesh's space.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct OpenEnds(Vec<Plane>);
 
@@ -40,7 +40,7 @@ struct Plane {
 impl OpenEnds {
     /// The planes for one solid; none if it is closed.
     pub fn new(placed: &PlacedSolid, frame: &MeshFrame) -> Self {
-        let Some([(p0, is_open0), (p1, is_open1)]) = ends_of(&placed.solid) else {
+        let Some([(p0, is_open0), (p1, is_open1)]) = shape(&placed.solid).ends() else {
             return Self::default();
         };
         let missing = [(is_open0, p0, 1.0), (is_open1, p1, -1.0)];
@@ -62,22 +62,6 @@ impl OpenEnds {
             let sizes = plane.normal.abs().dot(size) + plane.constant.abs();
             s > 16.0 * UNIT_ROUNDOFF * sizes
         })
-    }
-}
-
-/// The ends of a solid that may be open, and whether they are. The disk at an apex is a
-/// point of the wall, and never missing.
-pub(super) fn ends_of(solid: &AnySolid) -> Option<[(DVec3, bool); 2]> {
-    match solid {
-        AnySolid::Cylinder(one) => Some([
-            (one.p0(), !one.caps().at_p0()),
-            (one.p1(), !one.caps().at_p1()),
-        ]),
-        AnySolid::Cone(one) => Some([
-            (one.p0(), !one.caps().at_p0() && one.radius0() > 0.0),
-            (one.p1(), !one.caps().at_p1() && one.radius1() > 0.0),
-        ]),
-        _ => None,
     }
 }
 
@@ -116,7 +100,7 @@ fn unit_of<'a>(numbers: impl Iterator<Item = &'a Exact>) -> Exact {
         .map(|x| x.repr().exponent() + x.repr().digits() as isize)
         .max()
         .unwrap_or(0);
-    // In steps, because the exponent may be beyond what an f64 holds.
+    // In steps, because the exponent may be beyond the range of f64.
     let (mut unit, mut left) = (exact(1.0), -exponent);
     while left != 0 {
         let step = left.clamp(-1000, 1000);

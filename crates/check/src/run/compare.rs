@@ -1,0 +1,256 @@
+//! Many rays of every class against both meshes, and a few against the oracle.
+//!
+//! Every number of sides and every class get the same rays: the windows of the
+//! scene take turns, ray `i` belongs to window `i mod windows`.
+
+use std::ops::{ControlFlow, Range};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use cyltrace::embree::Device;
+use cyltrace::math::Ray;
+use cyltrace::scene::Scene;
+
+use super::plan::chosen_windows;
+use super::subject::Subject;
+use crate::bounding_meshes::mesh_frame::MeshFrame;
+use crate::bounding_meshes::meshes::Meshes;
+use crate::outcome::{Expected, Outcome, Row, Violation, Witness};
+use crate::report::words::{truth_text, window_text, wrong_text};
+use crate::reported_hit::{Intersector, ReportedHit};
+use crate::settings::{CheckError, Class, Settings};
+use crate::tally::{BLOCK, Progress, Tally, in_blocks};
+use crate::verdict::answer::{Scratch, Verdict, verdict};
+use crate::verdict::judge::solid_of;
+use crate::verdict::seen::Seen;
+use crate::verdict::surface::LocalRay;
+use crate::verdict::truth;
+
+/// One ray in so many goes to the oracle, which takes some milliseconds.
+const RAYS_A_TRUTH: u64 = 1000;
+
+/// Checks an intersector of a scene.
+///
+/// # Errors
+/// If the settings are wrong, the scene is empty, or Embree fails.
+pub fn compare(
+    scene: &Scene,
+    intersector: &impl Intersector,
+    settings: &Settings,
+) -> Result<Outcome, CheckError> {
+    let go_on = |_, _| ControlFlow::Continue(());
+    compare_with(scene, intersector, settings, &go_on)
+}
+
+/// As [`compare`], with progress.
+///
+/// # Errors
+/// As [`compare`], and [`CheckError::Interrupted`] if `progress` breaks off.
+pub fn compare_with(
+    scene: &Scene,
+    intersector: &impl Intersector,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Outcome, CheckError> {
+    let windows = chosen_windows(scene, settings)?;
+    let classes = settings.classes.len() as u64;
+    let run = Run {
+        intersector,
+        settings,
+        windows: windows.len() as u64,
+        device: Device::new(&settings.device)?,
+        total: settings.segments.len() as u64 * settings.rays * classes,
+        done: AtomicU64::new(0),
+        progress,
+    };
+    let witnesses = settings.segments.iter().map(|&sides| Some(sides));
+    let mut tallies: Vec<Tally> = witnesses
+        .chain([None])
+        .flat_map(|segments| {
+            let witness = segments.map_or(Witness::Oracle, |_| Witness::Prisms);
+            let classes = settings.classes.iter();
+            classes.map(move |class| Tally::new(Row::new(class.name(), witness, segments)))
+        })
+        .collect();
+    let mut outcome = Outcome::default();
+    for window in (0..).zip(&windows) {
+        let frame = MeshFrame::new(window.1);
+        let subject = Subject::new(scene, window, &frame, settings.seed);
+        outcome.windows.push(run.window(&subject, &mut tallies)?);
+    }
+    for mut tally in tallies {
+        if let Some(segments) = tally.row.segments
+            && tally.row.class == Class::Sphere.name()
+        {
+            outcome.convergence.push(tally.convergence(segments));
+        }
+        outcome.rows.push(tally.row);
+        outcome.violations.append(&mut tally.listed);
+    }
+    Ok(outcome)
+}
+
+/// What is the same for all windows.
+struct Run<'a, I> {
+    intersector: &'a I,
+    settings: &'a Settings,
+    windows: u64,
+    device: Device,
+    total: u64,
+    done: AtomicU64,
+    progress: &'a Progress<'a>,
+}
+
+impl<I: Intersector> Run<'_, I> {
+    /// Adds the rays of one window to all rows, and describes the window.
+    fn window(&self, subject: &Subject, tallies: &mut [Tally]) -> Result<String, CheckError> {
+        let classes = self.settings.classes.len();
+        let mut missing = Vec::new();
+        let (meshed, oracle) = tallies.split_at_mut(classes * self.settings.segments.len());
+        for (&segments, rows) in self
+            .settings
+            .segments
+            .iter()
+            .zip(meshed.chunks_mut(classes))
+        {
+            if self.advance(0).is_break() {
+                return Err(CheckError::Interrupted);
+            }
+            let meshes = Meshes::new(&self.device, subject.window, subject.frame, segments)?;
+            missing.push((segments, meshes.missing()));
+            for (&class, row) in self.settings.classes.iter().zip(rows) {
+                self.trace(subject, row, BLOCK, |range, scratch, tally| {
+                    for number in range {
+                        self.judge_by_meshes(subject, &meshes, class, number, scratch, tally);
+                    }
+                })?;
+            }
+        }
+        for (&class, row) in self.settings.classes.iter().zip(oracle) {
+            self.trace(subject, row, RAYS_A_TRUTH, |range, (), tally| {
+                self.judge_by_oracle(subject, class, range.start, tally);
+            })?;
+        }
+        let (window, number) = (subject.window, subject.number);
+        Ok(window_text(window, number, self.windows, &missing))
+    }
+
+    /// Adds the rays of a window to a row. `block` gets ranges of the window's own count.
+    fn trace<S: Default>(
+        &self,
+        subject: &Subject,
+        row: &mut Tally,
+        block_size: u64,
+        block: impl Fn(Range<u64>, &mut S, &mut Tally) + Sync,
+    ) -> Result<(), CheckError> {
+        let later = (self.windows - 1 - subject.number) + self.settings.rays;
+        let count = (later / self.windows, block_size);
+        let most_listed = self.settings.most_listed;
+        let empty = Row::new(row.row.class, row.row.witness, row.row.segments);
+        let progress = |rays| self.advance(rays);
+        let tally = in_blocks(&empty, count, most_listed, progress, block);
+        row.add(tally.ok_or(CheckError::Interrupted)?, most_listed);
+        Ok(())
+    }
+
+    fn advance(&self, rays: u64) -> ControlFlow<()> {
+        let done = self.done.fetch_add(rays, Ordering::Relaxed) + rays;
+        (self.progress)(done.min(self.total), self.total)
+    }
+
+    /// The number that a ray of a window has in its class.
+    fn index(&self, subject: &Subject, number: u64) -> u64 {
+        number * self.windows + subject.number
+    }
+
+    fn judge_by_meshes(
+        &self,
+        subject: &Subject,
+        meshes: &Meshes,
+        class: Class,
+        number: u64,
+        scratch: &mut Scratch,
+        tally: &mut Tally,
+    ) {
+        let index = self.index(subject, number);
+        let (ray32, ray) = subject.source.ray(class, index);
+        let answer = self.intersector.closest(&ray);
+        tally.count(answer.is_some());
+        let found = verdict(
+            &subject.directory,
+            meshes,
+            (&ray32, &ray),
+            answer.as_ref(),
+            scratch,
+        );
+        found.count(&mut tally.row);
+        if let Verdict::Wrong(wrong) = found {
+            if tally.listed.len() < self.settings.most_listed {
+                let truth = truth_text(subject.window, truth::first_hit(subject.window, &ray));
+                let (low, high) = wrong.allowed();
+                let reason = format!("{}; {truth}", wrong_text(&wrong));
+                let t = answer.map(|hit| hit.t);
+                let expected = Expected::Between { low, high, reason };
+                tally
+                    .listed
+                    .push(Violation::new(&tally.row, index, ray, t, expected));
+            }
+        } else if let (Some(hit), Verdict::Right { .. }) = (&answer, &found) {
+            let is_sphere = class == Class::Sphere;
+            measure(subject, meshes, &ray, hit, &scratch.seen, is_sphere, tally);
+        }
+    }
+
+    fn judge_by_oracle(&self, subject: &Subject, class: Class, number: u64, tally: &mut Tally) {
+        let index = self.index(subject, number);
+        let (_, ray) = subject.source.ray(class, index);
+        let t = self.intersector.closest(&ray).map(|hit| hit.t);
+        tally.count(t.is_some());
+        let Some(bounds) = truth::bounds(subject.window, &ray) else {
+            tally.row.unwitnessed += 1;
+            return;
+        };
+        let is_band = bounds.is_open(ray.t_max);
+        tally.row.band += u64::from(is_band);
+        tally.row.witnessed += u64::from(!is_band);
+        if !bounds.allows(t, ray.t_max) {
+            tally.row.violations += 1;
+            let expected = Expected::Between {
+                low: bounds.low,
+                high: bounds.high,
+                reason: truth_text(subject.window, truth::first_hit(subject.window, &ray)),
+            };
+            tally
+                .listed
+                .push(Violation::new(&tally.row, index, ray, t, expected));
+        }
+    }
+}
+
+/// Measures how close the inscribed mesh is to a right answer.
+fn measure(
+    subject: &Subject,
+    meshes: &Meshes,
+    ray: &Ray,
+    answer: &ReportedHit,
+    seen: &[Seen],
+    is_sphere: bool,
+    tally: &mut Tally,
+) {
+    let Some(hit) = solid_of(&subject.directory, answer, seen) else {
+        return;
+    };
+    let Some(inner) = hit.bounds.inner else {
+        return;
+    };
+    let dt = (inner - answer.t).abs();
+    let local = LocalRay::new(&subject.window.solids[hit.solid as usize], ray);
+    if is_sphere {
+        tally.dt_radii.push(local.radii(dt));
+    }
+    let part = answer.place.as_ref().map(|place| place.part);
+    let sagittas = part.and_then(|part| local.sagittas(answer.t, dt, part, meshes.segments));
+    if let Some(sagittas) = sagittas {
+        let greatest = &mut tally.row.max_dt_over_chord;
+        *greatest = greatest.max(sagittas);
+    }
+}
