@@ -37,7 +37,6 @@ pub use cylinder::{CylinderTruth, TrueHit, first_hit, placed_first_hit};
 pub use disk::{disk_chord, disk_gap, disk_holds};
 pub use distance::distance_to_part;
 pub use gap::gap;
-pub use normal::outward_normal;
 pub use number::{Exact, ExactVector, exact, to_f64};
 pub use ray::ExactRay;
 pub use rounded_cone::{rounded_cone_gap, rounded_cone_hits};

@@ -17,7 +17,6 @@ use rayon::ThreadPool;
 pub use cyltrace::scene::GREATEST_PIXELS;
 pub use integrator::RayCounts;
 pub use lights::{Lights, SunLight};
-pub use sampler::PixelSampler;
 
 use cyltrace::scene::{self, AimedCamera, Integrator, Scene, ViewVolume};
 use cyltrace::tracer::Tracer;
@@ -91,6 +90,7 @@ pub struct Picture {
 
 /// Why there is no picture.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RenderError {
     /// The size is zero or too large.
     #[error(
