@@ -38,7 +38,6 @@ pub use cylinder::{CylinderTruth, TrueHit, first_hit, placed_first_hit};
 pub use disk::disk_chord;
 pub use distance::distance_to_part;
 pub use gap::gap;
-pub use normal::outward_normal;
 pub use number::{Exact, ExactVector, exact, to_f64};
 pub use ray::ExactRay;
 pub use sphere::sphere_chord;
