@@ -13,7 +13,7 @@ use super::Inputs;
 use super::aiming::{Aim, sign, valid};
 use cyltrace::math::{Random, Ray};
 use cyltrace::solid::{Caps, Cone, RoundedCone};
-use grids::{tangent_plane, through_apex};
+use grids::{exact_rim, tangent_plane, through_apex};
 use target::Target;
 
 /// Which solid a case is for.
@@ -60,6 +60,8 @@ pub enum TaperFamily {
     CapPlane,
     /// All lengths times 1e-20 to 1e20, directions times 1e-10 to 1e10.
     Scale,
+    /// Rays exactly through a rim or a seam, in whole numbers, with `t` that no binary number is.
+    ExactRim,
 }
 
 /// The numbers of a case, each a number of its [`Inputs`].
@@ -100,7 +102,7 @@ impl TaperCase {
 
 impl TaperFamily {
     /// All families, in the order of tables.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Uniform,
         Self::Graze,
         Self::Rim,
@@ -117,6 +119,7 @@ impl TaperFamily {
         Self::FromWall,
         Self::CapPlane,
         Self::Scale,
+        Self::ExactRim,
     ];
 
     /// Case `index` of the family; the same for the same arguments.
@@ -128,6 +131,7 @@ impl TaperFamily {
             let drawn = match self {
                 Self::ThroughApex => through_apex(&mut random),
                 Self::TangentPlane => tangent_plane(&mut random, solid),
+                Self::ExactRim => exact_rim(&mut random, solid),
                 _ => self.draw(&mut random, solid, inputs),
             };
             if let Some(case) = drawn {
