@@ -34,6 +34,9 @@ pub trait Real:
     const ZERO: Self;
     /// The least positive normal number.
     const MIN_POSITIVE: Self;
+    /// Whether solvers decide ties by exact arithmetic: not in f32, which exists for
+    /// comparison.
+    const DECIDES_TIES: bool;
 
     /// The number of this precision nearest to `x`.
     fn from_f64(x: f64) -> Self;
@@ -174,13 +177,14 @@ pub fn wide_square<S: Real>(v: [S::Wide; 3]) -> S::Wide {
 
 /// Hands the trait's methods to those of the type.
 macro_rules! impl_real {
-    ($scalar:ident, $vector:ident, $wide:ident) => {
+    ($scalar:ident, $vector:ident, $wide:ident, $decides_ties:literal) => {
         impl Real for $scalar {
             type Vector = $vector;
             type Wide = $wide;
 
             const ZERO: Self = 0.0;
             const MIN_POSITIVE: Self = $scalar::MIN_POSITIVE;
+            const DECIDES_TIES: bool = $decides_ties;
 
             #[inline]
             fn from_f64(x: f64) -> Self {
@@ -247,5 +251,5 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(f32, Vec3, f64);
-impl_real!(f64, DVec3, DoubleDouble);
+impl_real!(f32, Vec3, f64, false);
+impl_real!(f64, DVec3, DoubleDouble, true);

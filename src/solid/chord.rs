@@ -108,6 +108,15 @@ impl<S: Real> Chord<S> {
 }
 
 impl<S: Real> ChordEnd<S> {
+    /// The end, at `t` if it is before that.
+    #[inline(always)]
+    pub(super) fn not_before(self, t: S) -> Self {
+        Self {
+            t: if self.t < t { t } else { self.t },
+            ..self
+        }
+    }
+
     /// The end as a meeting, if the surface is there and it is in range.
     #[inline(always)]
     pub(super) fn meeting(

@@ -8,7 +8,8 @@
 //! no way out and no result that is there only sometimes (an `Option`), so that
 //! the compiler can compute both sides of each branch and make vector
 //! instructions of the loops. What it could not inline is left to the scalar
-//! solver, lane by lane: exact products, and lines along or across the axis.
+//! solver, lane by lane: exact products, lines along or across the axis, lines that graze
+//! the wall, and open ends.
 //!
 //! # What spares exact products
 //!
@@ -46,9 +47,9 @@ use std::cell::Cell;
 
 use glam::DVec3;
 
-use super::slab::{Disks, FirstMeeting, Overlap};
+use super::slab::{Disks, FirstMeeting, Overlap, RoundedEnd};
 use super::triple_product::{Axis, Line, Roots, StatedAxis, answer, slab};
-use super::{Caps, ChordEnd};
+use super::{Caps, ChordEnd, ties};
 use crate::math::{LANES, LaneMask, LaneVectors, Lanes, power_of_two};
 
 /// The factor of the second term of (2).
@@ -138,11 +139,12 @@ pub fn first<C: LaneCaps>(
         let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
         let line = Line::rounded(&axis, x, d);
         let is_near_axis = line.is_near_axis(&axis, d);
-        let is_apart = active.0[lane] & is_near_axis & !certainly_misses(&axis, x, d, &line);
-        let is_wanted = active.0[lane] & !is_near_axis & (line.discriminant >= 0.0);
+        let is_grazing = ties::is_grazing(&axis, &line);
+        let is_unsure = is_near_axis & !certainly_misses(&axis, x, d, &line);
+        let is_hopeful = active.0[lane] & !is_near_axis & (line.discriminant >= 0.0);
         lines.set(lane, &line);
-        apart.0[lane] = is_apart;
-        wanted.0[lane] = is_wanted;
+        apart.0[lane] = (active.0[lane] & is_unsure) | (is_hopeful & is_grazing);
+        wanted.0[lane] = is_hopeful & !is_grazing;
     }
     let (mut hits, mut t) = (LaneMask::splat(false), Lanes::splat(0.0));
     if wanted.any() {
@@ -151,25 +153,28 @@ pub fn first<C: LaneCaps>(
         for lane in 0..LANES {
             let is_unsettled = Cell::new(false);
             let overlap = overlap(cylinders, rays, &lines, lane, &is_unsettled);
-            let (is_inside, end) = overlap.enter(&Disks::of(overlap.slab()));
+            let (is_inside, RoundedEnd { end, is_open }) =
+                overlap.enter(&Disks::of(overlap.slab()));
             let is_met = cylinders.is_met(rays, lane, &end);
             let is_inside = wanted.0[lane] & is_inside;
             enter.0[lane] = end.t;
             t.0[lane] = end.t + rays.shift.0[lane];
             hits.0[lane] = is_inside & is_met;
             rest.0[lane] = is_inside & !is_met;
-            apart.0[lane] |= wanted.0[lane] & (overlap.is_across() | is_unsettled.get());
+            let is_apart = is_open | overlap.is_across() | is_unsettled.get();
+            apart.0[lane] |= wanted.0[lane] & is_apart;
         }
         if rest.any() {
             for lane in 0..LANES {
                 let is_unsettled = Cell::new(false);
                 let overlap = overlap(cylinders, rays, &lines, lane, &is_unsettled);
-                let end = overlap.leave(&Disks::of(overlap.slab()), enter.0[lane]);
+                let RoundedEnd { end, is_open } =
+                    overlap.leave(&Disks::of(overlap.slab()), enter.0[lane]);
                 let is_met = rest.0[lane] & cylinders.is_met(rays, lane, &end);
                 let exit = end.t + rays.shift.0[lane];
                 t.0[lane] = if is_met { exit } else { t.0[lane] };
                 hits.0[lane] |= is_met;
-                apart.0[lane] |= rest.0[lane] & is_unsettled.get();
+                apart.0[lane] |= rest.0[lane] & (is_open | is_unsettled.get());
             }
         }
     }
@@ -216,7 +221,7 @@ fn overlap<'a, C: LaneCaps>(
     let axis = cylinders.rounded_axis(lane, is_unsettled);
     let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
     let (nn, discriminant) = (lines.nn.0[lane], lines.discriminant.0[lane]);
-    let roots = Roots::of(&axis, x, lines.n.lane(lane), nn, discriminant);
+    let roots = Roots::of_ordinary(&axis, x, d, lines.n.lane(lane), nn, discriminant);
     slab(&axis, x, d).overlap(roots)
 }
 

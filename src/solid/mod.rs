@@ -23,6 +23,7 @@ mod spawn;
 mod sphere;
 mod surface;
 pub mod tessellation;
+mod ties;
 pub mod triple_product;
 mod way;
 

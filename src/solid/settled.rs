@@ -226,7 +226,7 @@ impl Settled {
         let heights = Heights::new(axis, x, d);
         let at_root = HEIGHT * k * (heights.way + axis.length() * (axis.length() + k * radius));
         let least_term = AT_ORIGIN * (aa * (radius * (sum_of_sizes(x) + radius)));
-        let roots = Roots::new(axis, x, line);
+        let roots = Roots::new(axis, x, d, line);
         let is_certain = |root| {
             let quotient = roots.quotient(root);
             let t = quotient.numerator / quotient.denominator;

@@ -11,6 +11,12 @@
 //! the roots, `y` does not say where it comes through a plane: an error of an ulp of
 //! the height is one of an ulp over the slope in `t`, which may be any number. So the
 //! `t` of a disk is clamped between the roots of the wall. It is there without rounding.
+//!
+//! At a rim, `y` is a plane's but for its rounding, and neither the part nor hit or miss
+//! follows from its sign. The wall bounds the rounding. An end at which `y` is nearer to a
+//! plane than that is *open*, and comes from exact arithmetic. So does the end at which the
+//! line leaves if the one at which it enters is open. Whether an end is open depends on the
+//! line alone, so that all questions about the line have the same ends.
 
 use super::chord::{Chord, ChordEnd, Intersection};
 use super::{Caps, Crossing, Part};
@@ -29,11 +35,24 @@ pub struct Slab<S> {
 
 /// Where a line is inside the infinite wall; either end is computed when asked
 /// for.
-pub trait Wall<S> {
+pub trait Wall<S: Real> {
     /// The `t` at which it comes in.
     fn enter(&self) -> S;
     /// The `t` at which it goes out.
     fn leave(&self) -> S;
+
+    /// The square of a bound of the rounding of `y` at either end. With zero, the default,
+    /// no end is open.
+    #[inline(always)]
+    fn squared_rounding(&self, _slab: &Slab<S>) -> S {
+        S::ZERO
+    }
+
+    /// The chord by exact arithmetic.
+    #[inline(always)]
+    fn exact_chord(&self) -> Option<Chord<S>> {
+        None
+    }
 }
 
 /// A slab and a wall: a chord of which an end is computed when asked for.
@@ -44,7 +63,7 @@ pub struct Overlap<S, W> {
 
 /// What is asked of a chord. A type, not a closure: its methods are inlined,
 /// so that nothing of the chord has to be kept in memory.
-pub trait Question<S> {
+pub trait Question<S: Real> {
     /// What is answered if there is a chord.
     type Answer;
 
@@ -82,7 +101,20 @@ impl<S: Real> Question<S> for FirstMeeting<S> {
             return self.of_chord(overlap.across()?);
         }
         let disks = Disks::of(&overlap.slab);
-        overlap.first(&disks, self.caps, self.shift, self.t_min, self.t_max)
+        let meeting = |end: ChordEnd<S>, crossing| {
+            end.meeting(crossing, self.caps, self.shift, self.t_min, self.t_max)
+        };
+        let (is_there, enter) = overlap.enter(&disks);
+        if enter.is_open {
+            return self.of_chord(overlap.wall.exact_chord()?);
+        }
+        if !is_there {
+            return None;
+        }
+        if let Some(entry) = meeting(enter.end, Crossing::Enter) {
+            return Some(entry);
+        }
+        meeting(overlap.decided_leave(&disks, enter.end.t), Crossing::Leave)
     }
 }
 
@@ -103,13 +135,27 @@ impl<S: Real> Question<S> for WholeChord {
             return overlap.across();
         }
         let disks = Disks::of(&overlap.slab);
-        let (exists, enter) = overlap.enter(&disks);
-        exists.then(|| Chord {
-            enter,
-            leave: overlap.leave(&disks, enter.t),
+        let (is_there, enter) = overlap.enter(&disks);
+        if enter.is_open {
+            return overlap.wall.exact_chord();
+        }
+        if !is_there {
+            return None;
+        }
+        Some(Chord {
+            enter: enter.end,
+            leave: overlap.decided_leave(&disks, enter.end.t),
             lies_on: None,
         })
     }
+}
+
+/// An end of the overlap by rounded numbers.
+pub(super) struct RoundedEnd<S> {
+    /// The end.
+    pub end: ChordEnd<S>,
+    /// Whether exact arithmetic has to decide what and where it is.
+    pub is_open: bool,
 }
 
 /// The disks in the order in which a line that is not across the axis comes
@@ -160,6 +206,9 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
     /// The chord of a line across the axis.
     #[cold]
     fn across(&self) -> Option<Chord<S>> {
+        if self.is_near_plane(self.slab.position) {
+            return self.wall.exact_chord();
+        }
         self.slab.across(self.wall.enter(), self.wall.leave())
     }
 
@@ -175,38 +224,27 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
         self.slab.slope == S::ZERO
     }
 
-    /// Asks for the end at which the line leaves only if the other is no hit.
+    /// Whether a height over either plane may be on its other side.
     #[inline(always)]
-    pub(super) fn first(
-        &self,
-        disks: &Disks<S>,
-        caps: Caps,
-        shift: S,
-        t_min: S,
-        t_max: S,
-    ) -> Option<Intersection<S>> {
-        let meeting = |end: ChordEnd<S>, crossing| end.meeting(crossing, caps, shift, t_min, t_max);
-        let (exists, enter) = self.enter(disks);
-        if !exists {
-            return None;
-        }
-        if let Some(entry) = meeting(enter, Crossing::Enter) {
-            return Some(entry);
-        }
-        meeting(self.leave(disks, enter.t), Crossing::Leave)
+    fn is_near_plane(&self, height: S) -> bool {
+        let other = height - self.slab.height;
+        let least = self.wall.squared_rounding(&self.slab);
+        (height * height < least) | (other * other < least)
     }
 
     /// Whether the line enters the solid, and where.
     #[inline(always)]
-    pub(super) fn enter(&self, disks: &Disks<S>) -> (bool, ChordEnd<S>) {
+    pub(super) fn enter(&self, disks: &Disks<S>) -> (bool, RoundedEnd<S>) {
         let slab = &self.slab;
         let t = self.wall.enter();
         let height = slab.beyond_near(disks, t);
+        let is_open = self.is_near_plane(height);
         if height > S::ZERO {
             // At the far disk's height it is a single point, where the wall ends.
             let on_rim = height == slab.height;
             let part = if on_rim { disks.far_part() } else { Part::Side };
-            (height <= slab.height, ChordEnd { t, part, on_rim })
+            let end = ChordEnd { t, part, on_rim };
+            (height <= slab.height, RoundedEnd { end, is_open })
         } else {
             let leave = self.wall.leave();
             let (to_leave, at_disk) = (slab.beyond_near(disks, leave), slab.at(disks.near));
@@ -216,13 +254,26 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
                 // A line that leaves where it enters only touches the rim.
                 on_rim: (height == S::ZERO) | (to_leave == S::ZERO),
             };
-            (to_leave >= S::ZERO, end)
+            let is_open = is_open | self.is_near_plane(to_leave);
+            (to_leave >= S::ZERO, RoundedEnd { end, is_open })
         }
     }
 
-    /// Where the line that enters at `enter` leaves the solid.
+    /// Where the line that enters at `enter`, an end that is not open, leaves the solid.
     #[inline(always)]
-    pub(super) fn leave(&self, disks: &Disks<S>, enter: S) -> ChordEnd<S> {
+    fn decided_leave(&self, disks: &Disks<S>, enter: S) -> ChordEnd<S> {
+        let leave = self.leave(disks, enter);
+        if leave.is_open
+            && let Some(chord) = self.wall.exact_chord()
+        {
+            return chord.leave.not_before(enter);
+        }
+        leave.end
+    }
+
+    /// The same by rounded numbers.
+    #[inline(always)]
+    pub(super) fn leave(&self, disks: &Disks<S>, enter: S) -> RoundedEnd<S> {
         let slab = &self.slab;
         let t = self.wall.leave();
         let height = slab.beyond_near(disks, t);
@@ -245,11 +296,11 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
                 on_rim: (height == slab.height) | (to_enter == slab.height),
             }
         };
-        // At an edge the two may come out in the wrong order by a rounding, and of a line
-        // almost across the axis by any amount.
-        ChordEnd {
-            t: if end.t < enter { enter } else { end.t },
-            ..end
+        RoundedEnd {
+            // At an edge the two may come out in the wrong order by a rounding, and of a line
+            // almost across the axis by any amount.
+            end: end.not_before(enter),
+            is_open: self.is_near_plane(height),
         }
     }
 }

@@ -37,13 +37,15 @@
 //! the disks iff `0 <= y <= |a|²`; `slab.rs` overlaps wall and slab, and asks for
 //! the second root only where the first does not settle the answer.
 //!
+//! `ties.rs` has what is decided by exact arithmetic at the rims.
+//!
 //! A derivation of the error bounds is in `docs/derivations.md`, section 2. It
 //! is for f64, in which the tracer solves; f32 exists for comparison.
 
 use glam::DVec3;
 
 use super::slab::{FirstMeeting, Question, Slab, Wall, WholeChord};
-use super::{Chord, Cylinder, Intersection};
+use super::{Chord, Cylinder, Intersection, ties};
 use crate::math::{Real, RealVector, Wide, power_of_two, wide_cross, wide_square};
 
 /// Below this (2^-700), `radius² |n|²` could lose bits to underflow and the ray
@@ -60,7 +62,7 @@ const PARALLEL_BELOW: f64 = power_of_two(-700);
 /// It trades time for the constants of the bounds: at 1/16, a sine of 1/4, the
 /// exact products are needed for 3 % of random directions and (3) and (5) have
 /// 20 u and 10 u; at 1/4 it would be 13 % and 16 u and 8 u.
-const LEAST_SQUARED_SINE: f64 = 1.0 / 16.0;
+pub(super) const LEAST_SQUARED_SINE: f64 = 1.0 / 16.0;
 
 /// Below this, relative to `radius² |a|²`, the constant term of (1) is computed
 /// from exact products.
@@ -193,7 +195,7 @@ pub fn answer<S: Real, A: Axis<S>, Q: Question<S>>(
     if !(line.discriminant >= S::ZERO) {
         return None;
     }
-    let roots = Roots::new(axis, x, &line);
+    let roots = Roots::new(axis, x, d, &line);
     question.of_overlap(&slab(axis, x, d).overlap(roots))
 }
 
@@ -257,7 +259,10 @@ pub(super) struct Roots<S: Real, A> {
     axis: A,
     m: S::Vector,
     x: S::Vector,
+    d: S::Vector,
     nn: S,
+    /// `k² / g` of `ties.rs`.
+    displacement: S,
     /// `m·n`.
     pub mn: S,
     /// `|a| √D`.
@@ -284,19 +289,31 @@ pub(super) struct Quotient<S> {
 
 impl<S: Real, A: Axis<S>> Roots<S, A> {
     #[inline(always)]
-    pub fn new(axis: &A, x: S::Vector, line: &Line<S>) -> Self {
-        Self::of(axis, x, line.n, line.nn, line.discriminant)
+    pub fn new(axis: &A, x: S::Vector, d: S::Vector, line: &Line<S>) -> Self {
+        Self {
+            displacement: ties::displacement(axis, d, line),
+            ..Self::of_ordinary(axis, x, d, line.n, line.nn, line.discriminant)
+        }
     }
 
-    /// Of what is read of a line.
+    /// Of what is read of a line that is neither near the axis nor grazes the wall.
     #[inline(always)]
-    pub fn of(axis: &A, x: S::Vector, n: S::Vector, nn: S, discriminant: S) -> Self {
+    pub fn of_ordinary(
+        axis: &A,
+        x: S::Vector,
+        d: S::Vector,
+        n: S::Vector,
+        nn: S,
+        discriminant: S,
+    ) -> Self {
         let m = axis.a().cross(x);
         Self {
             axis: *axis,
             m,
             x,
+            d,
             nn,
+            displacement: S::from_f64(ties::ORDINARY_DISPLACEMENT),
             mn: m.dot(n),
             s: axis.length() * discriminant.sqrt(),
         }
@@ -357,6 +374,22 @@ impl<S: Real, A: Axis<S>> Wall<S> for Roots<S, A> {
     fn leave(&self) -> S {
         let root = self.quotient(Root::Second);
         root.numerator / root.denominator
+    }
+
+    #[inline(always)]
+    fn squared_rounding(&self, slab: &Slab<S>) -> S {
+        let squared_sizes = self.m.dot(self.m)
+            + slab.position * slab.position
+            + slab.height * slab.height
+            + self.axis.rr_aa();
+        ties::squared_rounding(self.displacement, squared_sizes)
+    }
+
+    #[inline(always)]
+    fn exact_chord(&self) -> Option<Chord<S>> {
+        let [a, x, d] = [self.axis.a(), self.x, self.d].map(RealVector::components);
+        let ([ax, ay, az], [xx, xy, xz], [dx, dy, dz]) = (a, x, d);
+        ties::exact_chord(ax, ay, az, self.axis.radius(), xx, xy, xz, dx, dy, dz)
     }
 }
 

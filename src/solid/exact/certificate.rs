@@ -120,7 +120,7 @@ pub(super) fn first(cylinder: &Cylinder, ray: &Ray) -> Option<Option<ExactHit>> 
         return None;
     }
 
-    let roots = Roots::new(&axis, x, &line);
+    let roots = Roots::new(&axis, x, d, &line);
     let s_error = roots.s * (0.54 * discriminant.error / discriminant.value + 6.0 * U);
     let slab = triple_product::slab(&axis, x, d);
     Certifier {

@@ -198,3 +198,24 @@ pub(super) fn whole_number(random: &mut Random, greatest: u64) -> f64 {
 pub(super) fn whole(random: &mut Random, greatest: u64) -> DVec3 {
     DVec3::from_array([(); 3].map(|()| whole_number(random, greatest)))
 }
+
+/// Three vectors of one whole length at right angles, whole, in any of four tilts.
+pub(super) fn whole_frame(random: &mut Random) -> [DVec3; 3] {
+    const FRAMES: [[[f64; 3]; 3]; 4] = [
+        [[2.0, 2.0, 1.0], [1.0, -2.0, 2.0], [2.0, -1.0, -2.0]],
+        [[6.0, 3.0, 2.0], [2.0, -6.0, 3.0], [3.0, -2.0, -6.0]],
+        [[4.0, 8.0, 1.0], [4.0, -1.0, -8.0], [-7.0, 4.0, -4.0]],
+        [[0.0, 5.0, 0.0], [4.0, 0.0, 3.0], [3.0, 0.0, -4.0]],
+    ];
+    FRAMES[random.below(4) as usize].map(DVec3::from_array)
+}
+
+/// A ray in a direction of whole numbers through a point of whole numbers, at a parameter that
+/// mostly is no binary fraction. It is in front of the origin, at it or behind.
+pub(super) fn whole_ray_through(random: &mut Random, point: DVec3) -> Option<Ray> {
+    const SPEEDS: [f64; 5] = [1.0, 3.0, 5.0, 6.25, 7.0];
+    let heading = whole(random, 6);
+    let before = random.below(32) as f64 - 4.0;
+    let speed = SPEEDS[random.below(5) as usize];
+    valid(point - heading * before, heading * speed)
+}

@@ -1,9 +1,7 @@
 //! Disks and rays that are hard for them.
 
-use glam::DVec3;
-
 use super::Inputs;
-use super::aiming::{Aim, sign, whole};
+use super::aiming::{Aim, sign, whole, whole_frame};
 use super::any::HardCases;
 use super::shapes::{Round, scale_and_speed};
 use cyltrace::math::{Random, Ray};
@@ -91,14 +89,7 @@ impl DiskFamily {
     }
 
     fn whole_case(self, random: &mut Random) -> Option<(Disk, Ray)> {
-        // Two vectors of one length at a right angle, whole, in a plane of any tilt.
-        const FRAMES: [[[f64; 3]; 2]; 4] = [
-            [[2.0, 2.0, 1.0], [1.0, -2.0, 2.0]],
-            [[6.0, 3.0, 2.0], [2.0, -6.0, 3.0]],
-            [[4.0, 8.0, 1.0], [4.0, -1.0, -8.0]],
-            [[0.0, 5.0, 0.0], [4.0, 0.0, 3.0]],
-        ];
-        let [x, y] = FRAMES[random.below(4) as usize].map(DVec3::from_array);
+        let [x, y, _] = whole_frame(random);
         let center = whole(random, 20);
         let times = 1.0 + random.below(3) as f64;
         let disk = Disk::new(center, x.cross(y), x.length() * 5.0 * times).ok()?;

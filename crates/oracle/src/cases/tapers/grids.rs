@@ -1,10 +1,10 @@
 //! Cases in whole numbers, small enough for every sum and product to be exact: lines
-//! through the apex, and within planes that touch the wall.
+//! through the apex, within planes that touch the wall, and through its rims.
 
 use glam::DVec3;
 
 use super::{TaperCase, TaperSolid};
-use crate::cases::aiming::{sign, valid, whole, whole_number};
+use crate::cases::aiming::{sign, valid, whole, whole_frame, whole_number, whole_ray_through};
 use cyltrace::math::Random;
 
 /// The case, or that with its ends exchanged.
@@ -93,4 +93,38 @@ pub(super) fn tangent_plane(random: &mut Random, solid: TaperSolid) -> Option<Ta
         ray,
     };
     Some(either_way(random, case))
+}
+
+/// A ray exactly through a point of the edge of a disk, or of the seam of wall and ball.
+///
+/// The axis is along a vector of a frame, and the point is beside it by the triple 3, 4, 5.
+/// For balls that is the sine and cosine of the half-angle of the cone as well.
+pub(super) fn exact_rim(random: &mut Random, solid: TaperSolid) -> Option<TaperCase> {
+    let [x, y, z] = whole_frame(random);
+    let unit = x.length();
+    let outward = x * (3.0 * sign(random)) + y * (4.0 * sign(random));
+    let p0 = whole(random, 20);
+    let (few, steps) = (random.below(6) as f64, random.below(6) as f64 + 1.0);
+    let (axis, radius0, radius1, off) = match solid {
+        TaperSolid::Cone => {
+            let other = random.below(6) as f64;
+            let radii = (few * 5.0 * unit, other * 5.0 * unit);
+            (z * steps, radii.0, radii.1, outward * few)
+        }
+        TaperSolid::RoundedCone => {
+            // The normal of the wall, of length 25 units.
+            let normal = outward * 4.0 - z * 15.0;
+            let radii = (few * 25.0 * unit, (few * 25.0 + steps * 15.0) * unit);
+            (z * (steps * 25.0), radii.0, radii.1, normal * few)
+        }
+    };
+    let ray = whole_ray_through(random, p0 + off)?;
+    let case = TaperCase {
+        p0,
+        p1: p0 + axis,
+        radius0,
+        radius1,
+        ray,
+    };
+    (radius0 != radius1).then(|| either_way(random, case))
 }

@@ -14,7 +14,7 @@ use super::aiming::{Aim, sign, valid};
 use super::any::HardCases;
 use cyltrace::math::{Random, Ray};
 use cyltrace::solid::{Caps, Cone, RoundedCone};
-use grids::{tangent_plane, through_apex};
+use grids::{exact_rim, tangent_plane, through_apex};
 use target::Target;
 
 /// Which solid a case is for.
@@ -61,6 +61,8 @@ pub enum TaperFamily {
     CapPlane,
     /// All lengths times 1e-20 to 1e20, directions times 1e-10 to 1e10.
     Scale,
+    /// Rays exactly through a rim or a seam, in whole numbers, with `t` that no binary number is.
+    ExactRim,
 }
 
 /// The numbers of a case, each a number of its [`Inputs`].
@@ -101,7 +103,7 @@ impl TaperCase {
 
 impl TaperFamily {
     /// All families, in the order of tables.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Uniform,
         Self::Graze,
         Self::Rim,
@@ -118,6 +120,7 @@ impl TaperFamily {
         Self::FromWall,
         Self::CapPlane,
         Self::Scale,
+        Self::ExactRim,
     ];
 
     /// Case `index` of the family; the same for the same arguments.
@@ -129,6 +132,7 @@ impl TaperFamily {
             let drawn = match self {
                 Self::ThroughApex => through_apex(&mut random),
                 Self::TangentPlane => tangent_plane(&mut random, solid),
+                Self::ExactRim => exact_rim(&mut random, solid),
                 _ => self.draw(&mut random, solid, inputs),
             };
             if let Some(case) = drawn {
