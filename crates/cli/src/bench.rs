@@ -3,15 +3,13 @@
 mod scale;
 mod traversal;
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
-use anyhow::bail;
 use cyltrace::tracer::Options;
 use cyltrace_bench::formulations;
 use cyltrace_bench::{
     Accuracy, Contender, Environment, JudgedCases, Rounds, Row, SUMMARY_HEADINGS, USUAL_ROUNDS,
-    USUAL_TIMED, WallClock, contenders, draw, figure, page, rival_names, summary, table,
+    USUAL_TIMED, WallClock, contenders, draw, figure, page, summary, table,
 };
 use cyltrace_oracle::cases::Family;
 use cyltrace_output::Table;
@@ -35,7 +33,6 @@ pub fn run(arguments: &BenchArguments) -> anyhow::Result<u8> {
 fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
     json::check(common)?;
-    check_names(&arguments.formulation)?;
     if let Some(directory) = &arguments.report {
         make_directory(directory)?;
     }
@@ -99,22 +96,6 @@ fn contenders_of(arguments: &AccuracyArguments) -> anyhow::Result<Vec<Contender>
         ..Options::default()
     };
     Ok(contenders(formulations::all(), &options, is_wanted)?)
-}
-
-fn check_names(names: &[String]) -> anyhow::Result<()> {
-    let formulations = formulations::all();
-    let known: BTreeSet<&str> = formulations
-        .iter()
-        .map(|formulation| formulation.name())
-        .chain(rival_names())
-        .collect();
-    for name in names {
-        if !known.contains(name.as_str()) {
-            let known = Vec::from_iter(known).join(", ");
-            bail!("--formulation {name:?} is unknown: it must be one of {known}");
-        }
-    }
-    Ok(())
 }
 
 /// The table for people.

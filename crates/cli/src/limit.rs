@@ -1,7 +1,7 @@
-//! What a scene may take of memory, and the refusal of one that takes more.
+//! The memory that a scene may take, and the rejection of a scene that takes more.
 //!
-//! A scene is refused by its counts, before any record is made: the system
-//! would end the program otherwise, when it is too late for a message.
+//! A scene is rejected by its counts, before any record is made: otherwise the system
+//! would end the program without a message.
 
 use std::fs;
 use std::path::Path;
@@ -18,15 +18,14 @@ use super::memory::{kibibytes_of, parse_size, readable};
 /// Most lines about what takes the memory.
 const MOST_SHOWN: usize = 6;
 
-/// What a scene may take.
+/// The memory that a scene may take, and the layout that it depends on.
 #[derive(Args, Debug)]
 pub struct MemoryArguments {
-    /// Refuse a scene that takes more memory than SIZE, such as 500MB or 4GiB
-    /// [default: what the system has available]
+    /// Reject a scene that takes more memory than SIZE, such as `500MB` or `4GiB`
+    /// [default: the memory that the system has available]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<u64>,
-    /// What is a primitive of Embree's: a solid, or a block of eight that are near each
-    /// other, which is faster and less in Embree
+    /// Make each Embree primitive of one solid or of a block of eight solids
     #[arg(long, value_name = "NAME", value_enum, default_value_t = LayoutName::Auto)]
     pub layout: LayoutName,
 }
@@ -34,11 +33,11 @@ pub struct MemoryArguments {
 /// A layout by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LayoutName {
-    /// Blocks where they are faster.
+    /// blocks for kinds with at least 2^20 solids in a prototype
     Auto,
-    /// One solid a primitive.
+    /// one solid per primitive
     Single,
-    /// Eight solids a primitive.
+    /// eight solids of a kind near each other per primitive
     Block,
 }
 
