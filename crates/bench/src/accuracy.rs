@@ -19,11 +19,13 @@ const RIVAL_CASES: usize = 1000;
 const RIVAL_SIDES: usize = 200_000;
 
 /// What the time of a contender is the time of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Times {
     /// A ray and its one cylinder, which are at hand.
     Solver,
     /// A ray through a tree of cylinders, and all of its hit.
+    #[strum(serialize = "end to end")]
     EndToEnd,
 }
 
@@ -31,10 +33,7 @@ impl Times {
     /// The name in tables.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Solver => "solver",
-            Self::EndToEnd => "end to end",
-        }
+        self.into()
     }
 }
 

@@ -18,7 +18,8 @@ use cyltrace::tracer::{Layout, MemoryEstimate, Options, Tracer};
 use cyltrace_output::readable;
 
 /// What grows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Series {
     /// Sticks in a cube, 10^3 to 10^7 of them.
     Cylinders,
@@ -36,10 +37,7 @@ impl Series {
     /// The name in tables.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Cylinders => "cylinders",
-            Self::Placements => "placements",
-        }
+        self.into()
     }
 
     /// The numbers that are tried, up to `most`.
@@ -226,7 +224,7 @@ fn measure(
     let estimate = series.estimate(n);
     if estimate > plan.max_memory {
         return Err(format!(
-            "it would take about {}, more than the {} allowed",
+            "it needs about {} of memory, more than the {} that --max-memory allows",
             readable(estimate),
             readable(plan.max_memory)
         ));

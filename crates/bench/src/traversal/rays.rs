@@ -31,7 +31,8 @@ const PIXELS_OF_SQUARE: usize = (SQUARE * SQUARE) as usize;
 const GOLDEN_RATIO: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// How rays go about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Kind {
     /// Of the camera, in tiles; the first hit is asked for.
     Coherent,
@@ -49,11 +50,7 @@ impl Kind {
     /// The name in tables.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Coherent => "coherent",
-            Self::Shadow => "shadow",
-            Self::Incoherent => "incoherent",
-        }
+        self.into()
     }
 }
 

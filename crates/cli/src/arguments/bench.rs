@@ -63,7 +63,7 @@ pub struct AccuracyArguments {
 #[derive(Args, Debug)]
 pub struct TraversalArguments {
     /// Trace only this scene; may be repeated [default: all]
-    #[arg(long, value_name = "NAME", value_parser = one_of(SceneName::ALL, SceneName::name))]
+    #[arg(long, value_name = "NAME", value_parser = one_of(SceneName::ALL.iter().copied(), SceneName::name))]
     pub scene: Vec<SceneName>,
     /// Time only this rival beside this library; may be repeated. `own` is Embree's own
     /// geometry for each kind of solid: curves, points and the triangles of cuboids
@@ -131,12 +131,9 @@ pub struct Chosen(pub Vec<Representation>);
 /// Accepts `own` and the names of single rivals.
 fn rival() -> impl TypedValueParser<Value = Chosen> {
     let all = Representation::ALL.into_iter();
-    let rivals = all.filter(|one| !one.is_ours()).map(Representation::name);
-    let names: Vec<&str> = ["own"].into_iter().chain(rivals).collect();
-    PossibleValuesParser::new(names).map(|name| {
-        let rivals = Representation::rivals(&name);
-        Chosen(rivals.expect("clap accepts no other name"))
-    })
+    let rivals = all.filter(|one| !one.is_ours()).map(|one| one.to_string());
+    let names: Vec<String> = [String::from("own")].into_iter().chain(rivals).collect();
+    PossibleValuesParser::new(names).map(|name| Chosen(Representation::rivals(&name)))
 }
 
 /// Accepts the names of the formulations, of the tracer, and of Embree's geometry.
