@@ -34,7 +34,8 @@ pub enum Interrupted {
 }
 
 /// The error message of a command that did not end by itself.
-const ENDED: &str = "interrupted; outputs that were not finished are as they were before, a stream written so far is incomplete";
+const ENDED: &str =
+    "interrupted; unfinished files are unchanged, a table written to a stream is incomplete";
 
 /// Set when a command that is writing has to end.
 static REQUESTED: AtomicBool = AtomicBool::new(false);

@@ -40,7 +40,7 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
     let name = arguments.scene.to_string_lossy();
     let bytes = plan.file_bytes(format, &name);
     plan.check(format, &name, arguments.max_memory)
-        .map_err(refusal)?;
+        .map_err(error_of)?;
     if common.prints() {
         print(&stated(arguments, &plan, format, bytes))?;
     }
@@ -98,11 +98,11 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
     print(&text)
 }
 
-/// A refusal in terms of the options.
-fn refusal(error: MeshFileError) -> anyhow::Error {
+/// The error in terms of the options.
+fn error_of(error: MeshFileError) -> anyhow::Error {
     match error {
         MeshFileError::TooLarge { needed, allowed } => anyhow!(
-            "nothing is written, as the file may take {} and --max-memory allows {}; use fewer --segments, or a greater --max-memory",
+            "the mesh needs up to {} and --max-memory allows {}: use fewer --segments or a greater --max-memory",
             readable(needed),
             memory::readable(allowed)
         ),
@@ -110,12 +110,12 @@ fn refusal(error: MeshFileError) -> anyhow::Error {
     }
 }
 
-/// Sizes beyond 64 bits are called the greatest of them.
+/// A size as text; one beyond 64 bits is given as the greatest of 64 bits.
 fn readable(bytes: u128) -> String {
     memory::readable(u64::try_from(bytes).unwrap_or(u64::MAX))
 }
 
-/// What will be written, in lines for people.
+/// The contents and the size of the mesh, in lines for people.
 fn stated(arguments: &TessellateArguments, plan: &Plan, format: Format, bytes: u128) -> String {
     let most = match format {
         Format::Obj => "at most ",

@@ -11,7 +11,7 @@ use super::{FileError, Film, NewFile, srgb};
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     /// The file name does not say PNG or EXR.
-    #[error("cannot tell the picture's format from {path:?}: its name must end in .png or .exr")]
+    #[error("unknown picture format of {path:?}: the name must end in .png or .exr")]
     Extension {
         /// The file as asked for.
         path: PathBuf,
