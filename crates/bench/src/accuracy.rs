@@ -11,11 +11,11 @@ use cyltrace::tracer::{Options, TracerError};
 /// The formulation that times are compared with.
 const BASELINE: (&str, Precision) = ("triple-product", Precision::F64);
 
-/// Rivals build a scene a case, so they are asked about fewer cases: at most
+/// Rivals build a scene for each case, so they get fewer cases: at most
 /// this many, the 99th percentile being the tenth worst,
 const RIVAL_CASES: usize = 1000;
 
-/// and no more than make so many sides of meshes in a family.
+/// and not more than give this number of mesh sides in a family.
 const RIVAL_SIDES: usize = 200_000;
 
 /// What the time of a contender is the time of.
@@ -43,7 +43,7 @@ pub struct Contender {
     pub formulation: Box<dyn Formulation>,
     /// What its time is.
     pub times: Times,
-    /// The most cases of a family that it is asked about.
+    /// The greatest number of cases of a family that it gets.
     pub most_cases: usize,
 }
 
@@ -106,7 +106,7 @@ fn is_baseline(formulation: &dyn Formulation) -> bool {
     (formulation.name(), formulation.precision()) == BASELINE
 }
 
-/// The samples of each contender unless more or fewer are asked for.
+/// The default number and length of the samples of each contender.
 ///
 /// Short samples, many of them: where other programs share the processor, a
 /// sample is disturbed if a turn of theirs (some milliseconds) falls into it.
@@ -181,13 +181,13 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// The steps of which [`Accuracy::measure`] tells.
+    /// The number of steps that [`Accuracy::measure`] reports.
     #[must_use]
     pub fn steps(families: usize, contenders: usize, rounds: Rounds) -> usize {
         families * contenders + rounds.rounds
     }
 
-    /// Measures everybody: errors on `cases`, of which the first family is the
+    /// Measures all contenders: errors on `cases`, of which the first family is the
     /// ordinary one, and times on the ordinary cases `timed`.
     /// `after_step` is called as often as [`Accuracy::steps`] says.
     ///
@@ -257,7 +257,7 @@ mod tests {
     use crate::formulations::Answer;
     use crate::samples::{self, Blind, Shifted};
 
-    /// A clock that goes one second further each time it is asked.
+    /// A clock that advances one second at each reading.
     struct SlowingClock(f64);
 
     impl Timer for SlowingClock {

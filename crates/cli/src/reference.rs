@@ -1,6 +1,6 @@
 //! The tables of docs/command-line.md that are made from the command line's definition.
 //!
-//! A table stands between `<!-- made from clap: NAME -->` and `<!-- end -->`. NAME is a
+//! A table is between `<!-- made from clap: NAME -->` and `<!-- end -->`. NAME is a
 //! command, `every command`, or `exit codes`. The test compares; it rewrites the tables in
 //! `CYLTRACE_UPDATE=1 cargo test --release -p cyltrace-cli reference`.
 

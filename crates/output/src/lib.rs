@@ -1,5 +1,5 @@
-//! What cyltrace writes: files that are never left half written, pictures, and figures,
-//! tables and pages as text.
+//! The outputs of cyltrace: files that are never left half written, pictures, and
+//! figures, tables and pages as text.
 
 mod csv;
 mod figure;

@@ -74,8 +74,8 @@ enum Sink {
 }
 
 impl NewFile {
-    /// Says whether a file could be written to `path`, as far as that can be
-    /// told without creating it.
+    /// Checks that a file can be written to `path`, as far as possible without creating
+    /// it.
     ///
     /// # Errors
     /// When the directory does not exist, `path` is a directory, or a file

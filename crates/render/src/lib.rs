@@ -38,7 +38,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// What the scene asks for, with seed 0.
+    /// The settings of the scene, with seed 0.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         Self {
@@ -113,7 +113,7 @@ pub enum RenderError {
 /// Renders the scene of `tracer` on the threads of `workers` (see
 /// [`cyltrace::tracer::workers`]).
 ///
-/// `progress` is told the number of pixels done since the last call, from any
+/// `progress` gets the number of pixels done since the last call, from any
 /// of the threads. The rendering ends within some hundred samples of every
 /// thread when `cancelled` becomes true.
 ///

@@ -1,11 +1,11 @@
 //! What Embree intersects by itself, and what solids become of it.
 //!
-//! All of it is stated as Embree wants it, so that it is the same solid but for f32:
+//! The geometry is given in the form that Embree takes; it is the same solid except for f32:
 //!
 //! - a cone curve is flat at its ends, each of which has a disk or is open;
 //! - a round linear curve is the two balls and the cone that touches them;
-//! - a sphere point is a ball; a ray that starts within it meets it from inside;
-//! - an oriented disk point is met from both sides.
+//! - a sphere point is a ball; a ray that starts within it hits it from inside;
+//! - an oriented disk point is hit from both sides.
 
 use glam::DVec3;
 

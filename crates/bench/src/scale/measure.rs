@@ -121,7 +121,7 @@ pub struct Plan {
     pub options: Options,
 }
 
-/// What the system tells of this program's memory.
+/// The memory of this program as the system reports it.
 pub struct Resident<'a> {
     /// Forgets the greatest size so far, where that can be done.
     pub forget: &'a dyn Fn(),
@@ -134,10 +134,10 @@ pub struct Resident<'a> {
 pub struct Figures {
     /// Seconds to build the description's tracer.
     pub build_s: f64,
-    /// Records and what Embree holds.
+    /// The bytes of records and of Embree.
     pub bytes: usize,
     /// The program's greatest resident size while the scene was made, built and
-    /// traced, where the system tells it.
+    /// traced, if the system reports it.
     pub resident_bytes: Option<u64>,
     /// Camera rays a second.
     pub rays_per_s: f64,
@@ -164,7 +164,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// The steps of which [`Scale::measure`] tells.
+    /// The number of steps that [`Scale::measure`] reports.
     #[must_use]
     pub fn steps(plan: &Plan) -> usize {
         let sizes = Series::ALL.map(|series| series.sizes(plan.most).len());

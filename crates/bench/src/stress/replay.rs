@@ -64,10 +64,10 @@ pub enum StressCase {
     Composed(ComposedCase),
 }
 
-/// The case that a word of [`to_word`] stands for.
+/// The case of a word that [`to_word`] gave.
 ///
 /// # Errors
-/// When the word is malformed or stands for no cylinder and ray.
+/// If the word is malformed, or its numbers are not a solid and a ray.
 pub fn from_word(word: &str) -> Result<StressCase, ReplayError> {
     let parts: Vec<&str> = word.trim().split(':').collect();
     if let [family, inputs, seed, index] = parts[..]

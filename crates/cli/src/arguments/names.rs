@@ -1,4 +1,4 @@
-//! Names on the command line that stand for values.
+//! Values that the command line names.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 

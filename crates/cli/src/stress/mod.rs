@@ -16,7 +16,7 @@ use super::output_sink::{make_directory, write_text};
 use super::print::print;
 use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
 
-/// Runs what the arguments ask for; the exit code says whether promises hold.
+/// Runs the command; the exit code is 1 if a promise is broken.
 pub fn run(arguments: &StressArguments) -> anyhow::Result<u8> {
     let common = &arguments.common;
     if arguments.promises {

@@ -321,28 +321,19 @@ fn traversal_own_rivals_alone_are_summed_up_with_their_orders() {
     let mut arguments = STICKS.to_vec();
     // Shadow rays of one tile are in one order only.
     arguments[4] = "256";
-    arguments.extend([
-        "--rival",
-        "own",
-        "--rival",
-        "c_callback",
-        "--max-isa",
-        "avx2",
-    ]);
+    arguments.extend(["--rival", "own", "--max-isa", "avx2"]);
     let found = figures(folder.path(), &arguments);
     let rows = found["rows"].as_array().expect("an array");
     let expected: Vec<&str> = REPRESENTATIONS
         .into_iter()
         .filter(|name| !name.starts_with("mesh_") || *name == "mesh_faces")
-        .filter(|name| !["native_instances", "instance_array"].contains(name))
         .collect();
     assert_eq!(rows.len(), 3 * expected.len());
     for (row, name) in rows.iter().zip(expected.iter().cycle()) {
         assert_eq!(row["representation"], *name);
         let order = row["order"].as_str();
         assert_eq!(order.is_some(), row["reason"].is_null(), "{row}");
-        // The callback in C answers for single rays as they come.
-        if name.starts_with("analytic") || *name == "c_callback" {
+        if name.starts_with("analytic") {
             assert_eq!(order, Some("given"), "{row}");
         }
     }
@@ -373,7 +364,7 @@ fn traversal_report_is_written_whole_and_needs_nothing_else() {
     let folder = tempfile::tempdir().expect("a directory");
     let (out, names) = report(folder.path(), &STICKS);
     for part in [
-        "c_callback",
+        "embree_cone_packet",
         "times as fast: sticks_1e4",
         "Embree's own",
         "0 wrong in all 9 rows",
