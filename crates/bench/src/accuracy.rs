@@ -11,19 +11,21 @@ use cyltrace::tracer::{Options, TracerError};
 /// The formulation that times are compared with.
 const BASELINE: (&str, Precision) = ("triple-product", Precision::F64);
 
-/// Rivals build a scene a case, so they are asked about fewer cases: at most
+/// Rivals build a scene for each case, so they get fewer cases: at most
 /// this many, the 99th percentile being the tenth worst,
 const RIVAL_CASES: usize = 1000;
 
-/// and no more than make so many sides of meshes in a family.
+/// and not more than give this number of mesh sides in a family.
 const RIVAL_SIDES: usize = 200_000;
 
 /// What the time of a contender is the time of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Times {
     /// A ray and its one cylinder, which are at hand.
     Solver,
     /// A ray through a tree of cylinders, and all of its hit.
+    #[strum(serialize = "end to end")]
     EndToEnd,
 }
 
@@ -31,10 +33,7 @@ impl Times {
     /// The name in tables.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Solver => "solver",
-            Self::EndToEnd => "end to end",
-        }
+        self.into()
     }
 }
 
@@ -44,7 +43,7 @@ pub struct Contender {
     pub formulation: Box<dyn Formulation>,
     /// What its time is.
     pub times: Times,
-    /// The most cases of a family that it is asked about.
+    /// The greatest number of cases of a family that it gets.
     pub most_cases: usize,
 }
 
@@ -107,7 +106,7 @@ fn is_baseline(formulation: &dyn Formulation) -> bool {
     (formulation.name(), formulation.precision()) == BASELINE
 }
 
-/// The samples of each contender unless more or fewer are asked for.
+/// The default number and length of the samples of each contender.
 ///
 /// Short samples, many of them: where other programs share the processor, a
 /// sample is disturbed if a turn of theirs (some milliseconds) falls into it.
@@ -182,13 +181,13 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// The steps of which [`Accuracy::measure`] tells.
+    /// The number of steps that [`Accuracy::measure`] reports.
     #[must_use]
     pub fn steps(families: usize, contenders: usize, rounds: Rounds) -> usize {
         families * contenders + rounds.rounds
     }
 
-    /// Measures everybody: errors on `cases`, of which the first family is the
+    /// Measures all contenders: errors on `cases`, of which the first family is the
     /// ordinary one, and times on the ordinary cases `timed`.
     /// `after_step` is called as often as [`Accuracy::steps`] says.
     ///
@@ -258,7 +257,7 @@ mod tests {
     use crate::formulations::Answer;
     use crate::samples::{self, Blind, Shifted};
 
-    /// A clock that goes one second further each time it is asked.
+    /// A clock that advances one second at each reading.
     struct SlowingClock(f64);
 
     impl Timer for SlowingClock {

@@ -1,13 +1,13 @@
 //! Run time against error, and against size.
 //!
-//! [`Accuracy::measure`] asks every formulation and rival about the same cases
-//! and compares the answers with the oracle's (`truth`); then it runs them in
-//! turns on the ordinary ones (`timing`). [`Accuracy`] is the outcome, and
-//! [`figure`], [`page`] and [`table`] show it. [`traversal`] compares whole
-//! scenes, [`scale`] follows this library to large ones.
+//! [`Accuracy::measure`] runs every formulation and rival on the same cases and compares
+//! the answers with the oracle's (`truth`); then it times them in turns on the ordinary
+//! cases (`timing`). [`Accuracy`] is the outcome, and [`figure`], [`page`] and [`records`]
+//! show it. [`traversal`] compares whole scenes, [`scale`] measures growing ones.
 
 mod accuracy;
 pub mod formulations;
+mod groups;
 mod machine;
 mod outputs;
 mod rivals;
@@ -24,7 +24,7 @@ pub use accuracy::{
     Accuracy, Contender, Row, Times, USUAL_ROUNDS, USUAL_TIMED, contenders, rival_names,
 };
 pub use machine::Environment;
-pub use outputs::{SUMMARY_HEADINGS, figure, page, summary, table};
+pub use outputs::{Record, SUMMARY_HEADINGS, figure, page, records, summaries};
 pub use rivals::{Shape, Traced};
 pub use statistics::{Spread, p99};
 pub use timing::{Rounds, ThreadClock, Timer, WallClock};

@@ -1,16 +1,16 @@
-//! Where and how something was measured, without which a time says nothing.
+//! The machine and the settings of a measurement, without which a time says nothing.
 
 use std::fs;
 
 use cyltrace::embree::{Device, DeviceOptions, MaxIsa};
 
-/// What a run's figures depend on.
+/// Everything that a run's figures depend on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Environment {
-    /// The processor's model name where the system says it (Linux), its architecture
-    /// elsewhere.
+    /// The processor's model name if the system reports it (Linux), else its
+    /// architecture.
     pub processor: String,
-    /// The processor, and how many of it.
+    /// The processor, and the number of its threads.
     pub machine: String,
     /// Embree's version.
     pub embree: String,
@@ -19,19 +19,18 @@ pub struct Environment {
     /// The instruction sets that this program was compiled for, beyond the
     /// first of its architecture.
     pub target_features: Vec<&'static str>,
-    /// The sources it was compiled from, if whoever compiled it set
-    /// `CYLTRACE_COMMIT`.
+    /// The commit of the sources, if `CYLTRACE_COMMIT` was set when compiling.
     pub commit: Option<&'static str>,
     /// Cases of each family, or rays of each kind.
     pub cases: u64,
-    /// Chooses the cases.
+    /// The seed of the cases.
     pub seed: u64,
     /// Samples of each time.
     pub rounds: usize,
 }
 
 impl Environment {
-    /// Those of this program on this machine.
+    /// The environment of this program on this machine.
     #[must_use]
     pub fn here(max_isa: Option<MaxIsa>, cases: u64, seed: u64, rounds: usize) -> Self {
         let processor = processor();
@@ -49,7 +48,7 @@ impl Environment {
         }
     }
 
-    /// All of it in a sentence or two.
+    /// The environment in one or two sentences.
     #[must_use]
     pub fn sentence(&self) -> String {
         format!(

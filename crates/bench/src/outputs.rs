@@ -1,42 +1,47 @@
-//! A comparison as a figure, as a table for programs and as a page.
+//! The comparison of `bench accuracy` as a figure, as records and as a page.
+
+use serde::Serialize;
 
 use super::accuracy::{Accuracy, Row, Times};
+use super::groups::Group;
 use super::machine::Environment;
 use crate::formulations::Precision;
-use cyltrace_output::{Figure, Mark, Page, Series, Symbol, csv};
+use cyltrace_output::{Figure, Mark, Page, Symbol, figure as short};
 
-/// The kinds of contenders in the figure: legend, symbol, whether they are
-/// the points of a curve, and which rows are of the kind.
-type Kind = (&'static str, Symbol, bool, fn(&Row) -> bool);
-
-const KINDS: [Kind; 5] = [
-    ("formulation in f32", Symbol::Circle, false, |row| {
-        row.times == Times::Solver && row.precision == Precision::F32
-    }),
-    ("formulation in f64", Symbol::Circle, false, |row| {
-        row.times == Times::Solver && row.precision == Precision::F64
-    }),
-    (
-        "Embree's cone curve, end to end",
-        Symbol::Diamond,
-        false,
-        |row| is_native(row) && !is_mesh(row),
-    ),
-    (
-        "Embree's mesh of N sides, end to end",
-        Symbol::Square,
-        true,
-        |row| is_native(row) && is_mesh(row),
-    ),
-    (
-        "this library's tracer, end to end",
-        Symbol::Diamond,
-        false,
-        |row| row.times == Times::EndToEnd && row.precision == Precision::F64,
-    ),
+const GROUPS: [Group<Row>; 5] = [
+    Group {
+        name: "formulation in f32",
+        symbol: Symbol::Circle,
+        is_curve: false,
+        contains: |row| row.times == Times::Solver && row.precision == Precision::F32,
+    },
+    Group {
+        name: "formulation in f64",
+        symbol: Symbol::Circle,
+        is_curve: false,
+        contains: |row| row.times == Times::Solver && row.precision == Precision::F64,
+    },
+    Group {
+        name: "Embree's cone curve, end to end",
+        symbol: Symbol::Diamond,
+        is_curve: false,
+        contains: |row| is_native(row) && !is_mesh(row),
+    },
+    Group {
+        name: "Embree's mesh of N sides, end to end",
+        symbol: Symbol::Square,
+        is_curve: true,
+        contains: |row| is_native(row) && is_mesh(row),
+    },
+    Group {
+        name: "this library's tracer, end to end",
+        symbol: Symbol::Diamond,
+        is_curve: false,
+        contains: |row| row.times == Times::EndToEnd && row.precision == Precision::F64,
+    },
 ];
 
-/// What begins the name of a mesh; its sides follow.
+/// The prefix of a mesh's name, before the number of its sides.
 const MESH: &str = "mesh-";
 
 fn is_native(row: &Row) -> bool {
@@ -47,21 +52,12 @@ fn is_mesh(row: &Row) -> bool {
     row.name.starts_with(MESH)
 }
 
-/// The figure as SVG: time against error, with a second mark for the worst
-/// family. A contender that never hits has no place in it.
+/// The figure as SVG: time against error, with a second mark for the worst family. A
+/// contender that never hits has no mark.
 #[must_use]
 pub fn figure(accuracy: &Accuracy) -> String {
-    let series = KINDS.map(|(name, symbol, is_curve, is_of_kind)| Series {
-        name: name.to_owned(),
-        symbol,
-        is_curve,
-        marks: accuracy
-            .rows
-            .iter()
-            .filter(|row| is_of_kind(row))
-            .filter_map(|row| mark(accuracy, row))
-            .collect(),
-    });
+    let mark = |row: &Row| mark(accuracy, row);
+    let series = GROUPS.map(|group| group.series(accuracy.rows.iter(), mark));
     Figure {
         x_title: String::from("nanoseconds a ray, nominal family"),
         y_title: String::from("position error in radii, 99th percentile"),
@@ -86,7 +82,7 @@ fn mark(accuracy: &Accuracy, row: &Row) -> Option<Mark> {
             three_digits(row.ns.deviation),
             error(Some(y)),
             error(worst.map(|(_, error)| error)),
-            cyltrace_output::figure(row.wrong_percent_mean()),
+            short(row.wrong_percent_mean()),
         ),
         x: row.ns.median,
         y,
@@ -94,49 +90,44 @@ fn mark(accuracy: &Accuracy, row: &Row) -> Option<Mark> {
     })
 }
 
-const CSV_HEADINGS: [&str; 12] = [
-    "name",
-    "precision",
-    "times",
-    "ns_median",
-    "ns_spread",
-    "ratio_median",
-    "ratio_spread",
-    "p99_error_r",
-    "worst_family",
-    "worst_p99_error_r",
-    "wrong_percent_mean",
-    "bytes",
-];
+/// A row of `accuracy.csv` and of the JSON's `formulations`.
+#[derive(Serialize)]
+pub struct Record {
+    name: &'static str,
+    precision: &'static str,
+    times: &'static str,
+    ns_median: f64,
+    ns_spread: f64,
+    ratio_median: Option<f64>,
+    ratio_spread: Option<f64>,
+    p99_error_r: Option<f64>,
+    worst_family: Option<&'static str>,
+    worst_p99_error_r: Option<f64>,
+    wrong_percent_mean: f64,
+    bytes: usize,
+}
 
-/// The table as CSV, numbers in full; a cell is empty where there is none.
+/// The rows with all digits of their figures.
 #[must_use]
-pub fn table(accuracy: &Accuracy) -> String {
-    let rows: Vec<Vec<String>> = accuracy
-        .rows
-        .iter()
-        .map(|row| {
-            let number = |x: Option<f64>| x.map_or_else(String::new, |x| x.to_string());
-            let worst = row.worst();
-            vec![
-                row.name.to_owned(),
-                row.precision.name().to_owned(),
-                row.times.name().to_owned(),
-                row.ns.median.to_string(),
-                row.ns.deviation.to_string(),
-                number(row.ratio.map(|ratio| ratio.median)),
-                number(row.ratio.map(|ratio| ratio.deviation)),
-                number(row.p99_error_r()),
-                worst.map_or_else(String::new, |(family, _)| {
-                    accuracy.families[family].to_owned()
-                }),
-                number(worst.map(|(_, error)| error)),
-                row.wrong_percent_mean().to_string(),
-                row.bytes.to_string(),
-            ]
-        })
-        .collect();
-    csv(&CSV_HEADINGS, &rows)
+pub fn records(accuracy: &Accuracy) -> Vec<Record> {
+    let record = |row: &Row| {
+        let worst = row.worst();
+        Record {
+            name: row.name,
+            precision: row.precision.name(),
+            times: row.times.name(),
+            ns_median: row.ns.median,
+            ns_spread: row.ns.deviation,
+            ratio_median: row.ratio.map(|ratio| ratio.median),
+            ratio_spread: row.ratio.map(|ratio| ratio.deviation),
+            p99_error_r: row.p99_error_r(),
+            worst_family: worst.map(|(family, _)| accuracy.families[family]),
+            worst_p99_error_r: worst.map(|(_, error)| error),
+            wrong_percent_mean: row.wrong_percent_mean(),
+            bytes: row.bytes,
+        }
+    };
+    accuracy.rows.iter().map(record).collect()
 }
 
 /// The page: the figure, how to read it, and the tables.
@@ -149,19 +140,12 @@ pub fn page(accuracy: &Accuracy, environment: &Environment) -> String {
         page.paragraph(paragraph);
     }
     page.heading("Time and error");
-    let rows: Vec<Vec<String>> = accuracy
-        .rows
-        .iter()
-        .map(|row| summary(accuracy, row))
-        .collect();
-    page.table(&SUMMARY_HEADINGS, &rows);
+    page.table(&SUMMARY_HEADINGS, &summaries(accuracy));
     page.note(
         "Spreads are median absolute deviations over the rounds. Ratios are to triple-product in f64, round by round; of an end-to-end time, the ratio says little.",
     );
     page.heading("Wrong hits and misses, % of all cases");
-    families(&mut page, accuracy, |errors| {
-        cyltrace_output::figure(errors.wrong_percent())
-    });
+    families(&mut page, accuracy, |errors| short(errors.wrong_percent()));
     page.heading("Position error in radii, 99th percentile");
     families(&mut page, accuracy, |errors| error(errors.p99_r));
     page.note(
@@ -194,7 +178,7 @@ fn families(page: &mut Page, accuracy: &Accuracy, cell: impl Fn(&super::truth::E
     page.table(&headings, &rows);
 }
 
-/// The columns of [`summary`].
+/// The columns of [`summaries`].
 pub const SUMMARY_HEADINGS: [&str; 9] = [
     "contender",
     "times",
@@ -207,9 +191,14 @@ pub const SUMMARY_HEADINGS: [&str; 9] = [
     "bytes",
 ];
 
-/// The figures of a row as people read them.
+/// The rows with rounded figures, for people.
 #[must_use]
-pub fn summary(accuracy: &Accuracy, row: &Row) -> Vec<String> {
+pub fn summaries(accuracy: &Accuracy) -> Vec<Vec<String>> {
+    let rows = accuracy.rows.iter();
+    rows.map(|row| summary(accuracy, row)).collect()
+}
+
+fn summary(accuracy: &Accuracy, row: &Row) -> Vec<String> {
     let ratio = row.ratio.map_or_else(
         || String::from("–"),
         |ratio| format!("{:.2} ± {:.2}", ratio.median, ratio.deviation),
@@ -226,7 +215,7 @@ pub fn summary(accuracy: &Accuracy, row: &Row) -> Vec<String> {
         ratio,
         error(row.p99_error_r()),
         worst,
-        cyltrace_output::figure(row.wrong_percent_mean()),
+        short(row.wrong_percent_mean()),
         row.bytes.to_string(),
     ]
 }
@@ -242,7 +231,7 @@ fn three_digits(x: f64) -> String {
 }
 
 fn error(x: Option<f64>) -> String {
-    x.map_or_else(|| String::from("–"), cyltrace_output::figure)
+    x.map_or_else(|| String::from("–"), short)
 }
 
 #[cfg(test)]
@@ -310,13 +299,16 @@ mod tests {
 
     #[test]
     fn table_empty_cells_where_there_is_no_number() {
-        let text = table(&sample());
+        let text = cyltrace_output::csv(&records(&sample()));
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines.len(), 8);
-        assert_eq!(lines[0], CSV_HEADINGS.join(","));
+        assert_eq!(
+            lines[0],
+            "name,precision,times,ns_median,ns_spread,ratio_median,ratio_spread,p99_error_r,worst_family,worst_p99_error_r,wrong_percent_mean,bytes"
+        );
         assert_eq!(
             lines[2],
-            "careful,f64,solver,12.5,0.25,,,0,far,0.000000000000001,1.5,56"
+            "careful,f64,solver,12.5,0.25,,,0.0,far,1e-15,1.5,56"
         );
         assert_eq!(lines[7], "blind,f32,solver,12.5,0.25,,,,,,1.5,56");
     }

@@ -1,10 +1,10 @@
-//! Middles, spreads and shares of measured numbers.
+//! Medians, spreads and percentiles of measured numbers.
 //!
 //! Times on a shared machine have a long tail to the slow side, so the middle
 //! is the median and the spread the median absolute deviation: both stand
 //! still until half of the samples are disturbed.
 
-/// The middle of some numbers and how far they lie from it.
+/// The median of some numbers, and their deviation from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
     /// The median.
@@ -15,10 +15,10 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of at least one number.
+    /// The spread of at least one number.
     ///
     /// # Panics
-    /// When there is none.
+    /// If there is none.
     #[must_use]
     pub fn of(numbers: &[f64]) -> Self {
         let middle = median(numbers);
@@ -30,8 +30,7 @@ impl Spread {
     }
 }
 
-/// One time over another, round by round, so that what slowed a round slows
-/// both.
+/// One time over another, round by round: a disturbance of a round slows both.
 #[must_use]
 pub fn ratios(seconds: &[f64], baseline: &[f64]) -> Vec<f64> {
     let pairs = seconds.iter().zip(baseline);

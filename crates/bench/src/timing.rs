@@ -80,7 +80,7 @@ pub fn interleave(
             }
         })
     };
-    // The first run warms caches and pages, the second tells how long one is.
+    // The first run warms caches and pages, the second measures the length of one.
     let repeats: Vec<usize> = batches
         .iter()
         .map(|batch| {
@@ -165,7 +165,7 @@ mod tests {
         };
         let (samples, log, _) = measure(&[2, 7], plan);
         assert_eq!(samples, [[2.0; 2], [7.0; 2]]);
-        // Three runs of 2 s are as long as asked for, one of 7 s is longer.
+        // Three runs of 2 s are exactly long enough, one of 7 s is longer.
         assert_eq!(log[4..], [2, 2, 2, 7, 7, 2, 2, 2]);
     }
 

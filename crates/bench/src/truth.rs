@@ -44,7 +44,7 @@ pub struct JudgedCases {
 /// How a formulation did on some cases.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
-    /// Cases that it was asked.
+    /// The number of cases.
     pub cases: usize,
     /// Cases in which it says hit for a miss, or miss for a hit.
     pub wrong: usize,
@@ -84,7 +84,7 @@ impl JudgedCases {
     }
 
     /// The first `count` cases of a family in f32 numbers, so that what computes
-    /// in f32 is asked the same question.
+    /// in f32 gets the same question.
     #[must_use]
     pub fn of(family: Family, seed: u64, count: u64) -> Self {
         Self::new(family.name(), draw(family, seed, count))

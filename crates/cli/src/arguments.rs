@@ -1,31 +1,44 @@
-//! The arguments, as clap reads them.
+//! The command line as clap reads it. The help texts here are also the tables of options
+//! in docs/command-line.md, see `reference.rs`.
 
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{
     Decimal, Delimiter, Film, GREATEST_CASES, GREATEST_RAYS, GREATEST_SAMPLES, GREATEST_THREADS,
     Integrator, TableFormat,
 };
-use cyltrace_bench::stress::StressFamily;
+use cyltrace_bench::stress::{Contender, StressFamily};
 use cyltrace_check::{Class, Replay};
 use cyltrace_oracle::cases::{Family, Inputs};
 
 mod bench;
+mod names;
 mod numbers;
 
 pub use bench::{AccuracyArguments, Bench, BenchArguments, ScaleArguments, TraversalArguments};
+use names::one_of;
 use numbers::{count_up_to, parse_length, parse_seed, parse_segments, parse_size};
 
+use super::exit_codes;
 use super::limit::MemoryArguments;
 use super::memory;
 use super::output_sink::is_standard_stream;
 
-/// Traces analytic cylinders through Embree: exact hits, no meshes.
+/// Traces analytic cylinders and like solids through Embree: exact hits, no meshes.
 #[derive(Debug, Parser)]
-#[command(version, about, long_about = None, max_term_width = 100)]
+#[command(
+    name = "cyltrace",
+    version,
+    about,
+    long_about = None,
+    after_long_help = exit_codes::help(),
+    max_term_width = 100
+)]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -40,28 +53,33 @@ pub enum Command {
     Bench(BenchArguments),
     Stress(StressArguments),
     Check(CheckArguments),
+    Completions(CompletionsArguments),
+    Man(ManArguments),
 }
 
-/// What every command takes.
+/// The options of every command that reads, traces or measures.
 #[derive(Args, Debug)]
 pub struct Common {
-    /// Write the figures of the run to FILE; `-` is standard output
+    /// Write the run's figures as JSON to FILE; `-` writes them to standard output, in
+    /// place of the text
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Print neither figures nor progress
+    /// Print neither text nor progress
     #[arg(long, short)]
     pub quiet: bool,
-    /// Use N threads [default: as many as the machine has]
+    /// Trace on N threads, 1 to 1024; the answers do not depend on it [default: all of
+    /// the machine]
     #[arg(long, value_name = "N", value_parser = count_up_to::<NonZeroUsize>(GREATEST_THREADS as u64), allow_negative_numbers = true)]
     pub threads: Option<NonZeroUsize>,
-    /// Hold Embree to an instruction set: sse2, sse4.2, avx, avx2 or avx512
+    /// Restrict Embree to an instruction set: `sse2`, `sse4.2`, `avx`, `avx2` or `avx512`;
+    /// the answers do not depend on it [default: the best of the machine]
     #[arg(long, value_name = "NAME")]
     pub max_isa: Option<MaxIsa>,
 }
 
 impl Common {
-    /// Whether the lines meant for people are printed: not when asked to be
-    /// quiet, nor when standard output is for the figures.
+    /// Whether text is printed for people: not under `--quiet`, nor when the JSON goes to
+    /// standard output.
     pub fn prints(&self) -> bool {
         !self.quiet
             && self
@@ -71,26 +89,27 @@ impl Common {
     }
 }
 
-/// Make a picture of a scene
+/// Render a picture of a scene
 #[derive(Args, Debug)]
 pub struct RenderArguments {
     /// The scene file
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// The picture: a name ending in .png (8-bit sRGB, clamped to [0, 1]) or
-    /// .exr (32-bit linear)
+    /// Write the picture to FILE: `.png` (8-bit sRGB, clamped to [0, 1]) or `.exr`
+    /// (32-bit linear, not clamped)
     #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
-    /// Size of the picture in pixels [default: the scene's, else 1280x720]
+    /// Render W by H pixels, at most 2^28 in all [default: the scene's, else 1280x720]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<Film>,
-    /// Samples a pixel; powers of two are best [default: the scene's, else 4]
+    /// Take N samples per pixel, 1 to 2^20; powers of two are best [default: the scene's,
+    /// else 4]
     #[arg(long, value_name = "N", value_parser = count_up_to::<NonZeroU32>(GREATEST_SAMPLES.into()), allow_negative_numbers = true)]
     pub spp: Option<NonZeroU32>,
-    /// What the picture shows [default: the scene's, else sun]
+    /// Show the result of this integrator [default: the scene's, else `sun`]
     #[arg(long, value_name = "NAME", value_enum)]
     pub integrator: Option<IntegratorName>,
-    /// Chooses the random numbers
+    /// Seed the random numbers
     #[arg(
         long,
         value_name = "N",
@@ -107,8 +126,7 @@ pub struct RenderArguments {
     pub common: Common,
 }
 
-/// Trace rays from a table and write their hits to another, or say which solids
-/// hold points
+/// Trace the rays of a table, or find the solids that contain the points of one
 #[derive(Args, Debug)]
 pub struct TraceArguments {
     /// The scene file
@@ -118,11 +136,11 @@ pub struct TraceArguments {
     pub table: TraceTable,
     #[command(flatten)]
     pub format: FormatArguments,
-    /// CSV of hits, one row a ray, in order; with --points of the solids that hold
-    /// each point, one row a solid. `-` is standard output
+    /// Write the results to FILE as CSV: one row per ray in the order of the rays, or for
+    /// `--points` one row per solid that contains a point; `-` is standard output
     #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
-    /// Write every hit of a ray, in order of t, instead of the first
+    /// List every hit of a ray in the order of `t`, not only the first
     #[arg(long, conflicts_with = "points")]
     pub all: bool,
     #[command(flatten)]
@@ -136,44 +154,46 @@ pub struct TraceArguments {
 /// How hits are decided.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct DecisionArguments {
-    /// Decide hits, misses and parts of cylinders as exact arithmetic does for any f64
-    /// ray, which takes longer: cylinders that share their ends leave no seam
+    /// Decide hits, misses and parts of single solids as exact arithmetic does for any f64
+    /// ray, not only if f32 represents its numbers: open cylinders that share their ends
+    /// leave no seam. Tracing takes longer
     #[arg(long)]
     pub exact: bool,
 }
 
-/// What is asked about.
+/// The table that is read: one of the two.
 #[derive(Args, Debug)]
 #[group(required = true, multiple = false)]
 pub struct TraceTable {
-    /// CSV with the columns ox,oy,oz,dx,dy,dz and optionally t_min,t_max
-    /// (defaults 0 and inf); `-` is standard input
+    /// Trace the rays of this table: columns `ox,oy,oz,dx,dy,dz` and optionally
+    /// `t_min,t_max` (0 and `inf` if absent); `-` is standard input
     #[arg(long, value_name = "FILE")]
     pub rays: Option<PathBuf>,
-    /// CSV with the columns x,y,z; `-` is standard input
+    /// Find the solids that contain the points of this table: columns `x,y,z`; `-` is
+    /// standard input
     #[arg(long, value_name = "FILE")]
     pub points: Option<PathBuf>,
 }
 
-/// How the tables on the command line are written.
+/// The format of the tables that the command line names.
 #[derive(Args, Clone, Debug)]
 pub struct FormatArguments {
-    /// What separates the cells of tables: comma, semicolon, tab or blanks
-    /// [default: what their first lines show]
+    /// Split the cells of tables at this delimiter: `comma`, `semicolon`, `tab` or `blanks`
+    /// [default: the one that their first lines show]
     #[arg(long, value_name = "NAME")]
     pub delimiter: Option<Delimiter>,
-    /// What precedes the decimals of numbers in tables: point or comma
-    /// [default: point]
+    /// Read numbers in tables with this decimal separator: `point` or `comma` [default:
+    /// `point`]
     #[arg(long, value_name = "NAME")]
     pub decimal: Option<Decimal>,
-    /// The columns of rays or points by their numbers, from 0, in the order in which
-    /// the names are listed above: for a table without a header
+    /// Read a table of rays or points without a header: the numbers of its columns from 0,
+    /// in the order `ox,oy,oz,dx,dy,dz,t_min,t_max` (six or eight numbers) or `x,y,z`
     #[arg(long, value_name = "N,N", value_delimiter = ',')]
     pub columns: Vec<u64>,
 }
 
 impl FormatArguments {
-    /// What is stated.
+    /// The delimiter and the decimal separator.
     pub fn format(&self) -> TableFormat {
         TableFormat {
             delimiter: self.delimiter,
@@ -182,7 +202,7 @@ impl FormatArguments {
     }
 }
 
-/// Say what a scene holds, without tracing it
+/// Print what a scene contains, without tracing it
 #[derive(Args, Debug)]
 pub struct InfoArguments {
     /// The scene file
@@ -194,17 +214,17 @@ pub struct InfoArguments {
     pub common: Common,
 }
 
-/// Write a scene as a mesh of triangles, with the proven deviation
+/// Write a scene as a triangle mesh with a proven deviation
 #[derive(Args, Debug)]
 pub struct TessellateArguments {
     /// The scene file
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// The mesh: a name ending in .obj (text, with a group for each placed
-    /// prototype) or .ply (binary, f64)
+    /// Write the mesh to FILE: `.obj` (text, a group for each placed prototype) or `.ply`
+    /// (binary, f64)
     #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
-    /// Sides of a prism, and of what else is turned about an axis
+    /// Divide the circle of prisms and other solids of revolution into N sides, 3 to 4096
     #[arg(
         long,
         value_name = "N",
@@ -213,106 +233,117 @@ pub struct TessellateArguments {
         allow_negative_numbers = true
     )]
     pub segments: u32,
-    /// Meshes with their corners on the surface, within the solids [default]
+    /// Put the corners of the meshes on the surface, so that the meshes are inside the
+    /// solids; this is the default
     #[arg(long, conflicts_with = "circumscribed")]
     pub inscribed: bool,
-    /// Meshes whose sides touch the surface from without
+    /// Let the sides of the meshes touch the surface from outside, so that the solids are
+    /// inside the meshes
     #[arg(long)]
     pub circumscribed: bool,
-    /// Refuse to write more than SIZE bytes, such as 500MB or 4GiB
+    /// Reject a mesh whose file is larger than SIZE, such as `500MB` or `4GiB`; the size of
+    /// a `.ply` is known exactly, that of an `.obj` as an upper bound
     #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = memory::parse_size)]
     pub max_memory: u64,
     #[command(flatten)]
     pub common: Common,
 }
 
-/// Put hard cases to every formulation and to exact arithmetic
+/// Compare every solver with exact arithmetic on hard cases
 ///
-/// Exits with 1 when a promise of the library's own solvers is broken.
+/// Exits with 1 if the library's own solvers break a promise.
 #[derive(Args, Debug)]
 pub struct StressArguments {
-    /// Only this family; may be repeated [default: all]
+    /// Run this family only, such as `rim`, `cone-rim`, `cuboid-edge` or
+    /// `composed-stacks`; may be repeated [default: all 90]
     #[arg(long, value_name = "NAME")]
     pub family: Vec<StressFamily>,
-    /// Cases of each family and kind of inputs; of set operations all up to 1000, then a
-    /// hundredth
+    /// Run N cases of each family and kind of inputs, 1 to 10^7; set operations get N up to
+    /// 1000, and the greater of 1000 and N / 100 beyond
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..=GREATEST_CASES))]
     pub cases: u64,
-    /// Chooses the cases
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    /// Seed the cases
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_seed, allow_negative_numbers = true)]
     pub seed: u64,
-    /// Only cases of f32 or of f64 numbers [default: both]
-    #[arg(long, value_name = "KIND", value_parser = parse_inputs)]
+    /// Run only cases whose numbers f32 represents, or only cases of full f64 numbers
+    /// [default: both]
+    #[arg(long, value_name = "KIND", value_parser = one_of(Inputs::ALL, Inputs::name))]
     pub inputs: Option<Inputs>,
-    /// Only this formulation of cylinders, in f32 and f64, or the solver of this
-    /// kind of solid; may be repeated [default: all]
-    #[arg(long, value_name = "NAME")]
+    /// Run only this solver, on the families that it solves: a formulation of the
+    /// ray/cylinder test, a kind of solid, or `set_operations`; may be repeated [default:
+    /// all]
+    #[arg(long, value_name = "NAME", value_parser = solver())]
     pub formulation: Vec<String>,
-    /// Write the tables, the figures and maps into DIR
+    /// Write `stress.txt`, `stress.json` and maps to DIR
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
-    /// Print what is promised and run nothing
+    /// Print the promises and run nothing
     #[arg(long, conflicts_with_all = ["replay", "map"])]
     pub promises: bool,
-    /// Print a case, as a run printed it, and what each formulation says
+    /// Print one case and every solver's answer to it; BITS is the word that a run printed,
+    /// the bits of a cylinder and a ray, or `FAMILY:INPUTS:SEED:NUMBER` such as
+    /// `cone-rim:f32:0:17`
     #[arg(long, value_name = "BITS", conflicts_with = "map")]
     pub replay: Option<String>,
-    /// Draw which formulations are right on neighbouring floats around the
-    /// hardest case of a family
+    /// Draw a map of the formulations that are right on neighbouring floats around the
+    /// hardest case of FAMILY
     #[arg(long, value_name = "FAMILY")]
     pub map: Option<Family>,
     #[command(flatten)]
     pub common: Common,
 }
 
-/// Hold analytic hits against meshes that Embree traces
+/// Validate hits against meshes that Embree traces, or against exact results
 ///
-/// Exits with 1 when an answer is wrong, or when the meshes say nothing about
-/// more than half of a class of rays.
+/// Exits with 1 if an answer is wrong, or if the meshes leave more than half of a class of
+/// rays without a bound.
 #[derive(Args, Debug)]
 pub struct CheckArguments {
     /// The scene file
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// Sides of the prisms; each number is checked with the same rays
+    /// Bound round solids by meshes of N sides, 3 to 4096; each number is checked with the
+    /// same rays
     #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "16,64", value_parser = parse_segments, allow_negative_numbers = true)]
     pub segments: Vec<u32>,
-    /// Rays of each class, or a table of rays as `trace` reads it, for --hits
-    /// and --mesh
+    /// Trace N rays of each class, 1 to 10^9; for `--hits` and `--mesh` also the rays of a
+    /// table as `trace` reads it
     #[arg(long, value_name = "N|FILE", default_value = "100000", value_parser = parse_rays)]
     pub rays: Rays,
-    /// Compare these hits of another program for the table of rays: CSV with
-    /// the columns hit and t, one row a ray
+    /// Validate the hits of another program for `--rays FILE`: a table with one row per ray
+    /// and the columns `hit` (`1`, `0`, `True` or `False`) and `t`
     #[arg(long, value_name = "FILE", conflicts_with = "mesh")]
     pub hits: Option<PathBuf>,
     #[command(flatten)]
     pub format: FormatArguments,
-    /// What --hits may be off, relative to the distances of a ray [default:
-    /// 16 / 2^24, which suits f32]
+    /// Allow hits this error, relative to the distances along the ray [default: 16 / 2^24,
+    /// which suits f32]
     #[arg(long, value_name = "X", value_parser = parse_length, requires = "hits")]
     pub tolerance: Option<f64>,
-    /// Compare this mesh of the scene: .obj, .ply or .stl
+    /// Validate this mesh of the scene: `.obj`, `.ply` or `.stl`
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
-    /// What --mesh may be off, in scene units [default: what the file's comment
-    /// says]
+    /// Allow the mesh this distance from the true surface, in scene units [default: the
+    /// deviation that the file's comments state]
     #[arg(long, value_name = "X", value_parser = parse_length, requires = "mesh")]
     pub deviation: Option<f64>,
-    /// Only this class of rays: camera, sphere, inside, grazing or axial; may be
-    /// repeated [default: all five]
+    /// Trace only this class of rays: `camera`, `sphere`, `inside`, `grazing` or `axial`;
+    /// may be repeated [default: all five]
     #[arg(long, value_name = "NAME")]
     pub class: Vec<Class>,
-    /// Chooses the rays
+    /// Seed the rays
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_seed, allow_negative_numbers = true)]
     pub seed: u64,
-    /// What the meshes may take, such as 500MB or 4GiB
+    /// Let the meshes take up to SIZE of memory, such as `500MB` or `4GiB`; a larger scene
+    /// is checked in parts
     #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = memory::parse_size)]
     pub max_memory: u64,
-    /// Write a page with pictures, plots and the worst rays into DIR
+    /// Write `index.html` to DIR: pictures, heat maps, convergence, the table and the worst
+    /// rays
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
-    /// Check one ray again and tell everything about it: BITS as a run printed
-    /// them, or CLASS:INDEX
+    /// Check one ray again and print every detail: BITS as a run printed them, or
+    /// `CLASS:INDEX`
     #[arg(long, value_name = "BITS", conflicts_with_all = ["hits", "mesh", "report"])]
     pub replay: Option<Replay>,
     #[command(flatten)]
@@ -321,23 +352,40 @@ pub struct CheckArguments {
     pub common: Common,
 }
 
-/// Rays to make, or to read.
+/// Print a script that completes the command line in a shell
+#[derive(Args, Debug)]
+pub struct CompletionsArguments {
+    /// Complete in this shell
+    #[arg(value_name = "SHELL", value_enum)]
+    pub shell: Shell,
+}
+
+/// Print the manual page, or write the pages of all commands
+#[derive(Args, Debug)]
+pub struct ManArguments {
+    /// Write the pages of `cyltrace` and of every command to DIR; without it, the page of
+    /// `cyltrace` is printed
+    #[arg(value_name = "DIR")]
+    pub directory: Option<PathBuf>,
+}
+
+/// The source of the rays.
 #[derive(Clone, Debug)]
 pub enum Rays {
-    /// So many of each class.
+    /// This number of random rays of each class.
     Count(u64),
-    /// Those of a table.
+    /// The rays of a table.
     Table(PathBuf),
 }
 
-/// The integrators by their names.
+/// The names of the integrators.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum IntegratorName {
-    /// Sun and sky with shadows
+    /// sun and sky with shadows
     Sun,
-    /// The visible part of an open sky
+    /// the visible part of an open sky
     Ao,
-    /// The outward normal as a colour
+    /// the outward normal as a color
     Normal,
 }
 
@@ -360,19 +408,22 @@ pub fn integrator_name(integrator: Integrator) -> &'static str {
     }
 }
 
-/// A whole number is a count, the name of a file that is there a table.
+/// Reads a number of rays, or the name of an existing file.
 fn parse_rays(text: &str) -> Result<Rays, String> {
     let count: Option<u64> = text.parse().ok();
     match count.filter(|count| (1..=GREATEST_RAYS).contains(count)) {
         Some(count) => Ok(Rays::Count(count)),
         None if text == "-" || Path::new(text).exists() => Ok(Rays::Table(text.into())),
         None => Err(String::from(
-            "it is neither a whole number from 1 to 10^9 nor a file that is there",
+            "it must be a whole number from 1 to 10^9 or the name of an existing file",
         )),
     }
 }
 
-fn parse_inputs(text: &str) -> Result<Inputs, String> {
-    let known = Inputs::ALL.into_iter().find(|inputs| inputs.name() == text);
-    known.ok_or_else(|| "it must be f32 or f64".to_owned())
+/// Accepts the names of the solvers.
+fn solver() -> PossibleValuesParser {
+    let all = Contender::all();
+    let mut names: Vec<&str> = all.iter().map(Contender::name).collect();
+    names.dedup();
+    PossibleValuesParser::new(names)
 }

@@ -3,18 +3,16 @@
 mod scale;
 mod traversal;
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
-use anyhow::bail;
 use cyltrace::tracer::Options;
 use cyltrace_bench::formulations;
 use cyltrace_bench::{
     Accuracy, Contender, Environment, JudgedCases, Rounds, Row, SUMMARY_HEADINGS, USUAL_ROUNDS,
-    USUAL_TIMED, WallClock, contenders, draw, figure, page, rival_names, summary, table,
+    USUAL_TIMED, WallClock, contenders, draw, figure, page, records, summaries,
 };
 use cyltrace_oracle::cases::Family;
-use cyltrace_output::Table;
+use cyltrace_output::{Table, csv};
 use serde_json::{Value, json};
 
 use super::arguments::{AccuracyArguments, Bench, BenchArguments, Common};
@@ -22,7 +20,7 @@ use super::output_sink::{make_directory, write_text};
 use super::print::print;
 use super::{GOOD, interrupt, json, progress, scene};
 
-/// Runs a benchmark. The answer is the exit code of one that could run.
+/// Runs a benchmark and returns its exit code.
 pub fn run(arguments: &BenchArguments) -> anyhow::Result<u8> {
     match &arguments.bench {
         Bench::Accuracy(arguments) => accuracy(arguments).map(|()| GOOD),
@@ -31,11 +29,10 @@ pub fn run(arguments: &BenchArguments) -> anyhow::Result<u8> {
     }
 }
 
-/// Time against error of everything that intersects rays with cylinders.
+/// Measures time and error of everything that intersects rays with cylinders.
 fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
     json::check(common)?;
-    check_names(&arguments.formulation)?;
     if let Some(directory) = &arguments.report {
         make_directory(directory)?;
     }
@@ -48,8 +45,8 @@ fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
     let contenders = contenders_of(arguments)?;
     let steps = Accuracy::steps(Family::ALL.len(), contenders.len(), rounds);
     let bar = progress::bar(common, (Family::ALL.len() + steps) as u64, "steps");
-    // The truth and the errors are found on all threads; times are taken
-    // later, when nothing else runs.
+    // The truth and the errors are computed on all threads; times are taken later, when
+    // nothing else runs.
     let found = workers.install(|| {
         let cases: Vec<JudgedCases> = Family::ALL
             .into_iter()
@@ -81,15 +78,15 @@ fn accuracy(arguments: &AccuracyArguments) -> anyhow::Result<()> {
     interrupt::end_in_order();
     if let Some(directory) = &arguments.report {
         write_text(&directory.join("accuracy.svg"), &figure(&found))?;
-        write_text(&directory.join("accuracy.csv"), &table(&found))?;
+        write_text(&directory.join("accuracy.csv"), &csv(&records(&found)))?;
         write_text(&directory.join("index.html"), &page(&found, &environment))?;
     }
     json::write(common, &figures(&found, &environment))?;
     let text = summary_text(&found, &environment);
-    tell(common, text, arguments.report.as_deref())
+    print_summary(common, text, arguments.report.as_deref())
 }
 
-/// Those that take part: all, or the ones that are named.
+/// The contenders: all, or those that are named.
 fn contenders_of(arguments: &AccuracyArguments) -> anyhow::Result<Vec<Contender>> {
     let wanted = &arguments.formulation;
     let is_wanted = |name: &str| wanted.is_empty() || wanted.iter().any(|wanted| wanted == name);
@@ -101,48 +98,17 @@ fn contenders_of(arguments: &AccuracyArguments) -> anyhow::Result<Vec<Contender>
     Ok(contenders(formulations::all(), &options, is_wanted)?)
 }
 
-fn check_names(names: &[String]) -> anyhow::Result<()> {
-    let formulations = formulations::all();
-    let known: BTreeSet<&str> = formulations
-        .iter()
-        .map(|formulation| formulation.name())
-        .chain(rival_names())
-        .collect();
-    for name in names {
-        if !known.contains(name.as_str()) {
-            let known = Vec::from_iter(known).join(", ");
-            bail!("--formulation {name:?} is unknown: it must be one of {known}");
-        }
-    }
-    Ok(())
-}
-
 /// The table for people.
 fn summary_text(found: &Accuracy, environment: &Environment) -> String {
     let mut table = Table::new(&SUMMARY_HEADINGS, 2);
-    for row in &found.rows {
-        table.push(summary(found, row));
+    for row in summaries(found) {
+        table.push(row);
     }
     format!("{}\n{table}", environment.sentence())
 }
 
-/// All figures. A percentile that is not finite, or that no hit gives, is
-/// null.
+/// All figures. A percentile is null if it is not finite, or if nothing is hit.
 fn figures(found: &Accuracy, environment: &Environment) -> Value {
-    let formulation = |row: &Row| {
-        let worst = row.worst();
-        json!({
-            "name": row.name,
-            "precision": row.precision.name(),
-            "ns_median": row.ns.median,
-            "ns_spread": row.ns.deviation,
-            "p99_error_r": row.p99_error_r(),
-            "worst_family": worst.map(|(family, _)| found.families[family]),
-            "worst_p99_error_r": worst.map(|(_, error)| error),
-            "wrong_percent_mean": row.wrong_percent_mean(),
-            "bytes": row.bytes,
-        })
-    };
     let sample = |row: &Row| {
         json!({
             "name": row.name,
@@ -155,16 +121,16 @@ fn figures(found: &Accuracy, environment: &Environment) -> Value {
         })
     };
     let figures = json!({
-        "formulations": found.rows.iter().map(formulation).collect::<Vec<_>>(),
+        "formulations": records(found),
         "samples": found.rows.iter().map(sample).collect::<Vec<_>>(),
         "spread": "median absolute deviation",
     });
-    with_circumstances(figures, environment, "cases")
+    with_environment(figures, environment, "cases")
 }
 
-/// The figures with what they depend on behind them; `count` is what there are
-/// [`Environment::cases`] of.
-fn with_circumstances(mut figures: Value, environment: &Environment, count: &str) -> Value {
+/// The figures, followed by the environment that they depend on; `count` is the key of
+/// [`Environment::cases`].
+fn with_environment(mut figures: Value, environment: &Environment, count: &str) -> Value {
     figures["machine"] = json!(environment.machine);
     figures["isa"] = json!(environment.isa);
     figures["target_features"] = json!(environment.target_features);
@@ -175,7 +141,7 @@ fn with_circumstances(mut figures: Value, environment: &Environment, count: &str
     figures
 }
 
-/// What rays through whole scenes depend on, as a sentence.
+/// The environment of rays through whole scenes, as a sentence.
 fn rays_sentence(environment: &Environment) -> String {
     format!(
         "{} rays of each kind, seed {}, {} rounds. {}",
@@ -186,8 +152,8 @@ fn rays_sentence(environment: &Environment) -> String {
     )
 }
 
-/// Prints what people read, and where the report is.
-fn tell(common: &Common, mut text: String, report: Option<&Path>) -> anyhow::Result<()> {
+/// Prints the summary and the path of the report.
+fn print_summary(common: &Common, mut text: String, report: Option<&Path>) -> anyhow::Result<()> {
     if !common.prints() {
         return Ok(());
     }

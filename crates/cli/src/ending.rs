@@ -1,4 +1,4 @@
-//! The end of the program where its threads cannot be waited for.
+//! The end of the program without waiting for its threads.
 //!
 //! It is not `std::process::exit`: that runs the destructors of libraries, Embree's
 //! among them, while other threads still trace.
@@ -15,7 +15,7 @@ use super::print::print_error;
 /// message; together well below the second within which a signal ends the program.
 const PATIENCE: Duration = Duration::from_millis(150);
 
-/// Removes what was not finished, prints `error: {message}` and ends the program,
+/// Removes unfinished outputs, prints `error: {message}` and ends the program,
 /// without waiting for its other threads.
 pub fn end_now(message: &str, code: u8) -> ! {
     // Kept, so that no output is begun or replaced from here on.
@@ -24,17 +24,17 @@ pub fn end_now(message: &str, code: u8) -> ! {
     signal_hook::low_level::exit(i32::from(code));
 }
 
-/// As [`end_now`], where the system has refused `size` bytes. It allocates as little
-/// as possible.
+/// Like [`end_now`], after a failed allocation of `size` bytes. It allocates as little as
+/// possible.
 pub fn end_without_memory(size: usize, code: u8) -> ! {
     let _unfinished = remove_unfinished(PATIENCE);
     print_error(&format_args!(
-        "out of memory: the system refused {size} bytes"
+        "out of memory: the system cannot allocate {size} bytes"
     ));
     signal_hook::low_level::exit(i32::from(code));
 }
 
-/// Prints a message, unless standard error is a pipe that nobody reads.
+/// Prints a message, but does not wait for a pipe that nobody reads.
 fn print_in_time(message: &str) {
     let (printed, is_printed) = mpsc::channel();
     let text = message.to_owned();

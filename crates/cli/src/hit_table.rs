@@ -1,4 +1,5 @@
-//! Tables of hits, and of the solids that hold points; DESIGN.md fixes the columns.
+//! Tables of hits, and of the solids that contain points. The columns are fixed; new ones
+//! are added at the end.
 
 use std::fmt::Write;
 
@@ -55,7 +56,7 @@ fn requested<T>(field: Option<T>) -> T {
 /// The header line of a table of points.
 pub const POINTS_HEADER: &str = "point,inside,prototype,solid,primitive,instance\n";
 
-/// Appends the row of point number `point` and a solid that holds it, if any does.
+/// Appends the row of point number `point` and a solid that contains it, if any.
 pub fn push_point_row(
     rows: &mut String,
     point: u64,

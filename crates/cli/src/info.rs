@@ -10,7 +10,7 @@ use super::limit::{MemoryLimit, Need};
 use super::outputs::Files;
 use super::{json, memory, outliers, print, scene, text};
 
-/// Says what the scene holds.
+/// Prints what the scene contains.
 pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
     let files = Files::new(&arguments.scene, common.json.as_deref());

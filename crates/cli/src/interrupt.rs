@@ -34,7 +34,8 @@ pub enum Interrupted {
 }
 
 /// The error message of a command that did not end by itself.
-const ENDED: &str = "interrupted; outputs that were not finished are as they were before, a stream written so far is incomplete";
+const ENDED: &str =
+    "interrupted; unfinished files are unchanged, a table written to a stream is incomplete";
 
 /// Set when a command that is writing has to end.
 static REQUESTED: AtomicBool = AtomicBool::new(false);
@@ -42,7 +43,7 @@ static REQUESTED: AtomicBool = AtomicBool::new(false);
 /// Whether a command is writing.
 static ORDERLY: AtomicBool = AtomicBool::new(false);
 
-/// The signal that came first; 0 when none has come.
+/// The first signal; 0 before any.
 static SIGNAL: AtomicI32 = AtomicI32::new(0);
 
 /// Handles signals from now on.
@@ -68,14 +69,14 @@ pub fn install() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// From now on the program looks at the flag that this gives, and ends in
-/// order when it is set.
+/// From now on the command checks the returned flag and ends in an orderly way if it is
+/// set.
 pub fn end_in_order() -> &'static AtomicBool {
     ORDERLY.store(true, Ordering::SeqCst);
     &REQUESTED
 }
 
-/// An error when a signal came.
+/// Returns an error after a signal.
 pub fn check() -> Result<(), Interrupted> {
     if REQUESTED.load(Ordering::Relaxed) {
         Err(Interrupted::NothingWritten)
@@ -84,7 +85,7 @@ pub fn check() -> Result<(), Interrupted> {
     }
 }
 
-/// What shells report for a program that the signal ended.
+/// The exit code that shells report for a program ended by the signal.
 pub fn exit_code() -> u8 {
     let signal = SIGNAL.load(Ordering::SeqCst);
     u8::try_from(128 + signal).unwrap_or(u8::MAX)
@@ -103,14 +104,14 @@ fn received(signal: i32) {
         thread::sleep(GRACE);
         end_now(ENDED, exit_code());
     };
-    // Where no thread can be started there is no grace, as for a second signal.
+    // If no thread can be started there is no grace, as for a second signal.
     if !is_first || thread::Builder::new().spawn(grace).is_err() {
         end_now(ENDED, exit_code());
     }
 }
 
 /// Whether the program was started with the signal ignored, as `nohup` does with
-/// SIGHUP. Where the system has no such file, it was not.
+/// SIGHUP. Without this file of the system, it was not.
 fn is_ignored(signal: i32) -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

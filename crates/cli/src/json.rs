@@ -11,7 +11,7 @@ use super::arguments::Common;
 use super::memory::peak_resident_bytes;
 use super::output_sink::OutputSink;
 
-/// Says before any work whether the figures can be written.
+/// Checks before any work that the figures can be written.
 pub fn check(common: &Common) -> anyhow::Result<()> {
     match &common.json {
         Some(path) => Ok(OutputSink::check(path)?),
@@ -19,7 +19,7 @@ pub fn check(common: &Common) -> anyhow::Result<()> {
     }
 }
 
-/// Writes the figures where `--json` says, if it was given.
+/// Writes the figures to the file of `--json`, if it was given.
 pub fn write(common: &Common, figures: &Value) -> anyhow::Result<()> {
     let Some(path) = &common.json else {
         return Ok(());
@@ -30,8 +30,7 @@ pub fn write(common: &Common, figures: &Value) -> anyhow::Result<()> {
     target.finish()
 }
 
-/// A count; one beyond u64, which JSON readers round anyway, is given as a
-/// float, and one beyond u128, where counting stops, as null.
+/// A count: beyond u64 a float, since JSON readers round it anyway, and beyond u128 null.
 pub fn count(count: u128) -> Value {
     match u64::try_from(count) {
         Ok(count) => json!(count),
@@ -49,7 +48,7 @@ pub fn memory(statistics: &Statistics) -> Value {
     })
 }
 
-/// How a scene's cylinders are kept.
+/// The form of a scene's records.
 pub fn records(scene: &Scene) -> Value {
     json!({ "numbers": scene.records().name(), "rounding": scene.rounding() })
 }

@@ -1,7 +1,7 @@
-//! What a scene may take of memory, and the refusal of one that takes more.
+//! The memory that a scene may take, and the rejection of a scene that takes more.
 //!
-//! A scene is refused by its counts, before any record is made: the system
-//! would end the program otherwise, when it is too late for a message.
+//! A scene is rejected by its counts, before any record is made: otherwise the system
+//! would end the program without a message.
 
 use std::fs;
 use std::path::Path;
@@ -15,18 +15,17 @@ use cyltrace::tracer::{Layout, MemoryEstimate};
 use super::allocator::AllocationLimit;
 use super::memory::{kibibytes_of, parse_size, readable};
 
-/// Most lines about what takes the memory.
+/// The greatest number of lines about the contents that take the memory.
 const MOST_SHOWN: usize = 6;
 
-/// What a scene may take.
+/// The memory that a scene may take, and the layout that it depends on.
 #[derive(Args, Debug)]
 pub struct MemoryArguments {
-    /// Refuse a scene that takes more memory than SIZE, such as 500MB or 4GiB
-    /// [default: what the system has available]
+    /// Reject a scene that takes more memory than SIZE, such as `500MB` or `4GiB`
+    /// [default: the memory that the system has available]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<u64>,
-    /// What is a primitive of Embree's: a solid, or a block of eight that are near each
-    /// other, which is faster and less in Embree
+    /// Make each Embree primitive of one solid or of a block of eight solids
     #[arg(long, value_name = "NAME", value_enum, default_value_t = LayoutName::Auto)]
     pub layout: LayoutName,
 }
@@ -34,11 +33,11 @@ pub struct MemoryArguments {
 /// A layout by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LayoutName {
-    /// Blocks where they are faster.
+    /// blocks for kinds with at least 2^20 solids in a prototype
     Auto,
-    /// One solid a primitive.
+    /// one solid per primitive
     Single,
-    /// Eight solids a primitive.
+    /// eight solids of a kind near each other per primitive
     Block,
 }
 
@@ -52,27 +51,27 @@ impl From<LayoutName> for Layout {
     }
 }
 
-/// What is made of a scene.
+/// The parts of a scene that are built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
     /// Its records.
     Records,
-    /// Its records, and what is traced.
+    /// Its records, and the trees that rays traverse.
     Build,
 }
 
-/// How much memory may be taken.
+/// The limit of memory.
 #[derive(Clone, Copy, Debug)]
 pub struct MemoryLimit {
-    /// None where the system does not say.
+    /// None if the system does not report it.
     bytes: Option<u64>,
     is_stated: bool,
-    /// What will be a primitive of Embree's.
+    /// The layout that the estimate assumes.
     layout: Layout,
 }
 
 impl MemoryLimit {
-    /// The one that `--max-memory` states, else what the system has available.
+    /// The limit of `--max-memory`, or the memory that the system has available.
     pub fn of(arguments: &MemoryArguments) -> Self {
         match arguments.max_memory {
             Some(bytes) => Self {
@@ -87,8 +86,8 @@ impl MemoryLimit {
         }
     }
 
-    /// What the system can give without swapping and within `ulimit -v`, where it
-    /// reports that as Linux does.
+    /// The memory that is available without swapping and within `ulimit -v`, if the system
+    /// reports it as Linux does.
     pub fn available() -> Self {
         let meminfo = fs::read_to_string("/proc/meminfo").ok();
         let free = meminfo.and_then(|text| kibibytes_of(&text, "MemAvailable:"));
@@ -99,18 +98,18 @@ impl MemoryLimit {
         }
     }
 
-    /// Ends the program when reading the scene, and what it names, allocates more.
+    /// Ends the program if reading the scene and its files allocates more.
     pub fn while_reading(self, path: &Path) -> AllocationLimit {
-        let refusal = format!(
-            "{}: reading the scene takes more memory than it may: {}",
+        let message = format!(
+            "{}: reading the scene takes more memory than the limit: {}",
             path.display(),
             self.allowed(self.bytes.unwrap_or(u64::MAX))
         );
-        AllocationLimit::new(self.bytes.unwrap_or(u64::MAX), refusal)
+        AllocationLimit::new(self.bytes.unwrap_or(u64::MAX), message)
     }
 
-    /// Refuses a scene that needs more, to read its files or for its records and trees;
-    /// otherwise returns how much is left, `None` without a limit.
+    /// Rejects a scene that needs more, to read its files or for its records and trees;
+    /// otherwise returns the remaining bytes, `None` without a limit.
     pub fn check(
         self,
         path: &Path,
@@ -130,7 +129,7 @@ impl MemoryLimit {
             return Ok(left.flatten());
         };
         Err(anyhow!(
-            "{}: the scene needs up to {} of memory, {}\n{}",
+            "{}: the scene needs up to {} of memory, but {}\n{}",
             path.display(),
             readable(needed),
             self.allowed(allowed),
@@ -138,17 +137,19 @@ impl MemoryLimit {
         ))
     }
 
-    /// Where the limit comes from.
+    /// The limit and its origin.
     fn allowed(self, bytes: u64) -> String {
         let bytes = readable(bytes);
         match self.is_stated {
             true => format!("--max-memory allows {bytes}"),
-            false => format!("the system has {bytes} available; --max-memory SIZE allows more"),
+            false => {
+                format!("the system has {bytes} available; --max-memory SIZE sets another limit")
+            }
         }
     }
 }
 
-/// What `ulimit -v` leaves of the address space; `None` where it is unlimited.
+/// The address space that `ulimit -v` leaves; `None` if it is unlimited.
 fn address_space_left() -> Option<u64> {
     let limits = fs::read_to_string("/proc/self/limits").ok()?;
     let limit = limits
@@ -159,7 +160,7 @@ fn address_space_left() -> Option<u64> {
     Some(limit.saturating_sub(kibibytes_of(&status, "VmSize:")?))
 }
 
-/// What takes at least a hundredth of the memory, the most first.
+/// The contents that take at least a hundredth of the memory, the largest first.
 fn takers(
     contents: &[ExpectedCounts],
     estimate: &MemoryEstimate,

@@ -1,24 +1,27 @@
 //! The program `cyltrace`: arguments, progress bars, messages and exit codes.
 //!
-//! Exit codes: 0 good; 1 a check failed (commands that check); 2 the command
-//! could not run; 128 and the signal's number when a signal ended it.
+//! [`exit_codes`] lists the exit codes.
 
 mod allocator;
 mod arguments;
 mod bench;
 mod check;
 mod ending;
+mod exit_codes;
 mod hit_table;
 mod info;
 mod interrupt;
 mod json;
 mod limit;
+mod manual;
 mod memory;
 mod outliers;
 mod output_sink;
 mod outputs;
 mod print;
 mod progress;
+#[cfg(test)]
+mod reference;
 mod render;
 mod scene;
 mod stress;
@@ -32,22 +35,14 @@ use clap::Parser;
 
 use allocator::LimitedAllocator;
 use arguments::{Arguments, Command};
+use exit_codes::{CHECK_FAILED, COULD_NOT_RUN, GOOD};
 use interrupt::Interrupted;
 use print::{StandardOutputError, print, print_error};
-
-/// Nothing is wrong.
-const GOOD: u8 = 0;
-
-/// A check failed.
-const CHECK_FAILED: u8 = 1;
-
-/// The command could not run.
-const COULD_NOT_RUN: u8 = 2;
 
 #[global_allocator]
 static ALLOCATOR: LimitedAllocator = LimitedAllocator;
 
-/// Runs the command that the program's arguments name.
+/// Runs the command and turns errors into messages and exit codes.
 fn main() -> ExitCode {
     match interrupt::install().and_then(|()| run_arguments()) {
         Ok(code) => ExitCode::from(code),
@@ -63,13 +58,13 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs the command that the program's arguments state.
+/// Parses the arguments and runs the command.
 fn run_arguments() -> anyhow::Result<u8> {
     arguments()?.map_or(Ok(GOOD), |arguments| run_command(&arguments))
 }
 
-/// The arguments; `None` when they asked for help or for the version, which
-/// has been printed. Wrong ones end the program.
+/// The arguments; `None` after printing the help or the version. Wrong arguments end the
+/// program.
 fn arguments() -> anyhow::Result<Option<Arguments>> {
     match Arguments::try_parse() {
         Ok(arguments) => Ok(Some(arguments)),
@@ -82,7 +77,7 @@ fn arguments() -> anyhow::Result<Option<Arguments>> {
     }
 }
 
-/// Runs a command; the answer is the exit code of one that could run.
+/// Runs a command and returns its exit code.
 fn run_command(arguments: &Arguments) -> anyhow::Result<u8> {
     match &arguments.command {
         Command::Render(arguments) => render::run(arguments).map(|()| GOOD),
@@ -92,10 +87,12 @@ fn run_command(arguments: &Arguments) -> anyhow::Result<u8> {
         Command::Stress(arguments) => stress::run(arguments),
         Command::Bench(arguments) => bench::run(arguments),
         Command::Check(arguments) => check::run(arguments),
+        Command::Completions(arguments) => manual::completions(arguments).map(|()| GOOD),
+        Command::Man(arguments) => manual::man(arguments).map(|()| GOOD),
     }
 }
 
-/// Whether the reader of a pipe had enough, as in `cyltrace trace ... | head`.
+/// Whether the reader of a pipe has closed it, as in `cyltrace trace ... | head`.
 fn is_broken_pipe(error: &anyhow::Error) -> bool {
     error.chain().any(|cause| {
         cause

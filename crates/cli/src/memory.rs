@@ -1,61 +1,36 @@
-//! Memory: what the program has used, and sizes as people write them.
+//! The memory of the program, and sizes of memory as text.
 
 use std::fs;
 
+use bytesize::ByteSize;
 pub use cyltrace_output::readable;
 
-/// The greatest resident size of this process so far, in bytes, where the
-/// system tells it as Linux does.
+/// The peak resident size of this process in bytes, if the system reports it as Linux
+/// does.
 pub fn peak_resident_bytes() -> Option<u64> {
     kibibytes_of(&fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
 }
 
-/// Has the system forget the greatest size so far, so that
-/// [`peak_resident_bytes`] starts anew; without effect where it cannot.
+/// Resets the peak that [`peak_resident_bytes`] returns, if the system supports it.
 pub fn forget_peak() {
-    // Linux alone has this file, and a refusal leaves a peak that is too great
-    // but true of the program as a whole.
+    // Only Linux has this file. If it cannot be written, the peak remains that of the
+    // whole run.
     let _ = fs::write("/proc/self/clear_refs", "5");
 }
 
 /// The bytes of a line such as `VmHWM:  1234 kB`; the kernel's kB are 1024 bytes.
-pub fn kibibytes_of(told: &str, name: &str) -> Option<u64> {
-    let line = told.lines().find_map(|line| line.strip_prefix(name))?;
+pub fn kibibytes_of(status: &str, name: &str) -> Option<u64> {
+    let line = status.lines().find_map(|line| line.strip_prefix(name))?;
     let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes * 1024)
 }
 
-/// A number of bytes as people write it: `500MB`, `4GiB`, `1.5 TB`, `1000`.
-/// The error is a message.
+/// A size in bytes such as `500MB`, `4GiB`, `1.5 TB` or `1000`. The error is a message.
 pub fn parse_size(text: &str) -> Result<u64, String> {
-    const UNITS: [(&str, u64); 10] = [
-        ("", 1),
-        ("b", 1),
-        ("kb", 1_000),
-        ("mb", 1_000_000),
-        ("gb", 1_000_000_000),
-        ("tb", 1_000_000_000_000),
-        ("kib", 1 << 10),
-        ("mib", 1 << 20),
-        ("gib", 1 << 30),
-        ("tib", 1 << 40),
-    ];
-    let end = text
-        .find(|c: char| !c.is_ascii_digit() && c != '.')
-        .unwrap_or(text.len());
-    let (number, unit) = text.split_at(end);
-    let unit = unit.trim().to_ascii_lowercase();
-    let factor = UNITS.iter().find(|(name, _)| *name == unit);
-    let bytes = match (number.parse::<u64>(), number.parse::<f64>(), factor) {
-        (Ok(whole), _, Some((_, factor))) => whole.checked_mul(*factor),
-        // Beyond u64 the conversion would give its greatest number.
-        (_, Ok(part), Some((_, factor))) => Some(part * *factor as f64)
-            .filter(|bytes| *bytes < u64::MAX as f64)
-            .map(|bytes| bytes as u64),
-        _ => None,
-    };
-    bytes
-        .filter(|&bytes| bytes > 0)
+    let size: Option<ByteSize> = text.parse().ok();
+    // `ByteSize` gives its greatest number for one beyond u64.
+    size.map(|size| size.0)
+        .filter(|&bytes| (1..u64::MAX).contains(&bytes))
         .ok_or_else(|| "it must be a number of bytes above 0, such as 500MB or 4GiB".to_owned())
 }
 

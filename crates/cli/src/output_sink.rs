@@ -1,4 +1,4 @@
-//! Where a table goes: standard output, or a file that is whole or absent.
+//! The sink of a table: standard output, or a file that is complete or absent.
 
 use std::io::{self, BufWriter, Stdout, Write};
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ pub enum OutputSink {
 }
 
 impl OutputSink {
-    /// Says before any work whether `path` could be written.
+    /// Checks before any work that `path` can be written.
     pub fn check(path: &Path) -> Result<(), FileError> {
         if is_standard_stream(path) {
             return Ok(());
@@ -31,7 +31,7 @@ impl OutputSink {
         Ok(Self::File(NewFile::create(path)?, path.into()))
     }
 
-    /// Whether what has been written so far can be seen before the end.
+    /// Whether readers see the output before its end.
     pub fn shows_parts(&self) -> bool {
         match self {
             Self::StandardOutput(_) => true,
@@ -76,7 +76,7 @@ fn unwritten(path: &Path, source: io::Error) -> io::Error {
     io::Error::new(kind, FileError::System { path, source })
 }
 
-/// Writes a text file that is whole or absent.
+/// Writes a text file that is complete or absent.
 pub fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
     let mut file = NewFile::create(path)?;
     file.write_all(text.as_bytes())
@@ -84,14 +84,13 @@ pub fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
     Ok(file.finish()?)
 }
 
-/// Makes the directory of a report where it is not there yet.
+/// Creates the directory of a report if it does not exist.
 pub fn make_directory(directory: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(directory)
-        .with_context(|| format!("cannot make the directory {}", directory.display()))
+        .with_context(|| format!("cannot create the directory {}", directory.display()))
 }
 
-/// Whether a file's name stands for standard output, or for standard input
-/// where a file is read.
+/// Whether a file's name is `-`, for standard output or standard input.
 pub fn is_standard_stream(path: &Path) -> bool {
     path.as_os_str() == "-"
 }

@@ -1,4 +1,4 @@
-//! That no output of a command destroys one of its inputs, or another output.
+//! Rejects outputs that would destroy an input of the command, or another output.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,14 +9,14 @@ use cyltrace_output::followed;
 
 use super::output_sink::is_standard_stream;
 
-/// The files of a command, each with what it is to the user.
+/// The files of a command, each with its role in messages.
 pub struct Files<'a> {
     inputs: Vec<(&'static str, PathBuf)>,
     outputs: Vec<(&'static str, &'a Path)>,
 }
 
 impl<'a> Files<'a> {
-    /// The scene file, and the figures where they are asked for.
+    /// The scene file, and the JSON if it is written.
     pub fn new(scene: &Path, json: Option<&'a Path>) -> Self {
         Self {
             inputs: vec![("the scene file", scene.into())],
@@ -24,7 +24,7 @@ impl<'a> Files<'a> {
         }
     }
 
-    /// One more file that is read.
+    /// Adds a file that is read.
     pub fn input(mut self, what: &'static str, path: &Path) -> Self {
         if !is_standard_stream(path) {
             self.inputs.push((what, path.into()));
@@ -32,31 +32,31 @@ impl<'a> Files<'a> {
         self
     }
 
-    /// One more file that is written.
+    /// Adds a file that is written.
     pub fn output(mut self, option: &'static str, path: &'a Path) -> Self {
         self.outputs.push((option, path));
         self
     }
 
-    /// Refuses outputs that are inputs, or each other.
+    /// Rejects outputs that are inputs, or each other.
     pub fn check(&self) -> anyhow::Result<()> {
         for (number, (option, output)) in self.outputs.iter().enumerate() {
             for (other, path) in &self.outputs[..number] {
                 if is_standard_stream(output) && is_standard_stream(path) {
                     bail!(
-                        "{option} and {other} both write to standard output: send one of them to a file"
+                        "{option} and {other} both write to standard output: write one of them to a file"
                     );
                 }
                 if is_same(output, path) {
                     bail!(
-                        "{option} {output:?} and {other} {path:?} are the same file: one would destroy the other"
+                        "{option} {output:?} and {other} {path:?} are the same file: choose different names"
                     );
                 }
             }
             for (what, path) in &self.inputs {
                 if is_same(output, path) {
                     bail!(
-                        "{option} {output:?} would destroy {what} {path:?}: it is the same file; choose another name"
+                        "{option} {output:?} is the same file as {what} {path:?} and would overwrite it: choose another name"
                     );
                 }
             }
@@ -64,7 +64,7 @@ impl<'a> Files<'a> {
         Ok(())
     }
 
-    /// The same for the files that the scene file names.
+    /// Rejects outputs that are inputs, those that the scene file names included.
     pub fn check_with(mut self, scene: &SceneFile) -> anyhow::Result<()> {
         let files = scene.files().into_iter();
         self.inputs
@@ -80,8 +80,9 @@ fn is_same(a: &Path, b: &Path) -> bool {
         return false;
     }
     match (fs::metadata(a), fs::metadata(b)) {
-        (Ok(of_a), Ok(of_b)) => {
-            of_a.is_file() && of_b.is_file() && is_same_file(a, b, &of_a, &of_b)
+        (Ok(of_a), Ok(of_b)) if of_a.is_file() && of_b.is_file() => {
+            // Files that cannot be opened are compared by their names.
+            same_file::is_same_file(a, b).unwrap_or_else(|_| a == b)
         }
         (Err(_), Err(_)) => match (new_name(a), new_name(b)) {
             (Some(a), Some(b)) => a == b,
@@ -91,19 +92,7 @@ fn is_same(a: &Path, b: &Path) -> bool {
     }
 }
 
-#[cfg(unix)]
-fn is_same_file(_: &Path, _: &Path, a: &fs::Metadata, b: &fs::Metadata) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    (a.dev(), a.ino()) == (b.dev(), b.ino())
-}
-
-#[cfg(not(unix))]
-fn is_same_file(a: &Path, b: &Path, _: &fs::Metadata, _: &fs::Metadata) -> bool {
-    matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
-}
-
-/// The name that a file which does not exist would get, whatever the way to
-/// its directory.
+/// The path of a file that does not exist, with its directory in canonical form.
 fn new_name(path: &Path) -> Option<PathBuf> {
     let path = followed(path).ok()?;
     let directory = match path.parent() {

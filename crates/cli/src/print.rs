@@ -1,4 +1,4 @@
-//! The one way of text to standard output and to standard error.
+//! Printing to standard output and to standard error.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -11,8 +11,8 @@ use super::arguments::Common;
 pub struct StandardOutputError(String);
 
 impl StandardOutputError {
-    /// An error of the same kind that names standard output, so that a broken
-    /// pipe is still known as one.
+    /// An error of the same kind that names standard output, so that a broken pipe is
+    /// recognized as one.
     pub fn of(error: &io::Error) -> io::Error {
         io::Error::new(error.kind(), Self(error.to_string()))
     }
@@ -34,7 +34,7 @@ pub fn note(common: &Common, note: &str) {
     }
 }
 
-/// Writes a message to standard error, where it still has a reader.
+/// Writes a message to standard error, if it still has a reader.
 pub fn print_error(error: &dyn fmt::Display) {
     let _ = writeln!(io::stderr(), "error: {error}");
 }

@@ -13,7 +13,7 @@ use super::limit::{MemoryLimit, Need};
 use super::outputs::Files;
 use super::{interrupt, json, memory, print, progress, scene, text};
 
-/// How long the parts of the command took, in seconds.
+/// The times of the command's parts, in seconds.
 struct Times {
     load: f64,
     build: f64,
@@ -93,7 +93,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     report(arguments, &settings, &tracer, &picture, &times, threads)
 }
 
-/// Writes the figures where `--json` says, and prints them.
+/// Writes the JSON of `--json`, and prints the figures.
 fn report(
     arguments: &RenderArguments,
     settings: &Settings,

@@ -1,4 +1,4 @@
-//! Scenes, as every command gets them.
+//! Reading, loading and building scenes, for all commands.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -21,8 +21,8 @@ pub fn read(path: &Path, limit: MemoryLimit) -> anyhow::Result<SceneFile> {
     SceneFile::read(path).map_err(|error| anyhow!("{error}"))
 }
 
-/// Loads what a scene file names, and checks everything; refuses a scene for
-/// whose need the memory is not there.
+/// Loads the files that a scene file names and validates everything; rejects a scene that
+/// needs more memory than the limit.
 pub fn load(
     common: &Common,
     file: SceneFile,
@@ -38,8 +38,8 @@ pub fn load(
     scene
 }
 
-/// Loads within a limit: by what could be counted ahead, then by what has come, as
-/// through pipes.
+/// Loads within a limit: checks the counts that are known beforehand, then the loaded
+/// records, as rows of pipes are not counted beforehand.
 fn within(
     file: SceneFile,
     workers: &ThreadPool,
@@ -57,7 +57,7 @@ fn within(
     Ok(scene)
 }
 
-/// Makes ready what is traced, with options that are the command's own.
+/// Builds the tracer, with options that are the command's own.
 pub fn build(common: &Common, scene: &Arc<Scene>, options: Options) -> anyhow::Result<Tracer> {
     let spinner = progress::spinner(common, "building the scene");
     let options = Options {
@@ -65,7 +65,7 @@ pub fn build(common: &Common, scene: &Arc<Scene>, options: Options) -> anyhow::R
         max_isa: common.max_isa,
         ..options
     };
-    // Within the pool: rayon's own would panic where its threads cannot be started.
+    // Within the pool: rayon's global pool panics if its threads cannot be started.
     let tracer = workers(common)?.install(|| Tracer::new(Arc::clone(scene), &options));
     spinner.finish_and_clear();
     Ok(tracer?)

@@ -41,7 +41,7 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
     let bytes = format.file_bytes(&plan, &name);
     format
         .check(&plan, &name, arguments.max_memory)
-        .map_err(refusal)?;
+        .map_err(error_of)?;
     if common.prints() {
         print(&stated(arguments, &plan, format, bytes))?;
     }
@@ -99,11 +99,11 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
     print(&text)
 }
 
-/// A refusal in terms of the options.
-fn refusal(error: MeshFileError) -> anyhow::Error {
+/// The error in terms of the options.
+fn error_of(error: MeshFileError) -> anyhow::Error {
     match error {
         MeshFileError::TooLarge { needed, allowed } => anyhow!(
-            "nothing is written, as the file may take {} and --max-memory allows {}; use fewer --segments, or a greater --max-memory",
+            "the mesh needs up to {} and --max-memory allows {}: use fewer --segments or a greater --max-memory",
             readable(needed),
             memory::readable(allowed)
         ),
@@ -111,12 +111,12 @@ fn refusal(error: MeshFileError) -> anyhow::Error {
     }
 }
 
-/// Sizes beyond 64 bits are called the greatest of them.
+/// A size as text; one beyond 64 bits is given as the greatest of 64 bits.
 fn readable(bytes: u128) -> String {
     memory::readable(u64::try_from(bytes).unwrap_or(u64::MAX))
 }
 
-/// What will be written, in lines for people.
+/// The contents and the size of the mesh, in lines for people.
 fn stated(arguments: &TessellateArguments, plan: &Plan, format: Format, bytes: u128) -> String {
     let most = if format.is_size_exact() {
         ""

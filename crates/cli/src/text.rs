@@ -60,7 +60,7 @@ pub fn solids(statistics: &Statistics) -> String {
     lines.collect()
 }
 
-/// A line about rounded cylinders, or nothing where none is.
+/// A line about rounded records, or nothing without them.
 pub fn records(scene: &Scene) -> String {
     match scene.records() {
         Records::F64 => String::new(),
@@ -71,8 +71,7 @@ pub fn records(scene: &Scene) -> String {
     }
 }
 
-/// A line about rows that were left out, or nothing when there are none: the
-/// one that [`Statistics::skipped`] has.
+/// A line about skipped rows, as in [`Statistics::skipped`]; empty without them.
 pub fn skipped_rows(rows: u64) -> String {
     match rows {
         0 => String::new(),
@@ -80,7 +79,7 @@ pub fn skipped_rows(rows: u64) -> String {
     }
 }
 
-/// A count, as far as solids are counted: up to 2^128 - 2.
+/// A count of solids, up to 2^128 - 2.
 pub fn count(count: u128) -> String {
     match count {
         u128::MAX => "more than can be counted".to_owned(),

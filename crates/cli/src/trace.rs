@@ -1,7 +1,7 @@
 //! `cyltrace trace`.
 //!
-//! Rays, or points, are read, asked about and written in batches of a few blocks a
-//! thread, so that a table of any length needs little memory and rows stay in order.
+//! Rays or points are read, traced and written in batches of a few blocks per thread, so
+//! that a table of any length needs little memory and rows stay in order.
 
 use std::io::Write;
 use std::path::Path;
@@ -24,36 +24,36 @@ use super::outputs::Files;
 use super::print::{self, print};
 use super::{hit_table, interrupt, json, progress, scene, text};
 
-/// Blocks that a thread gets of each batch: enough to even out slow ones.
+/// Blocks per thread in each batch: enough to even out slow ones.
 const BLOCKS_PER_THREAD: usize = 4;
 
-/// What rows came to.
+/// Counts of rows and results.
 #[derive(Clone, Copy, Default)]
 struct Totals {
     /// Rays, or points.
-    asked: u64,
-    /// Rays that hit anything, points that anything holds.
-    met: u64,
-    /// Hits, or solids that hold a point; there may be many of one row.
-    found: u64,
+    rows: u64,
+    /// Rays with a hit, or points inside a solid.
+    hit_rows: u64,
+    /// Hits, or solids that contain a point; a row may have many.
+    hits: u64,
 }
 
-/// A table and what is asked about its rows.
+/// A table and the query of its rows.
 struct Task<'a, R> {
     path: &'a Path,
-    /// What the table is to the user.
+    /// The table's role in messages.
     what: &'static str,
     header: &'static str,
-    /// What a row is called.
+    /// The name of the rows in messages.
     items: &'static str,
-    /// Writes what is found of a row of that number, and says how much it is.
+    /// Writes the results of a row with its number, and returns how many they are.
     answer: Answer<'a, R>,
 }
 
 /// See [`Task::answer`].
 type Answer<'a, R> = &'a (dyn Fn(&Tracer, &mut String, u64, &R) -> u64 + Sync);
 
-/// What a command ran into.
+/// The outcome of a command.
 struct Traced {
     tracer: Tracer,
     items: &'static str,
@@ -63,11 +63,11 @@ struct Traced {
     build: f64,
     trace: f64,
     threads: usize,
-    /// What is not read of the table.
+    /// The columns that are not read, as a note.
     note: Option<String>,
 }
 
-/// Traces what is asked for.
+/// Traces the rays, or locates the points.
 pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     match (&arguments.table.rays, &arguments.table.points) {
         (Some(rays), _) => trace_rays(arguments, rays),
@@ -105,27 +105,31 @@ fn trace_rays(arguments: &TraceArguments, path: &Path) -> anyhow::Result<()> {
         },
     }
     .run(arguments)?;
-    let Totals { asked, met, found } = traced.totals;
+    let Totals {
+        rows,
+        hit_rows,
+        hits,
+    } = traced.totals;
     let figures = json!({
         "rays_file": path,
-        "rays": asked,
-        "hit_rays": met,
-        "hits": found,
+        "rays": rows,
+        "hit_rays": hit_rows,
+        "hits": hits,
         "rays_per_s": traced.rate(),
     });
     let more = if all {
-        format!(", {found} hits")
+        format!(", {hits} hits")
     } else {
         String::new()
     };
-    traced.tell(
+    traced.report(
         arguments,
         figures,
-        &format!("{met} of {asked} rays hit{more}"),
+        &format!("{hit_rows} of {rows} rays hit{more}"),
     )
 }
 
-/// Says which solids hold the points of a table.
+/// Finds the solids that contain the points of a table.
 fn locate_points(arguments: &TraceArguments, path: &Path) -> anyhow::Result<()> {
     let traced = Task::<DVec3> {
         path,
@@ -144,23 +148,27 @@ fn locate_points(arguments: &TraceArguments, path: &Path) -> anyhow::Result<()> 
         },
     }
     .run(arguments)?;
-    let Totals { asked, met, found } = traced.totals;
+    let Totals {
+        rows,
+        hit_rows,
+        hits,
+    } = traced.totals;
     let figures = json!({
         "points_file": path,
-        "points": asked,
-        "inside_points": met,
-        "containing_solids": found,
+        "points": rows,
+        "inside_points": hit_rows,
+        "containing_solids": hits,
         "points_per_s": traced.rate(),
     });
-    traced.tell(
+    traced.report(
         arguments,
         figures,
-        &format!("{met} of {asked} points inside, of {found} solids"),
+        &format!("{hit_rows} of {rows} points inside, of {hits} solids"),
     )
 }
 
 impl<R: NumberRow + Sync> Task<'_, R> {
-    /// Reads the table, asks and writes the answers.
+    /// Reads the table, traces its rows and writes the results.
     fn run(&self, arguments: &TraceArguments) -> anyhow::Result<Traced> {
         let common = &arguments.common;
         let files = Files::new(&arguments.scene, common.json.as_deref())
@@ -178,8 +186,8 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         files.check_with(&file)?;
         let read = start.elapsed();
 
-        // A bad row is to be found before anything is traced or written. A pipe
-        // can be read once only; its rows are checked on the way.
+        // Invalid rows are reported before anything is traced or written. A pipe can be
+        // read only once; its rows are validated on the way.
         let start = Instant::now();
         let rereadable =
             !is_standard_stream(self.path) && self.path.metadata().is_ok_and(|file| file.is_file());
@@ -209,17 +217,17 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         let mut target = OutputSink::create(&arguments.output)?;
         let bar = progress::bar(common, rows.unwrap_or(0), self.items);
         let start = Instant::now();
-        // Only when the table can be read: an empty list of hits would look like an answer.
+        // Written after the first block is read: an empty table would look like a result.
         let mut header = Some(self.header);
         let mut totals = Totals::default();
         let traced = workers.install(|| {
             for_each_batch(self.path, &arguments.format, |blocks| {
-                let before = totals.asked;
+                let before = totals.rows;
                 if let Some(header) = header.take() {
                     target.write_all(header.as_bytes())?;
                 }
                 self.batch(&tracer, &blocks, &mut totals, &mut target)?;
-                bar.inc(totals.asked - before);
+                bar.inc(totals.rows - before);
                 Ok(())
             })
         });
@@ -249,7 +257,7 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         })
     }
 
-    /// The number of rows in the table, all of them good.
+    /// Validates all rows of the table and counts them.
     fn count_rows(&self, format: &FormatArguments) -> anyhow::Result<u64> {
         let mut count = 0;
         for_each_batch(self.path, format, |blocks: Vec<Vec<R>>| {
@@ -259,7 +267,7 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         Ok(count)
     }
 
-    /// Asks about the rows of some blocks and writes the answers.
+    /// Traces the rows of some blocks and writes the results.
     fn batch(
         &self,
         tracer: &Tracer,
@@ -270,8 +278,8 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         let numbered: Vec<_> = blocks
             .iter()
             .map(|rows| {
-                let first = totals.asked;
-                totals.asked += rows.len() as u64;
+                let first = totals.rows;
+                totals.rows += rows.len() as u64;
                 (first, rows)
             })
             .collect();
@@ -281,34 +289,33 @@ impl<R: NumberRow + Sync> Task<'_, R> {
             .collect();
         for (text, block) in answered {
             target.write_all(text.as_bytes())?;
-            totals.met += block.met;
-            totals.found += block.found;
+            totals.hit_rows += block.hit_rows;
+            totals.hits += block.hits;
         }
         Ok(())
     }
 
-    /// The answers to a block whose rows count from `first`, and what they come to.
+    /// The results of a block whose rows are numbered from `first`, and their counts.
     fn block(&self, tracer: &Tracer, first: u64, rows: &[R]) -> (String, Totals) {
         let mut text = String::new();
         let mut totals = Totals::default();
         for (number, row) in (first..).zip(rows) {
             let found = (self.answer)(tracer, &mut text, number, row);
-            totals.met += u64::from(found > 0);
-            totals.found += found;
+            totals.hit_rows += u64::from(found > 0);
+            totals.hits += found;
         }
         (text, totals)
     }
 }
 
 impl Traced {
-    /// Rows a second.
+    /// Rows per second.
     fn rate(&self) -> f64 {
-        self.totals.asked as f64 / self.trace
+        self.totals.rows as f64 / self.trace
     }
 
-    /// Writes the figures, some of which are the task's own, and says what it came
-    /// to.
-    fn tell(&self, arguments: &TraceArguments, own: Value, came_to: &str) -> anyhow::Result<()> {
+    /// Writes the JSON with the task's own keys, and prints a summary.
+    fn report(&self, arguments: &TraceArguments, own: Value, summary: &str) -> anyhow::Result<()> {
         let common = &arguments.common;
         let statistics = &self.tracer.statistics();
         let scene = self.tracer.scene();
@@ -341,7 +348,7 @@ impl Traced {
         if !common.prints() || is_standard_stream(&arguments.output) {
             return Ok(());
         }
-        let mut text = format!("{}: {came_to}\n", arguments.output.display());
+        let mut text = format!("{}: {summary}\n", arguments.output.display());
         text += &text::skipped_rows(skipped_rows);
         text += &text::notes(notes);
         text += &format!(
@@ -358,23 +365,23 @@ impl Traced {
     }
 }
 
-/// Reads a table in the rayon pool that this is called in, and hands on the
-/// rows of some blocks at a time, in order. Returns a note on the columns that it does not read, if there are any.
+/// Reads a table in the current rayon pool and calls `action` with the rows of some blocks
+/// at a time, in order. Returns a note if there are columns that are not read.
 pub fn for_each_batch<R: NumberRow>(
     path: &Path,
     format: &FormatArguments,
     mut action: impl FnMut(Vec<Vec<R>>) -> anyhow::Result<()>,
 ) -> anyhow::Result<Option<String>> {
     // The error's text is the whole message; its source would repeat a part.
-    let refused = |error: SceneError| anyhow!("{error}");
+    let message = |error: SceneError| anyhow!("{error}");
     let table = NumberTable::<R>::open(path, format.format(), &format.columns);
-    let mut table = table.map_err(refused)?;
+    let mut table = table.map_err(message)?;
     let columns = table.columns();
     loop {
         interrupt::check()?;
         let mut blocks = Vec::new();
         while blocks.len() < BLOCKS_PER_THREAD * rayon::current_num_threads() {
-            let Some(block) = table.next_block().map_err(refused)? else {
+            let Some(block) = table.next_block().map_err(message)? else {
                 break;
             };
             blocks.push(block);
@@ -382,10 +389,10 @@ pub fn for_each_batch<R: NumberRow>(
         if blocks.is_empty() {
             return Ok(columns.unread());
         }
-        // Collected first, then searched for an error, so that the first bad
-        // row is the one that is reported.
+        // Collected first, then searched for an error, so that the first invalid row is
+        // reported.
         let parsed: Vec<_> = blocks.par_iter().map(|block| columns.rows(block)).collect();
         let parsed: Result<_, _> = parsed.into_iter().collect();
-        action(parsed.map_err(refused)?)?;
+        action(parsed.map_err(message)?)?;
     }
 }

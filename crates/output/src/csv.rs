@@ -1,19 +1,17 @@
 //! Tables for other programs.
 
-/// A table as comma-separated values, quoted where they need it.
+use serde::Serialize;
+
+/// Rows as comma-separated values under the names of their fields. Cells are quoted if
+/// they need it, and empty for `None`.
 ///
 /// # Panics
-/// When a row has not as many cells as there are headings.
+/// If a row is not a structure of numbers and texts.
 #[must_use]
-pub fn csv(headings: &[&str], rows: &[Vec<String>]) -> String {
+pub fn csv(rows: &[impl Serialize]) -> String {
     let mut writer = ::csv::Writer::from_writer(Vec::new());
-    writer
-        .write_record(headings)
-        .expect("memory takes all that is written");
     for row in rows {
-        writer
-            .write_record(row)
-            .expect("every row has as many cells as there are headings");
+        writer.serialize(row).expect("a row is a flat structure");
     }
     let bytes = writer.into_inner().expect("memory is never full");
     String::from_utf8(bytes).expect("text in, text out")
@@ -23,10 +21,16 @@ pub fn csv(headings: &[&str], rows: &[Vec<String>]) -> String {
 mod tests {
     use super::*;
 
+    #[derive(Serialize)]
+    struct Row {
+        name: &'static str,
+        size: Option<f64>,
+    }
+
     #[test]
-    fn csv_cells_with_commas_and_quotes_are_quoted() {
-        let rows = [vec![String::from("a,b"), String::from("say \"c\"")]];
-        let text = csv(&["one", "two"], &rows);
-        assert_eq!(text, "one,two\n\"a,b\",\"say \"\"c\"\"\"\n");
+    fn csv_has_a_header_quotes_and_empty_cells() {
+        let row = |name, size| Row { name, size };
+        let text = csv(&[row("a,b", Some(1e-15)), row("say \"c\"", None)]);
+        assert_eq!(text, "name,size\n\"a,b\",1e-15\n\"say \"\"c\"\"\",\n");
     }
 }

@@ -16,11 +16,11 @@ use super::label::{Rectangle, Surroundings, place};
 pub struct Mark {
     /// The name beside the mark.
     pub label: String,
-    /// What the pointer shows.
+    /// The text that the pointer shows.
     pub details: String,
     /// Positive and finite.
     pub x: f64,
-    /// Drawn on the plot's edge where it is zero or not finite.
+    /// Drawn on the plot's edge if it is zero or not finite.
     pub y: f64,
     /// The second mark, joined to the first by a thin line.
     pub second_y: Option<f64>,
@@ -50,16 +50,16 @@ pub struct Series {
     pub marks: Vec<Mark>,
 }
 
-/// What is drawn. Series take the colours in order; there are [`Figure::COLOURS`].
+/// A figure. Series take the colours in order; there are [`Figure::COLOURS`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// The axis at the bottom.
     pub x_title: String,
     /// The axis at the left.
     pub y_title: String,
-    /// What the second marks are, for the legend; empty where there are none.
+    /// The name of the second marks in the legend; empty without second marks.
     pub second_title: String,
-    /// What is drawn.
+    /// The series.
     pub series: Vec<Series>,
 }
 
@@ -82,7 +82,7 @@ const LABEL_HEIGHT: f64 = 14.0;
 const LED: f64 = 16.0;
 
 /// The colours of series are after Okabe and Ito (2008), which colour-blind
-/// readers can tell apart; in the dark they are lighter. They are written out
+/// readers can distinguish; in the dark they are lighter. They are written out
 /// where variables would be shorter, for programs other than browsers know none.
 const STYLE: &str = "\
 .cyl { font: 12px 'DejaVu Sans', Verdana, sans-serif; }
@@ -142,10 +142,10 @@ impl Figure {
     /// Series beyond these would have no colour.
     pub const COLOURS: usize = 5;
 
-    /// The figure as an SVG document that also stands within a page.
+    /// The figure as an SVG document, which can also be part of a page.
     ///
     /// # Panics
-    /// When there are more series than colours.
+    /// If there are more series than colours.
     #[must_use]
     pub fn svg(&self) -> String {
         assert!(self.series.len() <= Self::COLOURS, "too many series");
@@ -189,7 +189,7 @@ impl Figure {
         self.series.iter().flat_map(|series| &series.marks)
     }
 
-    /// Axes that hold every mark that can be drawn: whole decades in y, steps
+    /// Axes that contain every mark that can be drawn: whole decades in y, steps
     /// of 1, 2 and 5 in x.
     fn axes(&self) -> (Axis, Axis) {
         let xs = extent(self.marks().map(|mark| mark.x));

@@ -10,7 +10,7 @@ pub struct Film {
 }
 
 impl Film {
-    /// The film that holds `pixels`.
+    /// The film with these pixels.
     ///
     /// # Panics
     /// When there are not `width * height` of them.

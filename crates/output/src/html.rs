@@ -6,7 +6,7 @@
 
 use std::fmt::Write as _;
 
-use super::base64::base64;
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 
 /// The page's looks. Figures bring their own.
 const STYLE: &str = "\
@@ -84,7 +84,7 @@ impl Page {
     pub fn pictures(&mut self, pictures: &[(&[u8], &str)]) {
         self.body += "<div class=\"pictures\">\n";
         for (png, caption) in pictures {
-            let (data, caption) = (base64(png), escape(caption));
+            let (data, caption) = (BASE64_STANDARD.encode(png), escape(caption));
             let _ = writeln!(
                 self.body,
                 "<figure><img alt=\"{caption}\" src=\"data:image/png;base64,{data}\"><figcaption>{caption}</figcaption></figure>"
@@ -94,14 +94,14 @@ impl Page {
     }
 
     /// Adds a table; its first column names the rows.
-    pub fn table(&mut self, headings: &[&str], rows: &[Vec<String>]) {
+    pub fn table(&mut self, headings: &[impl AsRef<str>], rows: &[Vec<String>]) {
         let row = |tag: &str, cells: &mut dyn Iterator<Item = &str>| {
             let cells: String = cells
                 .map(|cell| format!("<{tag}>{}</{tag}>", escape(cell)))
                 .collect();
             format!("<tr>{cells}</tr>\n")
         };
-        let head = row("th", &mut headings.iter().copied());
+        let head = row("th", &mut headings.iter().map(AsRef::as_ref));
         let body: String = rows
             .iter()
             .map(|cells| row("td", &mut cells.iter().map(String::as_str)))

@@ -1,7 +1,6 @@
-//! What cyltrace writes: files that are never left half written, pictures, and figures,
-//! tables and pages as text.
+//! The outputs of cyltrace: files that are never left half written, pictures, and
+//! figures, tables and pages as text.
 
-mod base64;
 mod csv;
 mod figure;
 mod film;

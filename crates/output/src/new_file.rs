@@ -11,22 +11,22 @@ use std::path::{Path, PathBuf};
 
 use super::unfinished::UnfinishedFile;
 
-/// Why a file cannot be written.
+/// An error when writing a file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileError {
-    /// The directory of the file does not exist, or is no directory.
-    #[error("cannot write {path:?}: there is no directory {directory:?}")]
+    /// The directory of the file does not exist, or is not a directory.
+    #[error("cannot write {path:?}: the directory {directory:?} does not exist")]
     NoDirectory {
-        /// The file as asked for.
+        /// The path as given.
         path: PathBuf,
         /// Its directory.
         directory: PathBuf,
     },
-    /// There is a directory in the file's place.
+    /// The path is a directory.
     #[error("cannot write {path:?}: it is a directory")]
     IsDirectory {
-        /// The file as asked for.
+        /// The path as given.
         path: PathBuf,
     },
     /// No file can be created in the directory.
@@ -34,25 +34,25 @@ pub enum FileError {
         "cannot write {path:?}: no file can be created in the directory {directory:?}: {reason}"
     )]
     Directory {
-        /// The file as asked for.
+        /// The path as given.
         path: PathBuf,
         /// Its directory.
         directory: PathBuf,
-        /// What the system says.
+        /// The system's error.
         reason: io::ErrorKind,
     },
-    /// There is a file that must not be written to.
-    #[error("cannot write {path:?}: the file is there already and may not be written to")]
+    /// The file exists and is write-protected.
+    #[error("cannot write {path:?}: the file exists and is write-protected")]
     WriteProtected {
-        /// The file as asked for.
+        /// The path as given.
         path: PathBuf,
     },
-    /// The system refuses to create, write or rename the file.
+    /// The system cannot create, write or rename the file.
     #[error("cannot write {path:?}")]
     System {
-        /// The file as asked for.
+        /// The path as given.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
 }
@@ -75,8 +75,8 @@ enum Sink {
 }
 
 impl NewFile {
-    /// Says whether a file could be written to `path`, as far as that can be
-    /// told without creating it.
+    /// Checks that a file can be written to `path`, as far as possible without creating
+    /// it.
     ///
     /// # Errors
     /// When the directory does not exist, `path` is a directory, or a file
@@ -308,7 +308,7 @@ mod tests {
         fs::write(&path, "old").expect("written");
         fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).expect("set");
         let message = NewFile::create(&path).expect_err("protected").to_string();
-        assert!(message.contains("may not be written to"), "{message}");
+        assert!(message.contains("is write-protected"), "{message}");
         assert_eq!(names_in(directory.path()), std::slice::from_ref(&path));
         assert_eq!(fs::read(&path).expect("read"), b"old");
     }
@@ -371,7 +371,7 @@ mod tests {
         let message = NewFile::create(&within("lost"))
             .expect_err("lost")
             .to_string();
-        assert!(message.contains("no directory"), "{message}");
+        assert!(message.contains("does not exist"), "{message}");
         symlink("circle", within("circle")).expect("linked");
         let error = NewFile::create(&within("circle")).expect_err("circular");
         assert!(format!("{error:?}").contains("circle"), "{error:?}");
@@ -385,7 +385,7 @@ mod tests {
             .expect_err("no directory")
             .to_string();
         assert!(
-            message.contains("no directory") && message.contains("missing"),
+            message.contains("does not exist") && message.contains("missing"),
             "{message}"
         );
         let message = NewFile::create(directory.path())

@@ -12,9 +12,9 @@ use super::{FileError, Film, NewFile, srgb};
 #[non_exhaustive]
 pub enum OutputError {
     /// The file name does not say PNG or EXR.
-    #[error("cannot tell the picture's format from {path:?}: its name must end in .png or .exr")]
+    #[error("unknown picture format of {path:?}: the name must end in .png or .exr")]
     Extension {
-        /// The file as asked for.
+        /// The path as given.
         path: PathBuf,
     },
     /// The file cannot be written.
@@ -23,9 +23,9 @@ pub enum OutputError {
     /// The picture cannot be encoded, or not all of it could be written.
     #[error("cannot write the picture {path:?}")]
     Encoding {
-        /// The file as asked for.
+        /// The path as given.
         path: PathBuf,
-        /// What the encoder says.
+        /// The encoder's error.
         source: image::ImageError,
     },
 }
@@ -64,11 +64,11 @@ pub struct Output {
 }
 
 impl Output {
-    /// Says whether a picture could be written to `path`, as far as that can
-    /// be told without creating anything.
+    /// Checks that a picture can be written to `path`, as far as possible without
+    /// creating anything.
     ///
     /// # Errors
-    /// When the extension is unknown, or for those of [`NewFile::check`].
+    /// If the extension is unknown, or for those of [`NewFile::check`].
     pub fn check(path: &Path) -> Result<(), OutputError> {
         Format::of(path)?;
         Ok(NewFile::check(path)?)
@@ -77,7 +77,7 @@ impl Output {
     /// Opens the temporary file of a picture.
     ///
     /// # Errors
-    /// When the extension is unknown, or for those of [`NewFile::create`].
+    /// If the extension is unknown, or for those of [`NewFile::create`].
     pub fn create(path: &Path) -> Result<Self, OutputError> {
         Ok(Self {
             path: path.into(),
@@ -89,7 +89,7 @@ impl Output {
     /// Writes the picture and moves it to its place.
     ///
     /// # Errors
-    /// When encoding, writing or renaming fails. Nothing is left behind then.
+    /// If encoding, writing or renaming fails. Then no file is left behind.
     pub fn write(mut self, film: &Film) -> Result<(), OutputError> {
         let encoded = match self.format {
             Format::Png => png(film).write_to(&mut self.file, ImageFormat::Png),
@@ -103,17 +103,17 @@ impl Output {
     }
 }
 
-/// The bytes of a PNG file that holds codes for red, green, blue and opacity.
+/// The bytes of a PNG file of red, green, blue and opacity.
 ///
 /// # Errors
-/// When the encoder refuses.
+/// If the encoder fails.
 ///
 /// # Panics
 /// When there is not one colour a pixel.
 pub fn png_bytes(width: u32, height: u32, pixels: &[[u8; 4]]) -> Result<Vec<u8>, ImageError> {
     let picture: ImageBuffer<Rgba<u8>, Vec<u8>> =
         ImageBuffer::from_raw(width, height, pixels.as_flattened().to_vec())
-            .expect("there is one colour a pixel");
+            .expect("there is one color per pixel");
     let mut bytes = Vec::new();
     picture.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png)?;
     Ok(bytes)
@@ -122,7 +122,7 @@ pub fn png_bytes(width: u32, height: u32, pixels: &[[u8; 4]]) -> Result<Vec<u8>,
 fn png(film: &Film) -> ImageBuffer<Rgb<u8>, Vec<u8>> {
     let codes = film.pixels().iter().flatten().map(|&v| srgb::encode(v));
     ImageBuffer::from_raw(film.width(), film.height(), codes.collect())
-        .expect("a film holds one colour a pixel")
+        .expect("a film has one color per pixel")
 }
 
 /// The blocks of the file come in order, so that equal films give equal
@@ -134,7 +134,7 @@ fn exr(film: &Film) -> ImageBuffer<Rgb<f32>, Vec<f32>> {
         film.height(),
         film.pixels().as_flattened().to_vec(),
     )
-    .expect("a film holds one colour a pixel")
+    .expect("a film has one color per pixel")
 }
 
 #[cfg(test)]

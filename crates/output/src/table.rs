@@ -11,7 +11,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table with these headings, of which the first `names` are of names.
+    /// A table with these headings; the first `names` columns contain names.
     #[must_use]
     pub fn new(headings: &[&str], names: usize) -> Self {
         let headings = headings.iter().map(|&heading| heading.to_owned());
@@ -24,7 +24,7 @@ impl Table {
     /// Adds a row.
     ///
     /// # Panics
-    /// When it has more or fewer cells than there are headings.
+    /// If the number of its cells is not that of the headings.
     pub fn push(&mut self, row: Vec<String>) {
         assert_eq!(
             row.len(),

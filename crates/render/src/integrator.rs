@@ -4,7 +4,7 @@
 //!   just as `trace` reports it (not turned to the viewer); black, which is
 //!   no normal's colour, where the ray misses.
 //! - `ao`: 1 where a ray of unlimited length in a cosine-distributed direction
-//!   leaves the scene and 0 where it meets a surface, so the mean is the
+//!   leaves the scene and 0 if it hits a surface, so the mean is the
 //!   visible part of an open sky, weighted as a diffuse surface sees it. A
 //!   camera ray that misses sees the sky itself: 1.
 //! - `sun`: diffuse surfaces under a sun (parallel light of irradiance `E`)
@@ -82,7 +82,7 @@ impl Sample {
 }
 
 /// Many samples at a time, in steps: all rays of one purpose are traced
-/// together, so that those which go the same way share work. What is kept
+/// together, so that coherent ones share work. What is kept
 /// between the steps is kept here, to be used again.
 #[derive(Default)]
 pub(super) struct Batch {
@@ -93,7 +93,7 @@ pub(super) struct Batch {
     occlusion: Occlusion,
 }
 
-/// Rays of which only it is asked whether they meet anything, and the samples
+/// Rays for occlusion only, and the samples
 /// they are for.
 #[derive(Default)]
 struct Occlusion {
@@ -113,7 +113,7 @@ impl Occlusion {
         self.rays.push(ray);
     }
 
-    /// Traces the rays, and hands on the samples whose ray meets nothing.
+    /// Traces the rays, and hands on the samples whose ray hits nothing.
     fn free(&mut self, tracer: &Tracer) -> impl Iterator<Item = usize> {
         tracer.occluded_batch(&self.rays, &mut self.blocked);
         let answers = self.samples.iter().zip(&self.blocked);

@@ -37,7 +37,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// What the scene asks for, with seed 0.
+    /// The settings of the scene, with seed 0.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         Self {
@@ -84,17 +84,17 @@ pub struct Picture {
     pub film: Film,
     /// The rays traced.
     pub rays: RayCounts,
-    /// What was not done because the scene has no need of it.
+    /// Work that the scene did not need.
     pub skipped: Vec<String>,
 }
 
-/// Why there is no picture.
+/// An error of a rendering.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
     /// The size is zero or too large.
     #[error(
-        "a picture of {width} x {height} pixels cannot be made: it needs at least 1 x 1 and at most {GREATEST_PIXELS} pixels in all"
+        "invalid picture size {width}x{height}: it must be at least 1x1 and at most {GREATEST_PIXELS} pixels in all"
     )]
     Size {
         /// Pixels across.
@@ -102,10 +102,10 @@ pub enum RenderError {
         /// Pixels down.
         height: u32,
     },
-    /// There are no samples to take.
-    #[error("a picture needs at least 1 sample a pixel")]
+    /// The number of samples is zero.
+    #[error("invalid number of samples per pixel 0: it must be at least 1")]
     NoSamples,
-    /// The caller asked to stop.
+    /// The caller cancelled the rendering.
     #[error("the rendering was cancelled")]
     Cancelled,
 }
@@ -113,7 +113,7 @@ pub enum RenderError {
 /// Renders the scene of `tracer` on the threads of `workers` (see
 /// [`cyltrace::tracer::workers`]).
 ///
-/// `progress` is told the number of pixels done since the last call, from any
+/// `progress` gets the number of pixels done since the last call, from any
 /// of the threads. The rendering ends within some hundred samples of every
 /// thread when `cancelled` becomes true.
 ///

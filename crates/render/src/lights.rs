@@ -1,4 +1,4 @@
-//! The lights of a scene, and what stands in where it has none.
+//! The lights of a scene, and the default lights.
 
 use glam::DVec3;
 
@@ -73,7 +73,7 @@ impl Lights {
         self.sky
     }
 
-    /// The radiance that a camera ray sees which meets nothing.
+    /// The radiance of a camera ray that hits nothing.
     #[must_use]
     pub fn miss(&self) -> DVec3 {
         self.miss

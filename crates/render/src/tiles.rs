@@ -89,7 +89,7 @@ fn render_tile(
     let mut sums = vec![DVec3::ZERO; pixels.len()];
     let mut rays = RayCounts::default();
     let (mut batch, mut samples) = (Batch::default(), Vec::new());
-    // Samples of a pixel stand together, and those of its neighbours next to
+    // Samples of a pixel are neighbours, and those of its neighbours next to
     // them.
     let count = pixels.len() as u64 * u64::from(settings.spp);
     for first in (0..count).step_by(SAMPLES_AT_ONCE) {

@@ -1,9 +1,9 @@
 //! From a solver in one precision to a [`Formulation`] that tables can list.
 //!
 //! A formulation's file says how a cylinder is stored, where the ray first
-//! meets it and the normal there, generic over the precision. Converting
+//! hits it and the normal there, generic over the precision. Converting
 //! problems and running over many of them is here, once. [`Solved::run`] is
-//! compiled per solver, so its loop holds the solver inline: a record and a
+//! compiled per solver, so its loop contains the solver inline: a record and a
 //! ray in, a hit out, as in an intersector's callback.
 
 use super::{Answer, Batch, Formulation, Precision, Problem};
@@ -28,7 +28,7 @@ pub(super) trait Solver<S: Real>: Copy + Send + Sync + 'static {
     fn normal(&self, record: &Self::Record, ray: &RayOf<S>, t: S, part: Part) -> S::Vector;
 }
 
-/// The solver in the precision asked for, as a formulation.
+/// The solver in one precision, as a formulation.
 pub(super) fn in_precision<F: Solver<f32> + Solver<f64>>(
     solver: F,
     precision: Precision,

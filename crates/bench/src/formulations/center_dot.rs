@@ -13,7 +13,7 @@
 //! What cancels: `oc·oc - (oc·a)²` loses the square of the origin's distance
 //! over the radius, and of the length over the radius.
 //!
-//! Additions: the source is silent about disks. They are met where
+//! Additions: the source is silent about disks. A ray hits them where
 //! `(M - C)·a = ∓H/2` and hit where M is within R of the axis, computed as the
 //! quadratic computes it: `CM·CM - (CM·a)² <= R²`.
 

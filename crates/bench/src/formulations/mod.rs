@@ -53,7 +53,8 @@ pub use cross_product::{Facing, Roots};
 pub use object_space::DEFAULT_TOLERANCE;
 
 /// The arithmetic of a formulation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Precision {
     /// Single precision.
     F32,
@@ -65,10 +66,7 @@ impl Precision {
     /// The name in tables.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-        }
+        self.into()
     }
 }
 

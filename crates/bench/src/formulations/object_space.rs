@@ -3,7 +3,7 @@
 //! In the frame (r, s, t) with the origin at the center and the t axis along
 //! the cylinder, the wall is `r² + s² = a²` for `-b <= t <= b`. A rotation
 //! matrix takes the ray there, `D + E λ` with D the origin and E the direction,
-//! and the infinite wall is met where
+//! and the ray hits the infinite wall where
 //!
 //! ```text
 //! A λ² + B λ + C = 0,   A = Er² + Es²,   B = 2 (Dr Er + Ds Es),   C = Dr² + Ds² - a²
@@ -15,7 +15,7 @@
 //!
 //! The source compares with a tolerance EPSILON. It is absolute: it means
 //! something else in every unit of length and of direction, and there is no
-//! value that is right. It stands for zero in four places here:
+//! value that is right. It replaces zero in four places here:
 //!
 //! 1. a ray with `|A| < EPSILON` is parallel to the axis and has no wall;
 //! 2. a ray with `|Et| < EPSILON` is across it and has no disks;
@@ -33,7 +33,7 @@ use cyltrace::math::{RayOf, Real, RealVector};
 use cyltrace::solid::angle_frame;
 use cyltrace::solid::{Caps, Cylinder, Part};
 
-/// The tolerance unless another is asked for: a size that suits scenes of
+/// The default tolerance: a size that suits scenes of
 /// about unit size in single precision, as the source has in mind.
 pub const DEFAULT_TOLERANCE: f64 = 1e-6;
 

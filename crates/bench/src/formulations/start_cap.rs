@@ -12,7 +12,7 @@
 //! `P - C - V m`, normalised. The algebra is that of `center-dot` seen from
 //! another point, and loses the same; m is linear in t, without the point.
 //!
-//! Additions: the source names the caps but not their test. A disk is met where
+//! Additions: the source names the caps but not their test. A ray hits a disk where
 //! m is 0 or `length`, and hit where `|P - C - V m|² <= r²`.
 
 use super::adapter::Solver;

@@ -206,7 +206,7 @@ mod tests {
     #[test]
     fn mesh_of_64_sides_agrees_within_its_sagitta() {
         agrees(&native(Shape::Mesh(64)), |cylinder| {
-            // A facet may be met where the cylinder's slope is less than its
+            // A ray may hit a facet where the cylinder's slope is less than its
             // own by a sixteenth of a turn's sine.
             3.0 * sagitta(cylinder, 64)
         });

@@ -1,11 +1,11 @@
 //! What Embree intersects by itself, and what solids become of it.
 //!
-//! All of it is stated as Embree wants it, so that it is the same solid but for f32:
+//! The geometry is given in the form that Embree takes; it is the same solid except for f32:
 //!
 //! - a cone curve is flat at its ends, each of which has a disk or is open;
 //! - a round linear curve is the two balls and the cone that touches them;
-//! - a sphere point is a ball; a ray that starts within it meets it from inside;
-//! - an oriented disk point is met from both sides.
+//! - a sphere point is a ball; a ray that starts within it hits it from inside;
+//! - an oriented disk point is hit from both sides.
 
 use glam::DVec3;
 
@@ -13,8 +13,8 @@ use cyltrace::embree::{Error, SceneBuilder};
 use cyltrace::solid::tessellation::{Fit, LEAST_SEGMENTS, mesh_of, mesh_size_of};
 use cyltrace::solid::{AnySolid, Caps, SolidKind};
 
-/// What Embree makes of a solid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A geometry that Embree intersects by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
     /// A segment of `CONE_LINEAR_CURVE`: cylinders and cones.
     Cone,
@@ -24,14 +24,14 @@ pub enum Shape {
     Sphere,
     /// An `ORIENTED_DISC_POINT`: disks.
     Disk,
-    /// The inscribed mesh with so many sides: all solids that are turned about an axis.
+    /// The inscribed mesh with this number of sides: all solids of revolution.
     Mesh(u32),
     /// The triangles of a cuboid's faces.
     Faces,
 }
 
 impl Shape {
-    /// Whether it is what solids of a kind become.
+    /// Whether it represents solids of a kind.
     #[must_use]
     pub fn represents(self, kind: SolidKind) -> bool {
         match self {
@@ -51,23 +51,22 @@ impl Shape {
         }
     }
 
-    /// Why a scene with solids of a kind that it does not represent has none of it.
+    /// The reason why it does not represent a scene with solids of a kind.
     #[must_use]
     pub fn refusal(self, kind: SolidKind) -> String {
-        let has = format!("the scene has solids of the kind {}", kind.name());
-        match self {
-            Self::Mesh(_) => format!("{has}, whose meshes have no number of sides"),
-            _ => format!("{has}, which this is no geometry for"),
-        }
+        format!(
+            "the scene has solids of the kind {}, which this geometry does not represent",
+            kind.name()
+        )
     }
 
     /// Attaches one geometry of all these solids, in their order.
     ///
     /// # Errors
-    /// When Embree refuses one.
+    /// If Embree rejects one.
     ///
     /// # Panics
-    /// When a solid is of a kind that this does not [represent](Self::represents).
+    /// If a solid is of a kind that this does not [represent](Self::represents).
     pub fn attach(
         self,
         builder: &mut SceneBuilder<()>,
@@ -108,7 +107,7 @@ impl Shape {
     }
 }
 
-/// The sides of a mesh that has none around an axis.
+/// The argument for the mesh of a cuboid, which has no sides around an axis.
 const ANY_SIDES: u32 = LEAST_SEGMENTS;
 
 /// Straight curves.
@@ -168,7 +167,7 @@ fn disk(solid: &AnySolid) -> ([f32; 4], [f32; 3]) {
             let normal = one.normal().as_vec3().to_array();
             (vertex(one.center(), one.radius()), normal)
         }
-        other => stray(other, "disc"),
+        other => stray(other, "disk"),
     }
 }
 
@@ -178,9 +177,12 @@ fn vertex(point: DVec3, radius: f64) -> [f32; 4] {
     [x, y, z, radius as f32]
 }
 
-/// The panic about a solid that is not represented.
+/// Panics for a solid that the geometry does not represent.
 fn stray(solid: &AnySolid, wanted: &str) -> ! {
-    panic!("a {} is no {wanted} of Embree's", solid.kind().name())
+    panic!(
+        "Embree's {wanted} cannot represent a {}",
+        solid.kind().name()
+    )
 }
 
 fn attach_meshes(

@@ -2,7 +2,7 @@
 //!
 //! A solver is timed on one cylinder a ray. A traversal needs a scene, so the
 //! cylinders of the first problems are put on a grid, each in a ball that also
-//! holds the start of its ray, and a ray ends where it leaves its ball: it can
+//! contains the start of its ray, and a ray ends where it leaves its ball: it can
 //! meet its own cylinder only, and hits or misses as its problem does.
 //!
 //! More rays than cylinders come from turning a problem's ray about the
@@ -80,7 +80,7 @@ fn center(problem: &Problem) -> DVec3 {
     0.5 * (problem.cylinder.p0() + problem.cylinder.p1())
 }
 
-/// The radius of a ball about the cylinder's center that holds the cylinder
+/// The radius of a ball about the cylinder's center that contains the cylinder
 /// and the ray's origin.
 fn ball_radius(problem: &Problem) -> f64 {
     let cylinder = &problem.cylinder;

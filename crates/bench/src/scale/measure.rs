@@ -20,7 +20,8 @@ use cyltrace::tracer::{Layout, MemoryEstimate, Options, Tracer};
 use cyltrace_output::readable;
 
 /// What grows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Series {
     /// Sticks in a cube, 10^3 to 10^7 of them.
     Cylinders,
@@ -38,10 +39,7 @@ impl Series {
     /// The name in tables.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Cylinders => "cylinders",
-            Self::Placements => "placements",
-        }
+        self.into()
     }
 
     /// The numbers that are tried, up to `most`.
@@ -127,7 +125,7 @@ pub struct Plan {
     pub options: Options,
 }
 
-/// What the system tells of this program's memory.
+/// The memory of this program as the system reports it.
 pub struct Resident<'a> {
     /// Forgets the greatest size so far, where that can be done.
     pub forget: &'a dyn Fn(),
@@ -140,10 +138,10 @@ pub struct Resident<'a> {
 pub struct Figures {
     /// Seconds to build the description's tracer.
     pub build_s: f64,
-    /// Records and what Embree holds.
+    /// The bytes of records and of Embree.
     pub bytes: usize,
     /// The program's greatest resident size while the scene was made, built and
-    /// traced, where the system tells it.
+    /// traced, if the system reports it.
     pub resident_bytes: Option<u64>,
     /// Camera rays a second.
     pub rays_per_s: f64,
@@ -170,7 +168,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// The steps of which [`Scale::measure`] tells.
+    /// The number of steps that [`Scale::measure`] reports.
     #[must_use]
     pub fn steps(plan: &Plan) -> usize {
         let sizes = Series::ALL.map(|series| series.sizes(plan.most).len());
@@ -230,7 +228,7 @@ fn measure(
     let estimate = series.estimate(n);
     if estimate > plan.max_memory {
         return Err(format!(
-            "it would take about {}, more than the {} allowed",
+            "it needs about {} of memory, more than the {} that --max-memory allows",
             readable(estimate),
             readable(plan.max_memory)
         ));

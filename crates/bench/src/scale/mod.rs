@@ -1,5 +1,5 @@
-//! This library on larger and larger scenes: the time to build, the memory and
-//! the rays a second against the number of cylinders and of placements.
+//! This library on growing scenes: build time, memory and rays per second against the
+//! number of cylinders and of placements.
 
 mod growth;
 mod measure;
@@ -7,4 +7,4 @@ mod outputs;
 
 pub use growth::{Fits, slope};
 pub use measure::{Figures, Plan, Resident, Row, Scale, Series};
-pub use outputs::{SUMMARY_HEADINGS, figures, growths, page, summary, table};
+pub use outputs::{Record, SUMMARY_HEADINGS, figures, growths, page, records, summary};

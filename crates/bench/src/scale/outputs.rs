@@ -1,8 +1,10 @@
-//! The outcome as figures, as a table and as a page.
+//! The outcome of `bench scale` as figures, as records and as a page.
+
+use serde::Serialize;
 
 use super::measure::{Figures, Row, Scale, Series};
 use crate::traversal::Shown;
-use cyltrace_output::{Figure, Mark, Page, Symbol, csv, readable};
+use cyltrace_output::{Figure, Mark, Page, Symbol, figure as short, readable};
 
 /// A curve of a figure: its name, its series and what it shows of a scene.
 type Curve = (&'static str, Series, fn(&Figures) -> f64);
@@ -73,43 +75,43 @@ fn figure(found: &Scale, y_title: &str, curves: &[Curve]) -> String {
     .svg()
 }
 
-const CSV_HEADINGS: [&str; 9] = [
-    "series",
-    "n",
-    "build_s",
-    "bytes",
-    "bytes_per",
-    "resident_bytes",
-    "rays_per_s",
-    "incoherent_rays_per_s",
-    "reason",
-];
+/// A row of `scale.csv` and of the JSON.
+#[derive(Serialize)]
+pub struct Record<'a> {
+    series: &'static str,
+    n: usize,
+    build_s: Option<f64>,
+    bytes: Option<usize>,
+    bytes_per: Option<f64>,
+    resident_bytes: Option<u64>,
+    rays_per_s: Option<f64>,
+    incoherent_rays_per_s: Option<f64>,
+    reason: Option<&'a str>,
+}
 
-/// The table as CSV, numbers in full; a cell is empty where there is none.
+/// The rows of a series with all digits of their figures.
 #[must_use]
-pub fn table(found: &Scale) -> String {
-    let mut rows = Vec::new();
-    for series in Series::ALL {
-        for row in found.of(series) {
-            let figures = row.found.as_ref().ok();
-            let number = |of: &dyn Fn(&Figures) -> Option<f64>| {
-                let number = figures.and_then(of);
-                number.map_or_else(String::new, |x| x.to_string())
-            };
-            rows.push(vec![
-                series.name().to_owned(),
-                row.n.to_string(),
-                number(&|one| Some(one.build_s)),
-                number(&|one| Some(one.bytes as f64)),
-                number(&|one| Some(one.bytes as f64 / row.n as f64)),
-                number(&|one| one.resident_bytes.map(|bytes| bytes as f64)),
-                number(&|one| Some(one.rays_per_s)),
-                number(&|one| Some(one.incoherent_rays_per_s)),
-                row.found.as_ref().err().cloned().unwrap_or_default(),
-            ]);
-        }
+pub fn records(found: &Scale, series: Series) -> Vec<Record<'_>> {
+    found
+        .of(series)
+        .iter()
+        .map(|row| record(series, row))
+        .collect()
+}
+
+fn record(series: Series, row: &Row) -> Record<'_> {
+    let figures = row.found.as_ref().ok();
+    Record {
+        series: series.name(),
+        n: row.n,
+        build_s: figures.map(|one| one.build_s),
+        bytes: figures.map(|one| one.bytes),
+        bytes_per: figures.map(|one| one.bytes as f64 / row.n as f64),
+        resident_bytes: figures.and_then(|one| one.resident_bytes),
+        rays_per_s: figures.map(|one| one.rays_per_s),
+        incoherent_rays_per_s: figures.map(|one| one.incoherent_rays_per_s),
+        reason: row.found.as_ref().err().map(String::as_str),
     }
-    csv(&CSV_HEADINGS, &rows)
 }
 
 /// The columns of [`summary`].
@@ -124,7 +126,7 @@ pub const SUMMARY_HEADINGS: [&str; 8] = [
     "incoherent",
 ];
 
-/// The figures of a scene as people read them; dashes where there are none.
+/// The figures of a scene, rounded for people; dashes if there are none.
 #[must_use]
 pub fn summary(series: Series, row: &Row) -> Vec<String> {
     let dash = || String::from("–");
@@ -132,12 +134,12 @@ pub fn summary(series: Series, row: &Row) -> Vec<String> {
     match &row.found {
         Err(_) => cells.resize_with(SUMMARY_HEADINGS.len(), dash),
         Ok(found) => cells.extend([
-            cyltrace_output::figure(found.build_s),
+            short(found.build_s),
             readable(found.bytes as u64),
             format!("{:.0}", found.bytes as f64 / row.n as f64),
             found.resident_bytes.map_or_else(dash, readable),
-            cyltrace_output::figure(found.rays_per_s),
-            cyltrace_output::figure(found.incoherent_rays_per_s),
+            short(found.rays_per_s),
+            short(found.incoherent_rays_per_s),
         ]),
     }
     cells
@@ -163,8 +165,8 @@ pub fn growths(found: &Scale) -> [String; 2] {
     Series::ALL.map(|series| growth(found, series))
 }
 
-/// The page: figures, growth and the table. `environment` says where and how it
-/// was measured.
+/// The page: figures, growth and the table. `environment` describes the machine and the
+/// settings.
 #[must_use]
 pub fn page(found: &Scale, environment: &str) -> String {
     let mut page = Page::new("Larger and larger scenes: time, memory and rays");
@@ -234,9 +236,13 @@ mod tests {
     #[test]
     fn table_and_page_have_every_size() {
         let found = sample();
-        let text = table(&found);
+        let rows = Series::ALL.map(|series| records(&found, series));
+        let text = cyltrace_output::csv(&rows.into_iter().flatten().collect::<Vec<_>>());
         let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines[1], "cylinders,1000,0.001,150000,150,,1000000,500000,");
+        assert_eq!(
+            lines[1],
+            "cylinders,1000,0.001,150000,150.0,,1000000.0,500000.0,"
+        );
         assert_eq!(lines[4], "placements,1000,,,,,,,too large");
         let page = page(&found, "here");
         assert_eq!(page.matches("<polyline").count(), 2 + 2 + 4);

@@ -91,7 +91,7 @@ pub struct Figures {
     pub normal: Quantiles,
     /// Rays spawned from hits, for the library's own solvers.
     pub spawned: u64,
-    /// Spawned rays that met the surface where they left it.
+    /// Spawned rays that hit the surface at their own origin.
     pub self_hits: u64,
     /// The worst case.
     pub worst: Option<Worst>,
@@ -260,7 +260,7 @@ impl Figures {
 }
 
 /// An error of `t` in ulps of the true one. Where that is zero or almost so,
-/// the quotient overflows and the greatest number stands for it.
+/// the quotient overflows and the greatest number replaces it.
 fn in_ulps(error: f64, truth: &TrueAnswer, precision: Precision) -> f64 {
     (error.abs() / ulp(truth.t.high, precision)).min(f64::MAX)
 }

@@ -156,7 +156,7 @@ fn answer_of(case: &Case, first: &Intersection) -> Answer {
     Answer { t, part, normal }
 }
 
-/// What is asked of a solid of any kind.
+/// The interface to a solid of any kind.
 pub(super) trait Solver {
     /// The first point of a ray on the surface.
     fn first(&self, ray: &Ray) -> Option<Intersection>;

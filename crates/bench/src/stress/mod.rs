@@ -87,7 +87,7 @@ impl Settings {
     }
 }
 
-/// Runs all of it in the rayon pool that this is called in; `progress` is told
+/// Runs all of it in the rayon pool that this is called in; `progress` gets
 /// how many more cases are done. `None` when `stop` was set.
 pub fn run(
     settings: &Settings,

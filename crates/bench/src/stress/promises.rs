@@ -20,7 +20,7 @@ pub struct Promise {
     pub why: &'static str,
 }
 
-/// Something that holds of a cell or does not.
+/// A claim about a cell, true or false.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Claim {
     /// Every hit, miss and part is the true one.
@@ -29,19 +29,19 @@ pub enum Claim {
     RightWhereDecided,
     /// The same where [`Witness::gap`](super::Witness::gap) is above 4 u.
     RightBeyondRounding,
-    /// The share of 0.999 of `t` rounded to f32 is within so many f32 ulps.
+    /// The share of 0.999 of `t` rounded to f32 is within this number of f32 ulps.
     ThousandthF32Ulps(f64),
     /// Every crossing of every ray is the true one.
     EveryCrossing,
     /// Every point is located where it is.
     PointsLocated,
-    /// Every `t` is within so many f64 ulps.
+    /// Every `t` is within this number of f64 ulps.
     EveryF64Ulps(f64),
     /// Every promised `t` is within the bound of `docs/derivations.md`.
     WithinBound,
     /// Every answer is finite.
     Finite,
-    /// No spawned ray meets the surface where it left it.
+    /// No spawned ray hits the surface at its own origin.
     NoSelfHit,
 }
 

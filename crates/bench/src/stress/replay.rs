@@ -21,27 +21,27 @@ const CAPS: [(&str, Caps); 4] = [
     ("both", Caps::Both),
 ];
 
-/// Why a word is not a case.
+/// An error in the word of a case.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReplayError {
-    /// There are more or fewer parts.
+    /// The number of parts is wrong.
     #[error(
-        "a case has 16 parts joined by ':', fifteen numbers and the disks, or 4, family, inputs, \
-         seed and index; there are {0}"
+        "a case has 16 parts joined by ':' (15 numbers and the caps) or 4 (family, inputs, seed \
+         and index), not {0}"
     )]
     Parts(usize),
     /// A number is not hexadecimal.
-    #[error("{0:?} is not the bits of a number in hexadecimal")]
+    #[error("invalid number {0:?}: it must be the bits of an f64 in hexadecimal")]
     Number(String),
     /// The last part is unknown.
-    #[error("{0:?} names no disks: it must be none, p0, p1 or both")]
+    #[error("unknown caps {0:?}: it must be none, p0, p1 or both")]
     Caps(String),
-    /// The numbers are no cylinder.
+    /// The numbers are not a cylinder.
     #[error(transparent)]
     Cylinder(#[from] CylinderError),
-    /// The numbers are no ray.
-    #[error("the ray is not finite, has no direction or an empty range")]
+    /// The numbers are not a ray.
+    #[error("invalid ray: it must be finite, with a non-zero direction and t_min <= t_max")]
     Ray,
 }
 
@@ -65,10 +65,10 @@ pub enum StressCase {
     Composed(ComposedCase),
 }
 
-/// The case that a word of [`to_word`] stands for.
+/// The case of a word that [`to_word`] gave.
 ///
 /// # Errors
-/// When the word is malformed or stands for no cylinder and ray.
+/// If the word is malformed, or its numbers are not a solid and a ray.
 pub fn from_word(word: &str) -> Result<StressCase, ReplayError> {
     let parts: Vec<&str> = word.trim().split(':').collect();
     if let [family, inputs, seed, index] = parts[..]
@@ -167,6 +167,6 @@ mod tests {
             "{}:0:0:0:0:0:both",
             good.split(':').take(10).collect::<Vec<_>>().join(":")
         );
-        assert!(error(&zero_ray).contains("no direction"));
+        assert!(error(&zero_ray).contains("non-zero direction"));
     }
 }

@@ -1,8 +1,8 @@
-//! Whether a ray spawned from a hit meets the surface where it left it.
+//! Whether a ray spawned from a hit hits the surface at its own origin.
 //!
 //! From the hit that a solver reports, the surface point is built and a ray spawned by
 //! the library's rule ([`SpawnMargin`](cyltrace::solid::SpawnMargin)), to the side that
-//! the hit was seen from; then the same solver is asked. Outward, any hit of the
+//! the hit was seen from; then the same solver traces it. Outward, any hit of the
 //! convex solid is a self-hit. Inward, the first thing a ray can meet is the far side
 //! on its way out; a hit on the way in through the part that it left means that it
 //! started outside. Through another part it may start outside: a point of an edge is
@@ -19,7 +19,7 @@ use super::witness::Witness;
 /// Makes the directions independent of the cases.
 const STREAM: u64 = 1 << 62;
 
-/// Spawned rays and how many of them met where they left.
+/// Spawned rays, and those that hit their own origin.
 pub(super) struct Count {
     pub rays: u64,
     pub self_hits: u64,
@@ -45,7 +45,7 @@ pub(super) fn count(
         .filter_map(|(witness, answer)| {
             let mut random = Random::new(seed, STREAM | witness.index);
             let answer = answer.filter(|answer| answer.t.is_finite())?;
-            // At an apex no normal tells the sides apart.
+            // At an apex no normal distinguishes the sides.
             let is_apex = witness.truth.is_some_and(|truth| truth.normal.is_none());
             if is_apex {
                 return None;

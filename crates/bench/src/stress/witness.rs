@@ -47,7 +47,7 @@ pub struct TrueAnswer {
 /// The least gap, in units of u, at which answers are promised for f64 inputs:
 /// a solver that answers for inputs displaced by at most 32 u of the sizes
 /// it sees (`docs/derivations.md`, section 5) is right beyond 32 for inputs
-/// of like sizes; twice that is asked for what a first-order gap leaves out.
+/// of like sizes; twice that covers what a first-order gap leaves out.
 const LEAST_GAP: f64 = 64.0;
 
 /// The same for other solids than cylinders. Their solvers decide exactly about the
@@ -93,7 +93,7 @@ impl Witness {
         let (a, d) = (cylinder.p1() - cylinder.p0(), ray.direction);
         let (x, r) = ((ray.origin - cylinder.p0()).length(), cylinder.radius());
         let n = a.cross(d).length();
-        // A ray along the axis meets disks only, where k does not enter.
+        // A ray along the axis hits disks only, where k does not enter.
         let k = if n > 0.0 {
             a.length() * d.length() / n
         } else {
@@ -121,7 +121,7 @@ impl Witness {
     }
 
     /// The relative distance to another answer, [`cyltrace_oracle::gap_of_any`]. It is worked
-    /// out when first asked for: it takes longer than the answer.
+    /// out at its first use: it takes longer than the answer.
     #[must_use]
     pub fn gap(&self) -> f64 {
         let Case { solid, ray } = &self.case;

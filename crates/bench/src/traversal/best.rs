@@ -1,10 +1,12 @@
-//! The short answers: this library's fastest mode beside Embree's own geometry in its
+//! The summary: this library's fastest mode beside Embree's own geometry in its
 //! fastest mode and order of rays, and the ratios to all rivals.
 
-use super::outcome::{Figures, RIVALS, Ratio, Traversal};
+use super::outcome::{Figures, RIVALS, Ratio, Traversal, ratio_key};
 use super::rays::Kind;
 use super::representation::Representation;
 use super::scenes::SceneName;
+use crate::rivals::Shape;
+use cyltrace_output::figure as short;
 
 /// Each side at its best, on the first set of workers' threads.
 pub struct Best<'a> {
@@ -12,9 +14,9 @@ pub struct Best<'a> {
     pub scene: SceneName,
     /// The rays.
     pub rays: Kind,
-    /// How many times faster this library is, and the two modes; or why nothing is known.
+    /// How many times faster this library is, and the two modes; or why it is unknown.
     pub ratio: Result<Ratio, String>,
-    /// What was found of this library's mode, and of the rival's.
+    /// The figures of this library's mode, and of the rival's.
     pub figures: Option<[&'a Figures; 2]>,
 }
 
@@ -38,7 +40,7 @@ pub const BEST_HEADINGS: [&str; 12] = [
 pub const BEST_NAMES: usize = 5;
 
 impl Traversal {
-    /// By scene and kind of rays, this library beside [`Representation::own`].
+    /// By scene and kind of rays, this library beside the fastest of Embree's own geometry.
     #[must_use]
     pub fn best(&self) -> Vec<Best<'_>> {
         let scenes = self.scenes.iter();
@@ -47,7 +49,7 @@ impl Traversal {
     }
 
     fn best_of(&self, scene: SceneName, rays: Kind) -> Best<'_> {
-        let ratio = self.ratio(scene, rays, &Representation::own());
+        let ratio = self.ratio(scene, rays, Representation::is_own);
         let figures = |one: Representation| {
             let mut rows = self.rows.iter().filter(|row| {
                 row.scene == scene
@@ -68,7 +70,7 @@ impl Traversal {
 }
 
 impl Best<'_> {
-    /// The row as people read it; dashes where nothing is known.
+    /// The row, rounded for people; dashes for unknown figures.
     #[must_use]
     pub fn cells(&self) -> Vec<String> {
         let mut cells = vec![self.scene.name().to_owned(), self.rays.name().to_owned()];
@@ -77,14 +79,14 @@ impl Best<'_> {
             return cells;
         };
         cells.extend([
-            ratio.ours.name().to_owned(),
-            ratio.rival.name().to_owned(),
+            ratio.ours.to_string(),
+            ratio.rival.to_string(),
             ratio.order.name().to_owned(),
             format!("{:.0}", ours.ns.median),
             format!("{:.0}", rival.ns.median),
             format!("{:.2} ± {:.2}", ratio.spread.median, ratio.spread.deviation),
-            cyltrace_output::figure(ours.wrong_percent),
-            cyltrace_output::figure(rival.wrong_percent),
+            short(ours.wrong_percent),
+            short(rival.wrong_percent),
             format!("{:.0}", ours.bytes_per_cylinder),
             format!("{:.0}", rival.bytes_per_cylinder),
         ]);
@@ -93,24 +95,22 @@ impl Best<'_> {
 }
 
 /// The headings and the rows of all ratios: a column for each rival that some scene has.
-pub(super) fn ratio_table(found: &Traversal) -> (Vec<&'static str>, Vec<Vec<String>>) {
-    let asked = || {
-        let scenes = found.scenes.iter();
-        scenes.flat_map(|&scene| Kind::ALL.map(|rays| (scene, rays)))
-    };
-    let is_there = |rivals: &[Representation]| {
-        asked().any(|(scene, rays)| found.ratio(scene, rays, rivals).is_ok())
-    };
-    let rivals: Vec<_> = RIVALS
-        .into_iter()
-        .filter(|(_, rivals)| is_there(rivals))
+pub(super) fn ratio_table(found: &Traversal) -> (Vec<String>, Vec<Vec<String>>) {
+    let scenes = found.scenes.iter();
+    let cases: Vec<_> = scenes
+        .flat_map(|&scene| Kind::ALL.map(|rays| (scene, rays)))
         .collect();
-    let mut headings = vec!["scene", "rays"];
-    headings.extend(rivals.iter().map(|(name, _)| name));
-    let row = |(scene, rays): (SceneName, Kind)| {
+    let is_measured = |rival: &Shape| {
+        let mut cases = cases.iter();
+        cases.any(|&(scene, rays)| found.ratio_to(scene, rays, *rival).is_ok())
+    };
+    let rivals: Vec<Shape> = RIVALS.into_iter().filter(is_measured).collect();
+    let mut headings = vec![String::from("scene"), String::from("rays")];
+    headings.extend(rivals.iter().map(|&rival| ratio_key(rival)));
+    let row = |&(scene, rays): &(SceneName, Kind)| {
         let mut cells = vec![scene.name().to_owned(), rays.name().to_owned()];
-        cells.extend(rivals.iter().map(|(_, rivals)| {
-            let ratio = found.ratio(scene, rays, rivals);
+        cells.extend(rivals.iter().map(|&rival| {
+            let ratio = found.ratio_to(scene, rays, rival);
             ratio.map_or_else(
                 |_| String::from("–"),
                 |ratio| format!("{:.2} ± {:.2}", ratio.spread.median, ratio.spread.deviation),
@@ -118,13 +118,15 @@ pub(super) fn ratio_table(found: &Traversal) -> (Vec<&'static str>, Vec<Vec<Stri
         }));
         cells
     };
-    (headings, asked().map(row).collect())
+    let rows = cases.iter().map(row).collect();
+    (headings, rows)
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::order::Order;
     use super::super::outcome::Row;
+    use super::super::representation::Mode;
     use super::*;
     use crate::statistics::Spread;
 
@@ -147,22 +149,32 @@ mod tests {
                 callbacks_per_ray: None,
                 solves_per_ray: None,
                 order: ratio.map_or(Order::Given, |_| Order::Sorted),
-                ratio: ratio.map(|ratio| (spread(ratio), Representation::AnalyticPacket)),
+                ratio: ratio.map(|ratio| (spread(ratio), Representation::Ours(Mode::Packet))),
             }),
         }
     }
 
     #[test]
     fn best_is_the_mode_compared_and_embree_s_own_fastest() {
-        use Representation::{AnalyticPacket, AnalyticSingle, EmbreeCone, EmbreeConePacket};
+        let ours = Representation::Ours;
         let found = Traversal {
             scenes: vec![SceneName::Forest],
             threads: vec![2],
             rows: vec![
-                row(AnalyticSingle, Kind::Coherent, 300.0, None),
-                row(AnalyticPacket, Kind::Coherent, 200.0, None),
-                row(EmbreeCone, Kind::Coherent, 500.0, Some(2.5)),
-                row(EmbreeConePacket, Kind::Coherent, 250.0, Some(1.25)),
+                row(ours(Mode::Single), Kind::Coherent, 300.0, None),
+                row(ours(Mode::Packet), Kind::Coherent, 200.0, None),
+                row(
+                    Representation::single(Shape::Cone),
+                    Kind::Coherent,
+                    500.0,
+                    Some(2.5),
+                ),
+                row(
+                    Representation::packets(Shape::Cone),
+                    Kind::Coherent,
+                    250.0,
+                    Some(1.25),
+                ),
             ],
         };
         let best = found.best();

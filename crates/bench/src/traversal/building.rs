@@ -1,4 +1,4 @@
-//! Builds rivals, where there is room for them.
+//! Builds the rivals that represent a scene and fit into memory.
 
 use std::sync::Arc;
 
@@ -6,48 +6,45 @@ use super::flat::Flat;
 use super::native::Native;
 use super::native_packets::by_packets;
 use super::plan::Plan;
-use super::representation::{Representation, Representative};
+use super::representation::Representative;
 use crate::rivals::Shape;
 use cyltrace::embree::DeviceOptions;
 use cyltrace_output::readable;
 
-/// Builds a rival, or says why not.
+/// Builds a rival; the error is the reason why it is not measured.
 pub fn build(
     plan: &Plan,
     flat: &Arc<Flat>,
-    representation: Representation,
+    shape: Shape,
+    in_packets: bool,
 ) -> Result<Arc<dyn Representative>, String> {
     let device = DeviceOptions {
         threads: plan.options.threads,
         max_isa: plan.options.max_isa,
     };
-    let shape = representation.shape();
-    let shape = shape.expect("every rival is a shape");
-    if let Some(reason) = refusal(plan, flat, shape) {
-        return Err(reason);
-    }
+    check(plan, flat, shape)?;
     let native = Native::new(flat, shape, &device).map_err(|error| error.to_string())?;
-    Ok(if representation.is_by_packets() {
-        Arc::from(by_packets(native)?)
-    } else {
-        Arc::new(native)
+    Ok(match in_packets {
+        true => Arc::from(by_packets(native)?),
+        false => Arc::new(native),
     })
 }
 
-/// Why a scene is not built of what Embree intersects by itself, if it is not.
-fn refusal(plan: &Plan, flat: &Flat, shape: Shape) -> Option<String> {
+/// Rejects a geometry that does not represent the scene, or takes too much memory.
+fn check(plan: &Plan, flat: &Flat, shape: Shape) -> Result<(), String> {
     let kinds = flat.kinds();
     if let Some(&kind) = kinds.iter().find(|&&kind| !shape.represents(kind)) {
-        return Some(shape.refusal(kind));
+        return Err(shape.refusal(kind));
     }
     let estimate = shape_bytes(flat, shape);
-    (estimate > plan.max_memory).then(|| {
-        format!(
-            "it would take about {}, more than the {} allowed",
+    if estimate > plan.max_memory {
+        return Err(format!(
+            "it needs about {} of memory, more than the {} that --max-memory allows",
             readable(estimate),
             readable(plan.max_memory)
-        )
-    })
+        ));
+    }
+    Ok(())
 }
 
 /// Bytes that a rival takes while it is built, at most.

@@ -1,6 +1,6 @@
 //! Whether a ray may meet a solid, in f64 and without Embree.
 //!
-//! A solid is in the ball about the middle of its box, and a line that meets one with
+//! A solid is in the ball about the middle of its box, and a line that hits one with
 //! an axis passes that within its greatest radius. All lengths are lengthened by
 //! [`SLACK`] of the numbers they are computed from: the roundings of a ray on its way
 //! into a prototype and of the tests are some dozens of 2^-53, times the condition of
@@ -31,7 +31,7 @@ impl Ball {
         }
     }
 
-    /// The ball about the middle of the centers that holds them all.
+    /// The ball about the middle of the centers that contains them all.
     pub fn around(balls: impl Iterator<Item = Self> + Clone) -> Self {
         let (lower, upper) = balls.clone().fold(
             (DVec3::INFINITY, DVec3::NEG_INFINITY),

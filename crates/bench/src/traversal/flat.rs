@@ -1,4 +1,4 @@
-//! A scene without nesting: where each prototype stands in the world.
+//! A scene without nesting: the placements of each prototype in the world.
 //!
 //! Rivals have one level of instances and the oracle none, so paths of
 //! placements are composed, in exact numbers.
@@ -14,7 +14,7 @@ use cyltrace_oracle::ExactAffine;
 
 /// A prototype in the world.
 pub struct Placed {
-    /// What stands there; it has solids of its own.
+    /// The prototype, which has solids of its own.
     pub prototype: PrototypeIndex,
     /// The composed map, without rounding.
     pub exact: ExactAffine,
@@ -112,7 +112,7 @@ impl Flat {
             .any(|one| !one.solids.compositions.is_empty())
     }
 
-    /// The kinds of solids that stand somewhere, each once.
+    /// The kinds of the placed solids, each once.
     #[must_use]
     pub fn kinds(&self) -> Vec<SolidKind> {
         let mut kinds = Vec::new();
@@ -126,14 +126,14 @@ impl Flat {
         kinds
     }
 
-    /// Whether nothing but cylinders stands anywhere.
+    /// Whether all placed solids are cylinders.
     #[must_use]
     pub fn is_of_cylinders_alone(&self) -> bool {
         let kinds = self.kinds();
         kinds.iter().all(|&kind| kind == SolidKind::Cylinder)
     }
 
-    /// The prototypes that stand somewhere, each once.
+    /// The placed prototypes, each once.
     #[must_use]
     pub fn prototypes(&self) -> Vec<PrototypeIndex> {
         let mut used: Vec<PrototypeIndex> = self.placed.iter().map(|one| one.prototype).collect();

@@ -49,7 +49,7 @@ impl Workers {
 }
 
 impl Workers {
-    /// Has `work` done on parts of `0..count`, each of which starts at a multiple
+    /// Runs `work` on parts of `0..count`, each of which starts at a multiple
     /// of [`TILE`], and adds up what it answers.
     pub fn share(&self, count: usize, work: impl Fn(Range<usize>) -> u64 + Sync) -> u64 {
         if self.threads == 1 {
@@ -152,7 +152,7 @@ mod tests {
     use super::*;
 
     /// A clock on which a ray of work takes as long as the work says, on a
-    /// machine that is slower by half after every so many samples.
+    /// machine that is slower by half after a number of samples.
     struct SlowingClock<'a> {
         last: &'a Mutex<f64>,
         slower_after: u32,

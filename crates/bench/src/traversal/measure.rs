@@ -4,9 +4,7 @@
 //! the other, each built alone beside this library and gone before the next:
 //! with each the fastest mode is timed anew, in turns, and what is compared is
 //! compared between neighbouring measurements. A rival gets the rays in either
-//! order (`order`), each in turns with this library, and the better one counts. The
-//! callback in C is compared with single rays in the same order, which are what it
-//! answers.
+//! order (`order`), each in turns with this library, and the better one counts.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -63,14 +61,14 @@ impl Traversal {
     }
 }
 
-/// A scene, this library's modes on it, rays and what is right about them.
+/// A scene, this library's modes on it, rays and their true answers.
 struct Field {
     flat: Arc<Flat>,
     ours: Vec<(Representation, Arc<dyn Representative>, f64)>,
     rays: Vec<Asked>,
 }
 
-/// Rays of one kind and what is right about them.
+/// Rays of one kind and their true answers.
 struct Asked {
     rays: Rays,
     /// The same rays in the order of this library's batches, where it is another one.
@@ -83,7 +81,7 @@ fn prepare(plan: &Plan, scene: SceneName) -> Result<Field, String> {
     let flat = Arc::new(Flat::new(Arc::new(description)));
     if flat.has_compositions() {
         return Err(String::from(
-            "it has solids composed of others, which rivals have nothing for",
+            "the scene has set operations, which no rival represents",
         ));
     }
     let modes = ours::modes(&flat, &plan.options).map_err(|error| error.to_string())?;
@@ -96,7 +94,10 @@ fn prepare(plan: &Plan, scene: SceneName) -> Result<Field, String> {
         rays,
     };
     let rays = rays.into_iter().map(judge).collect();
-    let shared = |(mode, ours, build_s)| (mode, Arc::new(ours) as Arc<dyn Representative>, build_s);
+    let shared = |(mode, ours, build_s)| {
+        let ours: Arc<dyn Representative> = Arc::new(ours);
+        (Representation::Ours(mode), ours, build_s)
+    };
     drop(witness);
     Ok(Field {
         flat,
@@ -163,11 +164,13 @@ impl<'a> Course<'a> {
 
     fn run(&mut self, field: &Field, timer: &mut dyn Timer, after_step: &mut dyn FnMut()) {
         let fastest = self.run_ours(field, timer);
-        Representation::OURS.iter().for_each(|_| after_step());
-        let rivals = self.plan.representations();
-        for representation in rivals.filter(|one| !one.is_ours()) {
+        for representation in self.plan.representations() {
+            let Representation::Embree { shape, in_packets } = representation else {
+                after_step();
+                continue;
+            };
             let start = Instant::now();
-            match build(self.plan, &field.flat, representation) {
+            match build(self.plan, &field.flat, shape, in_packets) {
                 Ok(rival) => {
                     let build_s = start.elapsed().as_secs_f64();
                     self.run_rival(field, &fastest, representation, &rival, build_s, timer);
@@ -178,14 +181,13 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Times this library's modes, and answers with the fastest by rays and
-    /// workers.
+    /// Times this library's modes and returns the fastest by rays and workers.
     fn run_ours(&mut self, field: &Field, timer: &mut dyn Timer) -> Vec<Vec<usize>> {
         let plan = self.plan;
         let mut fastest = Vec::new();
         for asked in &field.rays {
             let rays = &asked.rays;
-            let mut by_crew = Vec::new();
+            let mut by_workers = Vec::new();
             for workers in &plan.worker_sets {
                 let samples: Vec<Sample<'_>> = field
                     .ours
@@ -196,13 +198,13 @@ impl<'a> Course<'a> {
                 let seconds: Vec<Spread> = times.iter().map(Times::sample).collect();
                 let order =
                     |a: &usize, b: &usize| seconds[*a].median.total_cmp(&seconds[*b].median);
-                by_crew.push((0..seconds.len()).min_by(order).unwrap_or(0));
-                for ((mode, ours, build_s), &lap_s) in field.ours.iter().zip(&seconds) {
+                by_workers.push((0..seconds.len()).min_by(order).unwrap_or(0));
+                for ((mode, ours, build_s), &sample_s) in field.ours.iter().zip(&seconds) {
                     let entry = Entry {
                         representative: ours,
                         build_s: *build_s,
                         counts: ours.counts(rays),
-                        lap_s,
+                        sample_s,
                         order: Order::Given,
                         ratio: None,
                     };
@@ -210,7 +212,7 @@ impl<'a> Course<'a> {
                     self.push(rays.kind, *mode, workers.threads, found);
                 }
             }
-            fastest.push(by_crew);
+            fastest.push(by_workers);
         }
         fastest
     }
@@ -228,7 +230,7 @@ impl<'a> Course<'a> {
         for (asked, fastest) in field.rays.iter().zip(fastest) {
             for (workers, &fastest) in plan.worker_sets.iter().zip(fastest) {
                 let (mode, ours, _) = &field.ours[fastest];
-                let mut race_in = |rays| {
+                let mut compare = |rays| {
                     let samples = [
                         sample(ours.as_ref(), &asked.rays, workers),
                         sample(rival.as_ref(), rays, workers),
@@ -237,18 +239,18 @@ impl<'a> Course<'a> {
                     (times[1].sample(), times[1].over(&times[0]))
                 };
                 let mut order = Order::Given;
-                let (mut lap_s, mut ratio) = race_in(&asked.rays);
+                let (mut sample_s, mut ratio) = compare(&asked.rays);
                 if let Some(rays) = &asked.sorted {
-                    let (sorted_s, sorted_ratio) = race_in(rays);
+                    let (sorted_s, sorted_ratio) = compare(rays);
                     if sorted_ratio.median < ratio.median {
-                        (order, lap_s, ratio) = (Order::Sorted, sorted_s, sorted_ratio);
+                        (order, sample_s, ratio) = (Order::Sorted, sorted_s, sorted_ratio);
                     }
                 }
                 let entry = Entry {
                     representative: rival,
                     build_s,
                     counts: None,
-                    lap_s,
+                    sample_s,
                     order,
                     ratio: Some((ratio, *mode)),
                 };
@@ -276,7 +278,7 @@ struct Entry<'a> {
     representative: &'a Arc<dyn Representative>,
     build_s: f64,
     counts: Option<Counts>,
-    lap_s: Spread,
+    sample_s: Spread,
     order: Order,
     ratio: Option<(Spread, Representation)>,
 }
@@ -285,14 +287,14 @@ fn figures(field: &Field, asked: &Asked, entry: Entry<'_>) -> Result<Figures, St
     let Asked { rays, judged, .. } = asked;
     let count = rays.wide.len();
     if count == 0 {
-        return Err(String::from("no ray of the camera hits anything"));
+        return Err(String::from("no camera ray hits the scene"));
     }
     let per_ray = |of: fn(&Counts) -> u64| Some(of(entry.counts.as_ref()?) as f64 / count as f64);
     let errors = judged.errors(entry.representative.as_ref(), rays);
     Ok(Figures {
         ns: Spread {
-            median: entry.lap_s.median * 1e9 / count as f64,
-            deviation: entry.lap_s.deviation * 1e9 / count as f64,
+            median: entry.sample_s.median * 1e9 / count as f64,
+            deviation: entry.sample_s.deviation * 1e9 / count as f64,
         },
         wrong_percent: errors.wrong_percent(),
         p99_error_r: errors.p99_r,
@@ -347,10 +349,10 @@ mod tests {
         assert_eq!(steps, Traversal::steps(&plan));
         assert_eq!(found.rows.len(), 2 * 3 * Representation::ALL.len() * 2);
         for row in &found.rows {
-            let name = row.representation.name();
+            let name = row.representation.to_string();
             match (&row.found, row.scene) {
-                (Err(reason), SceneName::Forest) => assert!(reason.contains("not there")),
-                (Err(reason), _) if ["mesh_16", "mesh_32", "mesh_64"].contains(&name) => {
+                (Err(reason), SceneName::Forest) => assert!(reason.contains("does not exist")),
+                (Err(reason), _) if ["mesh_16", "mesh_32", "mesh_64"].contains(&name.as_str()) => {
                     assert!(reason.contains("more than the"), "{name}: {reason}");
                 }
                 (Err(reason), _) if !represents_cylinders(row.representation) => {

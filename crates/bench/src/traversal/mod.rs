@@ -5,7 +5,7 @@
 //! kinds (`rays`), has a part of them judged by the oracle (`witness`), builds
 //! one representation after the other (`ours`, `native`) and runs
 //! it in turns with this library (`interleave`), rivals in two orders of rays (`order`).
-//! [`Best`], [`figures`], [`page`] and [`table`] show the outcome.
+//! [`Best`], [`figures`], [`page`] and [`records`] show the outcome.
 
 mod best;
 mod building;
@@ -32,10 +32,10 @@ pub use interleave::Workers;
 pub(super) use interleave::{Sample, interleave};
 pub use order::Order;
 pub(super) use ours::run as run_ours;
-pub use outcome::{Figures, RIVALS, Ratio, Row, Traversal};
-pub use outputs::{SUMMARY_HEADINGS, Shown, figures, page, summary, table};
+pub use outcome::{Figures, RIVALS, Ratio, Row, Traversal, ratio_key};
+pub use outputs::{Record, SUMMARY_HEADINGS, Shown, figures, page, records, summary};
 pub use plan::Plan;
 pub use random_scene::{random_scene, sticks};
 pub use rays::{Kind, Rays, TILE, camera_rays, random_rays};
-pub use representation::{Met, Representation, Representative, SolidId};
+pub use representation::{Met, Mode, Representation, Representative, SolidId};
 pub use scenes::SceneName;

@@ -170,7 +170,6 @@ impl Representative for Native {
 mod tests {
     use super::super::ours;
     use super::super::random_scene::{random_scene, sticks};
-    use super::super::representation::Representation;
     use super::super::witness::Witness;
     use super::*;
     use cyltrace::solid::SolidKind;
@@ -179,32 +178,31 @@ mod tests {
     const SEED: u64 = 31;
 
     /// Rays with a wrong answer are few, and the others are off by no more than `most`
-    /// radii, for all that represents the solids of a scene.
-    fn agrees(scene: cyltrace::scene::Scene, representations: &[(Representation, f64)]) {
+    /// radii, for all shapes that represent the solids of a scene.
+    fn agrees(scene: cyltrace::scene::Scene, shapes: &[(Shape, f64)]) {
         let flat = Arc::new(Flat::new(Arc::new(scene)));
         let modes = ours::modes(&flat, &Options::default()).unwrap();
         let tracer = modes[0].1.tracer();
         let witness = Witness::new(&flat);
         for rays in Rays::of_scene(&flat, tracer, 2048, SEED) {
             let judged = witness.judge(&rays, 512);
-            for &(representation, most) in representations {
-                let shape = representation.shape().unwrap();
+            for &(shape, most) in shapes {
                 let native = Native::new(&flat, shape, &DeviceOptions::default()).unwrap();
                 let single = judged.errors(&native, &rays);
                 let mut all = vec![single];
-                if representation.is_by_packets() {
+                if !matches!(shape, Shape::Mesh(_) | Shape::Faces) {
                     let packets = super::super::native_packets::by_packets(native).unwrap();
                     all.push(judged.errors(packets.as_ref(), &rays));
                 }
                 for errors in all {
-                    let told = format!(
-                        "{}, {} rays: {errors:?}",
-                        representation.name(),
-                        rays.kind.name()
+                    let context = format!("{shape:?}, {} rays: {errors:?}", rays.kind.name());
+                    assert!(errors.wrong_percent() < 2.0, "{context}");
+                    assert!(errors.p99_r.is_none_or(|p99| p99 < most), "{context}");
+                    assert_eq!(
+                        errors.p99_r.is_none(),
+                        rays.kind == Kind::Shadow,
+                        "{context}"
                     );
-                    assert!(errors.wrong_percent() < 2.0, "{told}");
-                    assert!(errors.p99_r.is_none_or(|p99| p99 < most), "{told}");
-                    assert_eq!(errors.p99_r.is_none(), rays.kind == Kind::Shadow, "{told}");
                 }
             }
         }
@@ -212,31 +210,27 @@ mod tests {
 
     #[test]
     fn embree_s_own_solids_are_nearly_those_that_they_represent() {
-        use Representation::{
-            EmbreeConePacket, EmbreeDiskPacket, EmbreeRoundPacket, EmbreeSpherePacket, Mesh64,
-            MeshFaces,
-        };
         let of = |kind| random_scene(kind, 1000, SEED);
         agrees(
             sticks(1000, SEED),
-            &[(EmbreeConePacket, 1e-2), (Mesh64, 0.1)],
+            &[(Shape::Cone, 1e-2), (Shape::Mesh(64), 0.1)],
         );
         agrees(
             of(SolidKind::Cone),
-            &[(EmbreeConePacket, 1e-2), (Mesh64, 0.1)],
+            &[(Shape::Cone, 1e-2), (Shape::Mesh(64), 0.1)],
         );
         agrees(
             of(SolidKind::RoundedCone),
-            &[(EmbreeRoundPacket, 1e-2), (Mesh64, 0.1)],
+            &[(Shape::Round, 1e-2), (Shape::Mesh(64), 0.1)],
         );
         agrees(
             of(SolidKind::Sphere),
-            &[(EmbreeSpherePacket, 1e-2), (Mesh64, 0.1)],
+            &[(Shape::Sphere, 1e-2), (Shape::Mesh(64), 0.1)],
         );
         agrees(
             of(SolidKind::Disk),
-            &[(EmbreeDiskPacket, 1e-2), (Mesh64, 0.1)],
+            &[(Shape::Disk, 1e-2), (Shape::Mesh(64), 0.1)],
         );
-        agrees(of(SolidKind::Cuboid), &[(MeshFaces, 1e-2)]);
+        agrees(of(SolidKind::Cuboid), &[(Shape::Faces, 1e-2)]);
     }
 }

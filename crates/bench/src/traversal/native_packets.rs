@@ -20,7 +20,7 @@ struct NativePackets {
 pub fn by_packets(native: Native) -> Result<Box<dyn Representative>, String> {
     match native.packet_width() {
         Some(width) => Ok(Box::new(NativePackets { native, width })),
-        None => Err(String::from("the installed Embree traces no packets")),
+        None => Err(String::from("the installed Embree does not trace packets")),
     }
 }
 

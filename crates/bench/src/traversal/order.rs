@@ -10,7 +10,8 @@ use super::rays::Rays;
 use cyltrace::tracer::Tracer;
 
 /// An order of rays.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Order {
     /// As the rays were drawn.
     Given,
@@ -22,10 +23,7 @@ impl Order {
     /// The name in tables.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Given => "given",
-            Self::Sorted => "sorted",
-        }
+        self.into()
     }
 }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::flat::Flat;
 use super::rays::{Kind, Rays};
-use super::representation::{Met, Representation, Representative, SolidId};
+use super::representation::{Met, Mode, Representative, SolidId};
 use cyltrace::tracer::counters::{self, Counts};
 use cyltrace::tracer::{BuildTime, FirstHit, Layout, Options, Tracer, TracerError};
 
@@ -14,18 +14,15 @@ use cyltrace::tracer::{BuildTime, FirstHit, Layout, Options, Tracer, TracerError
 pub struct Ours {
     tracer: Arc<Tracer>,
     flat: Arc<Flat>,
-    /// Whether rays are handed over many at a time.
+    /// Whether rays are traced in batches.
     in_batches: bool,
 }
 
 /// The modes, with the seconds that each took to build.
 ///
 /// # Errors
-/// When Embree refuses the scene.
-pub fn modes(
-    flat: &Arc<Flat>,
-    options: &Options,
-) -> Result<[(Representation, Ours, f64); 3], TracerError> {
+/// If Embree rejects the scene.
+pub fn modes(flat: &Arc<Flat>, options: &Options) -> Result<[(Mode, Ours, f64); 3], TracerError> {
     let built = |layout| -> Result<_, TracerError> {
         let start = Instant::now();
         let options = Options {
@@ -40,16 +37,16 @@ pub fn modes(
         let ours = Ours {
             tracer: Arc::clone(tracer),
             flat: Arc::clone(flat),
-            in_batches: mode != Representation::AnalyticSingle,
+            in_batches: mode != Mode::Single,
         };
         (mode, ours, *build_s)
     };
     let single = built(Layout::Single)?;
     let block = built(Layout::Block)?;
     Ok([
-        ours(Representation::AnalyticSingle, &single),
-        ours(Representation::AnalyticPacket, &single),
-        ours(Representation::AnalyticBlock, &block),
+        ours(Mode::Single, &single),
+        ours(Mode::Packet, &single),
+        ours(Mode::Block, &block),
     ])
 }
 
@@ -60,8 +57,8 @@ impl Ours {
     }
 }
 
-/// Asks the rays' own question of each, a ray at a time or many. What is asked is
-/// what Embree's own queries answer: where, and of which solid.
+/// Traces the rays by the query of their kind, one at a time or in batches. The queries
+/// return what Embree's own return: where, and of which solid.
 pub fn run(tracer: &Tracer, rays: &Rays, range: Range<usize>, in_batches: bool) -> u64 {
     let asked = &rays.wide[range];
     let bits = |hit: Option<FirstHit>| hit.map_or(0, |hit| hit.t.to_bits());
@@ -130,7 +127,7 @@ impl Representative for Ours {
     }
 
     fn counts(&self, rays: &Rays) -> Option<Counts> {
-        // Whatever was counted on this thread before is none of these rays'.
+        // Discards what was counted on this thread before.
         let _ = counters::take();
         self.run(rays, 0..rays.wide.len());
         counters::take()

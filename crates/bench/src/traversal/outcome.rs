@@ -4,9 +4,10 @@ use super::order::Order;
 use super::rays::Kind;
 use super::representation::Representation;
 use super::scenes::SceneName;
+use crate::rivals::Shape;
 use crate::statistics::Spread;
 
-/// What was found of a representation.
+/// The figures of a representation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figures {
     /// Nanoseconds a ray: of all workers together, so that two threads take half.
@@ -16,22 +17,21 @@ pub struct Figures {
     /// The distance of the answer from the true hit, along the ray, in radii of
     /// the solid that is hit (where it tapers, in the greater one; of a cuboid in its
     /// least half width): the 99th percentile over the rays with the right solid, for
-    /// others are wrong. `None` where only a hit is asked
-    /// for.
+    /// others are wrong. `None` for occlusion rays.
     pub p99_error_r: Option<f64>,
-    /// What is kept for the scene, records and all that Embree holds, for each
-    /// solid that is stored (those of a prototype count once).
+    /// The memory of the scene, records and Embree's, for each stored solid (those of a
+    /// prototype count once).
     pub bytes_per_cylinder: f64,
     /// Seconds from the description to what can be traced.
     pub build_s: f64,
-    /// Callbacks a ray, where the library counts them.
+    /// Callbacks per ray, if the library counts them.
     pub callbacks_per_ray: Option<f64>,
-    /// Rays put to a solid or to a block of them, a ray, where it is counted.
+    /// Solids and blocks tested per ray, if the library counts them.
     pub solves_per_ray: Option<f64>,
-    /// The order in which a rival had the rays: the better one. This library has them as
-    /// they are given and sorts its batches itself.
+    /// The order in which a rival gets the rays: the better one. This library gets them in
+    /// the given order and sorts its batches itself.
     pub order: Order,
-    /// Its time over that of a mode of this library, which is named.
+    /// Its time over that of a mode of this library, and the mode.
     pub ratio: Option<(Spread, Representation)>,
 }
 
@@ -54,7 +54,7 @@ pub struct Row {
     pub representation: Representation,
     /// The threads that trace.
     pub threads: usize,
-    /// What was found, or why nothing was.
+    /// The figures, or the reason why there are none.
     pub found: Result<Figures, String>,
 }
 
@@ -72,34 +72,22 @@ pub struct Ratio {
     pub order: Order,
 }
 
-/// The rivals that ratios are to, by the names of their keys.
-pub const RIVALS: [(&str, &[Representation]); 7] = [
-    (
-        "vs_embree_cone",
-        &[Representation::EmbreeCone, Representation::EmbreeConePacket],
-    ),
-    (
-        "vs_embree_round",
-        &[
-            Representation::EmbreeRound,
-            Representation::EmbreeRoundPacket,
-        ],
-    ),
-    (
-        "vs_embree_sphere",
-        &[
-            Representation::EmbreeSphere,
-            Representation::EmbreeSpherePacket,
-        ],
-    ),
-    (
-        "vs_embree_disk",
-        &[Representation::EmbreeDisk, Representation::EmbreeDiskPacket],
-    ),
-    ("vs_mesh_32", &[Representation::Mesh32]),
-    ("vs_mesh_64", &[Representation::Mesh64]),
-    ("vs_mesh_faces", &[Representation::MeshFaces]),
+/// The rivals that ratios are to.
+pub const RIVALS: [Shape; 7] = [
+    Shape::Cone,
+    Shape::Round,
+    Shape::Sphere,
+    Shape::Disk,
+    Shape::Mesh(32),
+    Shape::Mesh(64),
+    Shape::Faces,
 ];
+
+/// The key of the ratios to a rival.
+#[must_use]
+pub fn ratio_key(rival: Shape) -> String {
+    format!("vs_{}", Representation::single(rival))
+}
 
 /// The outcome.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,24 +102,24 @@ pub struct Traversal {
 
 impl Traversal {
     /// How many times faster this library is, on the first set of workers' threads, than
-    /// the fastest of some representations; or why there is no such number. The fastest
-    /// is the one with the least ratio: ratios are of neighbouring measurements, times
-    /// depend on what else the machine did.
+    /// the fastest of the rivals that `is_rival` accepts. The fastest is the one with the
+    /// least ratio: ratios are of neighbouring measurements, times depend on what else the
+    /// machine did.
     ///
     /// # Errors
-    /// The reasons of the representations.
+    /// The reasons why no rival was measured.
     pub fn ratio(
         &self,
         scene: SceneName,
         rays: Kind,
-        rivals: &[Representation],
+        is_rival: impl Fn(Representation) -> bool,
     ) -> Result<Ratio, String> {
         let rows = || {
             self.rows.iter().filter(|row| {
                 row.scene == scene
                     && row.rays == rays
                     && self.threads.first() == Some(&row.threads)
-                    && rivals.contains(&row.representation)
+                    && is_rival(row.representation)
             })
         };
         let measured = rows().filter_map(|row| {
@@ -152,6 +140,14 @@ impl Traversal {
             })
     }
 
+    /// The ratio to a shape, whether Embree traces it by packets or not.
+    ///
+    /// # Errors
+    /// As for [`Traversal::ratio`].
+    pub fn ratio_to(&self, scene: SceneName, rays: Kind, shape: Shape) -> Result<Ratio, String> {
+        self.ratio(scene, rays, |rival| rival.shape() == Some(shape))
+    }
+
     /// The rows of this library with a wrong answer.
     pub fn wrong(&self) -> impl Iterator<Item = &Row> {
         let is_wrong = |row: &&Row| {
@@ -164,6 +160,7 @@ impl Traversal {
 
 #[cfg(test)]
 mod tests {
+    use super::super::representation::Mode;
     use super::*;
 
     fn spread(median: f64) -> Spread {
@@ -183,7 +180,7 @@ mod tests {
             callbacks_per_ray: None,
             solves_per_ray: None,
             order: Order::Sorted,
-            ratio: Some((spread(ratio), Representation::AnalyticBlock)),
+            ratio: Some((spread(ratio), Representation::Ours(Mode::Block))),
         };
         Row {
             scene: SceneName::Sticks1e4,
@@ -192,42 +189,43 @@ mod tests {
             threads,
             found: found
                 .map(figures)
-                .ok_or_else(|| format!("no {}", representation.name())),
+                .ok_or_else(|| format!("no {representation}")),
         }
     }
 
     #[test]
-    fn ratio_is_to_the_faster_mode_of_the_rival_on_the_first_crew() {
-        use Representation::{EmbreeCone, EmbreeConePacket, Mesh32};
+    fn ratio_is_to_the_faster_mode_of_the_rival_on_the_first_workers() {
+        let cone = Representation::single(Shape::Cone);
+        let packets = Representation::packets(Shape::Cone);
+        let mesh = Representation::single(Shape::Mesh(32));
         let mut found = Traversal {
             scenes: vec![SceneName::Sticks1e4],
             threads: vec![1, 2],
             rows: vec![
-                row(EmbreeCone, 1, Some((300.0, 3.0))),
-                row(EmbreeCone, 2, Some((10.0, 9.0))),
+                row(cone, 1, Some((300.0, 3.0))),
+                row(cone, 2, Some((10.0, 9.0))),
                 // Timed while the machine was slower, so its time says less than its ratio.
-                row(EmbreeConePacket, 1, Some((400.0, 2.0))),
-                row(Mesh32, 1, None),
+                row(packets, 1, Some((400.0, 2.0))),
+                row(mesh, 1, None),
             ],
         };
-        let ratio = |found: &Traversal, rivals: &[Representation]| {
-            found.ratio(SceneName::Sticks1e4, Kind::Coherent, rivals)
-        };
-        let cone = ratio(&found, RIVALS[0].1).unwrap();
-        assert_eq!((cone.spread.median, cone.rival), (2.0, EmbreeConePacket));
-        assert_eq!(
-            (cone.ours, cone.order),
-            (Representation::AnalyticBlock, Order::Sorted)
-        );
-        assert_eq!(ratio(&found, &[Mesh32]).unwrap_err(), "no mesh_32");
-        found.rows[2] = row(EmbreeConePacket, 1, None);
-        assert_eq!(ratio(&found, RIVALS[0].1).unwrap().rival, EmbreeCone);
+        let ratio =
+            |found: &Traversal, shape| found.ratio_to(SceneName::Sticks1e4, Kind::Coherent, shape);
+        let best = ratio(&found, Shape::Cone).unwrap();
+        assert_eq!((best.spread.median, best.rival), (2.0, packets));
+        let block = Representation::Ours(Mode::Block);
+        assert_eq!((best.ours, best.order), (block, Order::Sorted));
+        assert_eq!(ratio(&found, Shape::Mesh(32)).unwrap_err(), "no mesh_32");
+        found.rows[2] = row(packets, 1, None);
+        assert_eq!(ratio(&found, Shape::Cone).unwrap().rival, cone);
+        assert_eq!(ratio_key(Shape::Disk), "vs_embree_disc");
     }
 
     #[test]
     fn wrong_is_of_this_library_alone() {
-        use Representation::{AnalyticPacket, AnalyticSingle, EmbreeCone};
-        let mut rows = [AnalyticSingle, AnalyticPacket, EmbreeCone]
+        let packet = Representation::Ours(Mode::Packet);
+        let cone = Representation::single(Shape::Cone);
+        let mut rows = [Representation::Ours(Mode::Single), packet, cone]
             .map(|one| row(one, 1, Some((1.0, 1.0))))
             .to_vec();
         for row in &mut rows[1..] {
@@ -240,6 +238,6 @@ mod tests {
             rows,
         };
         let wrong: Vec<Representation> = found.wrong().map(|row| row.representation).collect();
-        assert_eq!(wrong, [AnalyticPacket]);
+        assert_eq!(wrong, [packet]);
     }
 }

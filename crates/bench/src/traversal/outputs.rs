@@ -1,30 +1,39 @@
-//! The comparison as figures, as tables and as a page.
+//! The comparison of `bench traversal` as figures, as records and as a page.
 
 use std::collections::HashSet;
+
+use serde::Serialize;
 
 use super::best::{BEST_HEADINGS, Best, ratio_table};
 use super::outcome::{Figures, Row, Traversal};
 use super::rays::Kind;
-use super::representation::Representation;
 use super::scenes::SceneName;
+use crate::groups::Group;
 use crate::machine::Environment;
-use cyltrace_output::{Figure, Mark, Page, Series, Symbol, csv};
+use cyltrace_output::{Figure, Mark, Page, Symbol, figure as short};
 
-/// The kinds of representations in a figure: legend, symbol, whether they are
-/// the points of a curve, and which are of the kind.
-type Group = (&'static str, Symbol, bool, fn(Representation) -> bool);
-
-const GROUPS: [Group; 3] = [
-    ("this library", Symbol::Circle, false, |one| one.is_ours()),
-    ("Embree's own solids", Symbol::Diamond, false, |one| {
-        one.name().starts_with("embree_")
-    }),
-    ("mesh", Symbol::Square, true, |one| {
-        one.name().starts_with(MESH)
-    }),
+const GROUPS: [Group<Row>; 3] = [
+    Group {
+        name: "this library",
+        symbol: Symbol::Circle,
+        is_curve: false,
+        contains: |row| row.representation.is_ours(),
+    },
+    Group {
+        name: "Embree's own solids",
+        symbol: Symbol::Diamond,
+        is_curve: false,
+        contains: |row| !row.representation.is_ours() && !row.representation.is_mesh(),
+    },
+    Group {
+        name: "mesh",
+        symbol: Symbol::Square,
+        is_curve: true,
+        contains: |row| row.representation.is_mesh(),
+    },
 ];
 
-/// What begins the name of a mesh; its sides follow, or that it is of faces.
+/// The prefix of a mesh's name, before the number of its sides or `faces`.
 const MESH: &str = "mesh_";
 
 /// A figure with the end of its file's name and its caption.
@@ -87,9 +96,9 @@ fn figure(
     let mark = |row: &Row| {
         let figures = row.found.as_ref().ok()?;
         let (x, y) = point(figures)?;
-        let name = row.representation.name();
+        let name = row.representation.to_string();
         Some(Mark {
-            label: name.strip_prefix(MESH).unwrap_or(name).to_owned(),
+            label: name.strip_prefix(MESH).unwrap_or(&name).to_owned(),
             details: format!("{name}: {}", summary(row)[4..].join(", ")),
             x,
             y,
@@ -99,18 +108,8 @@ fn figure(
     let is_here = |row: &&Row| {
         row.scene == scene && row.rays == rays && found.threads.first() == Some(&row.threads)
     };
-    let series = GROUPS.map(|(name, symbol, is_curve, is_of_group)| Series {
-        name: name.to_owned(),
-        symbol,
-        is_curve,
-        marks: found
-            .rows
-            .iter()
-            .filter(is_here)
-            .filter(|row| is_of_group(row.representation))
-            .filter_map(mark)
-            .collect(),
-    });
+    let rows = || found.rows.iter().filter(is_here);
+    let series = GROUPS.map(|group| group.series(rows(), mark));
     let has_marks = series.iter().any(|series| !series.marks.is_empty());
     has_marks.then(|| {
         Figure {
@@ -123,64 +122,65 @@ fn figure(
     })
 }
 
-const CSV_HEADINGS: [&str; 20] = [
-    "scene",
-    "rays",
-    "representation",
-    "threads",
-    "ns_per_ray",
-    "spread",
-    "mrays_per_s",
-    "wrong_percent",
-    "p99_error_r",
-    "bytes_per_cylinder",
-    "build_s",
-    "callbacks_per_ray",
-    "solves_per_ray",
-    "ratio",
-    "ratio_spread",
-    "reason",
-    "order",
-    "processor",
-    "embree",
-    "isa",
-];
-
-/// The table as CSV, numbers in full; a cell is empty where there is none.
-#[must_use]
-pub fn table(found: &Traversal, here: &Environment) -> String {
-    let rows = found.rows.iter().map(|row| cells(row, here));
-    csv(&CSV_HEADINGS, &rows.collect::<Vec<_>>())
+/// A row of `traversal.csv` and of the JSON's `rows`.
+#[derive(Serialize)]
+pub struct Record<'a> {
+    scene: &'static str,
+    rays: &'static str,
+    representation: String,
+    threads: usize,
+    ns_per_ray: Option<f64>,
+    spread: Option<f64>,
+    mrays_per_s: Option<f64>,
+    wrong_percent: Option<f64>,
+    p99_error_r: Option<f64>,
+    bytes_per_cylinder: Option<f64>,
+    build_s: Option<f64>,
+    callbacks_per_ray: Option<f64>,
+    solves_per_ray: Option<f64>,
+    ratio: Option<f64>,
+    ratio_spread: Option<f64>,
+    reason: Option<&'a str>,
+    order: Option<&'static str>,
+    processor: &'a str,
+    embree: &'a str,
+    isa: &'static str,
+    ratio_to: Option<String>,
 }
 
-fn cells(row: &Row, here: &Environment) -> Vec<String> {
+/// The rows with all digits of their figures, and the environment in each row.
+#[must_use]
+pub fn records<'a>(found: &'a Traversal, here: &'a Environment) -> Vec<Record<'a>> {
+    found.rows.iter().map(|row| record(row, here)).collect()
+}
+
+fn record<'a>(row: &'a Row, here: &'a Environment) -> Record<'a> {
     let figures = row.found.as_ref().ok();
-    let number = |of: fn(&Figures) -> Option<f64>| {
-        let number = figures.and_then(of);
-        number.map_or_else(String::new, |x| x.to_string())
-    };
-    vec![
-        row.scene.name().to_owned(),
-        row.rays.name().to_owned(),
-        row.representation.name().to_owned(),
-        row.threads.to_string(),
-        number(|one| Some(one.ns.median)),
-        number(|one| Some(one.ns.deviation)),
-        number(|one| Some(one.mrays_per_s())),
-        number(|one| Some(one.wrong_percent)),
-        number(|one| one.p99_error_r),
-        number(|one| Some(one.bytes_per_cylinder)),
-        number(|one| Some(one.build_s)),
-        number(|one| one.callbacks_per_ray),
-        number(|one| one.solves_per_ray),
-        number(|one| one.ratio.map(|(spread, _)| spread.median)),
-        number(|one| one.ratio.map(|(spread, _)| spread.deviation)),
-        row.found.as_ref().err().cloned().unwrap_or_default(),
-        figures.map_or("", |one| one.order.name()).to_owned(),
-        here.processor.clone(),
-        here.embree.clone(),
-        here.isa.to_owned(),
-    ]
+    let number = |of: fn(&Figures) -> f64| figures.map(of);
+    let ratio = figures.and_then(|one| one.ratio);
+    Record {
+        scene: row.scene.name(),
+        rays: row.rays.name(),
+        representation: row.representation.to_string(),
+        threads: row.threads,
+        ns_per_ray: number(|one| one.ns.median),
+        spread: number(|one| one.ns.deviation),
+        mrays_per_s: number(Figures::mrays_per_s),
+        wrong_percent: number(|one| one.wrong_percent),
+        p99_error_r: figures.and_then(|one| one.p99_error_r),
+        bytes_per_cylinder: number(|one| one.bytes_per_cylinder),
+        build_s: number(|one| one.build_s),
+        callbacks_per_ray: figures.and_then(|one| one.callbacks_per_ray),
+        solves_per_ray: figures.and_then(|one| one.solves_per_ray),
+        ratio: ratio.map(|(spread, _)| spread.median),
+        ratio_spread: ratio.map(|(spread, _)| spread.deviation),
+        reason: row.found.as_ref().err().map(String::as_str),
+        order: figures.map(|one| one.order.name()),
+        processor: &here.processor,
+        embree: &here.embree,
+        isa: here.isa,
+        ratio_to: ratio.map(|(_, ours)| ours.to_string()),
+    }
 }
 
 /// The columns of [`summary`].
@@ -198,35 +198,35 @@ pub const SUMMARY_HEADINGS: [&str; 11] = [
     "build s",
 ];
 
-/// The figures of a row as people read them; dashes where there are none.
+/// The figures of a row, rounded for people; dashes if there are none.
 #[must_use]
 pub fn summary(row: &Row) -> Vec<String> {
     let dash = || String::from("–");
     let mut cells = vec![
         row.scene.name().to_owned(),
         row.rays.name().to_owned(),
-        row.representation.name().to_owned(),
+        row.representation.to_string(),
         row.threads.to_string(),
     ];
     match &row.found {
         Err(_) => cells.resize_with(SUMMARY_HEADINGS.len(), dash),
         Ok(found) => cells.extend([
             format!("{:.1} ± {:.1}", found.ns.median, found.ns.deviation),
-            cyltrace_output::figure(found.mrays_per_s()),
+            short(found.mrays_per_s()),
             found.ratio.map_or_else(dash, |(spread, _)| {
                 format!("{:.2} ± {:.2}", spread.median, spread.deviation)
             }),
-            cyltrace_output::figure(found.wrong_percent),
-            found.p99_error_r.map_or_else(dash, cyltrace_output::figure),
+            short(found.wrong_percent),
+            found.p99_error_r.map_or_else(dash, short),
             format!("{:.0}", found.bytes_per_cylinder),
-            cyltrace_output::figure(found.build_s),
+            short(found.build_s),
         ]),
     }
     cells
 }
 
-/// The page: how many times faster, the figures, how to read them, the table
-/// and what is missing. `environment` says where and how it was measured.
+/// The page: the ratios, the figures, how to read them, the table and the missing rows.
+/// `environment` describes the machine and the settings.
 #[must_use]
 pub fn page(found: &Traversal, environment: &str) -> String {
     let mut page = Page::new("Rays through whole scenes: time, error and memory");
@@ -256,12 +256,12 @@ pub fn page(found: &Traversal, environment: &str) -> String {
     page.heading("What is missing");
     let missing = found.rows.iter().filter_map(|row| {
         let reason = row.found.as_ref().err()?;
-        let (scene, name) = (row.scene.name(), row.representation.name());
+        let (scene, name) = (row.scene.name(), row.representation);
         Some(format!("{name} of {scene}: {reason}"))
     });
-    // Each stands at several kinds of rays and numbers of threads.
-    let mut told = HashSet::new();
-    for one in missing.filter(|one| told.insert(one.clone())) {
+    // The same reason occurs for several kinds of rays and numbers of threads.
+    let mut noted = HashSet::new();
+    for one in missing.filter(|one| noted.insert(one.clone())) {
         page.note(&one);
     }
     page.finish()
@@ -277,7 +277,9 @@ const READING: [&str; 3] = [
 #[cfg(test)]
 mod tests {
     use super::super::order::Order;
+    use super::super::representation::{Mode, Representation};
     use super::*;
+    use crate::rivals::Shape;
     use crate::statistics::Spread;
 
     fn sample() -> Traversal {
@@ -302,22 +304,23 @@ mod tests {
                     callbacks_per_ray: None,
                     solves_per_ray: None,
                     order: Order::Given,
-                    ratio: Some((spread(ns / 100.0), Representation::AnalyticSingle)),
+                    ratio: Some((spread(ns / 100.0), Representation::Ours(Mode::Single))),
                 })
             },
         };
-        use Representation::{AnalyticSingle, EmbreeCone, Mesh16, Mesh32, Mesh64};
+        let single = Representation::Ours(Mode::Single);
+        let embree = Representation::single;
         Traversal {
             scenes: vec![SceneName::Lattice],
             threads: vec![1],
             rows: vec![
-                row(AnalyticSingle, Kind::Coherent, 100.0, Some(1e-15)),
-                row(EmbreeCone, Kind::Coherent, 150.0, Some(1e-4)),
-                row(Mesh16, Kind::Coherent, 400.0, Some(0.02)),
-                row(Mesh32, Kind::Coherent, 500.0, Some(0.005)),
-                row(Mesh64, Kind::Coherent, 0.0, None),
-                row(Mesh64, Kind::Shadow, 0.0, None),
-                row(EmbreeCone, Kind::Shadow, 90.0, None),
+                row(single, Kind::Coherent, 100.0, Some(1e-15)),
+                row(embree(Shape::Cone), Kind::Coherent, 150.0, Some(1e-4)),
+                row(embree(Shape::Mesh(16)), Kind::Coherent, 400.0, Some(0.02)),
+                row(embree(Shape::Mesh(32)), Kind::Coherent, 500.0, Some(0.005)),
+                row(embree(Shape::Mesh(64)), Kind::Coherent, 0.0, None),
+                row(embree(Shape::Mesh(64)), Kind::Shadow, 0.0, None),
+                row(embree(Shape::Cone), Kind::Shadow, 90.0, None),
             ],
         }
     }
@@ -339,16 +342,20 @@ mod tests {
     fn table_null_rows_say_why() {
         let mut here = Environment::here(None, 1, 2, 3);
         (here.processor, here.embree, here.isa) = ("Fast, Inc.".into(), "4.3.1".into(), "avx2");
-        let text = table(&sample(), &here);
+        let found = sample();
+        let text = cyltrace_output::csv(&records(&found, &here));
         let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines[0], CSV_HEADINGS.join(","));
+        assert_eq!(
+            lines[0],
+            "scene,rays,representation,threads,ns_per_ray,spread,mrays_per_s,wrong_percent,p99_error_r,bytes_per_cylinder,build_s,callbacks_per_ray,solves_per_ray,ratio,ratio_spread,reason,order,processor,embree,isa,ratio_to"
+        );
         assert_eq!(
             lines[2],
-            "lattice,coherent,embree_cone,1,150,0.5,6.666666666666667,0.25,0.0001,160,0.5,,,1.5,0.5,,given,\"Fast, Inc.\",4.3.1,avx2"
+            "lattice,coherent,embree_cone,1,150.0,0.5,6.666666666666667,0.25,0.0001,160.0,0.5,,,1.5,0.5,,given,\"Fast, Inc.\",4.3.1,avx2,analytic_single"
         );
         assert_eq!(
             lines[5],
-            "lattice,coherent,mesh_64,1,,,,,,,,,,,,too large,,\"Fast, Inc.\",4.3.1,avx2"
+            "lattice,coherent,mesh_64,1,,,,,,,,,,,,too large,,\"Fast, Inc.\",4.3.1,avx2,"
         );
     }
 
@@ -357,7 +364,7 @@ mod tests {
         let text = page(&sample(), "here");
         // Once, although of two kinds of rays; and no column for what no scene has.
         assert_eq!(text.matches("mesh_64 of lattice").count(), 1);
-        assert!(text.contains("vs_embree_cone") && !text.contains("vs_embree_disk"));
+        assert!(text.contains("vs_embree_cone") && !text.contains("vs_embree_disc"));
         for part in [
             "<td>1.50 ± 0.50</td>",
             "<svg",

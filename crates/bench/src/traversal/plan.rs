@@ -1,4 +1,4 @@
-//! What a comparison is of.
+//! The settings of a comparison.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use super::representation::Representation;
 use super::scenes::SceneName;
 use cyltrace::tracer::Options;
 
-/// What is measured.
+/// The scenes, rays and rivals that are measured.
 pub struct Plan {
     /// The scenes.
     pub scenes: Vec<SceneName>,

@@ -1,8 +1,8 @@
 //! Random solids of one kind in the unit cube, and a camera before it.
 //!
-//! How many of them a ray meets is what they have in common. A line meets a convex
+//! A ray hits the same number of solids in all of them. A line hits a convex
 //! solid with an area of `S` in one of all directions with the chance of its mean
-//! shadow, `S / 4` (Cauchy), so that in a unit of its length it meets `n S / 4` of `n`
+//! shadow, `S / 4` (Cauchy), so that in a unit of its length it hits `n S / 4` of `n`
 //! solids. The sizes are chosen so that this is as for [`sticks`].
 
 use glam::DVec3;
@@ -18,10 +18,10 @@ use cyltrace::solid::{Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, SolidKind
 /// directions, closed, in f32 numbers.
 ///
 /// They are `length = 2 count^(-1/3)` long, twice the mean distance of
-/// neighbours, and `radius = length / 20` thick. A line meets
+/// neighbours, and `radius = length / 20` thick. A line hits
 /// `π/2 radius length count` sticks in a unit of its length, `0.63 / length`, and
 /// the boxes of some five times as many: so a ray goes some 1.6 lengths and
-/// passes by a few sticks before it hits one, whatever their number, and a
+/// misses a few nearby sticks before it hits one, whatever their number, and a
 /// picture is full of them.
 #[must_use]
 pub fn sticks(count: usize, seed: u64) -> Scene {
@@ -45,7 +45,7 @@ pub fn sticks(count: usize, seed: u64) -> Scene {
 
 /// `count` solids of a kind, uniform in the unit cube and turned any way, in f32
 /// numbers (but for the axes of cuboids, which no f32 would keep orthonormal).
-/// A line meets about as many as of [`sticks`], `0.63 / length` in a unit of its
+/// A line hits about the same number as of [`sticks`], `0.63 / length` in a unit of its
 /// length, so their mean area is `π/10 length²`:
 ///
 /// - Cones and rounded cones are sticks that taper: either radius is uniform between

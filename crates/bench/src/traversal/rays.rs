@@ -1,7 +1,7 @@
 //! The rays: coherent ones of a camera, those from there to the sun, and
 //! incoherent ones.
 //!
-//! All numbers are f32, so that everybody is asked about the same ray, and
+//! All numbers are f32, so that all contenders get the same ray, and
 //! directions are of unit length as near as f32 has it, which Embree's cone
 //! curves want.
 
@@ -15,7 +15,7 @@ use cyltrace::scene::{AimedCamera, Scene};
 use cyltrace::solid::SolidKind;
 use cyltrace::tracer::Tracer;
 
-/// Neighbouring rays of one kind come in tiles of so many: 4 by 4 pixels.
+/// Neighbouring rays of one kind form tiles of this size: 4 by 4 pixels.
 pub const TILE: usize = 16;
 
 /// The side of a tile.
@@ -30,15 +30,15 @@ const PIXELS_OF_SQUARE: usize = (SQUARE * SQUARE) as usize;
 /// 2^64 over the golden ratio.
 const GOLDEN_RATIO: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// How rays go about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// The distribution and the query of rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Kind {
-    /// Of the camera, in tiles; the first hit is asked for.
+    /// From the camera, in tiles, for the first hit.
     Coherent,
-    /// From the hits of the coherent rays to the sun; asked is whether there
-    /// is anything on the way.
+    /// From the hits of the coherent rays to the sun, for occlusion.
     Shadow,
-    /// From anywhere to anywhere; the first hit is asked for.
+    /// From anywhere in any direction, for the first hit.
     Incoherent,
 }
 
@@ -49,11 +49,7 @@ impl Kind {
     /// The name in tables.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Coherent => "coherent",
-            Self::Shadow => "shadow",
-            Self::Incoherent => "incoherent",
-        }
+        self.into()
     }
 }
 
@@ -142,7 +138,7 @@ pub fn camera_rays(scene: &Scene, bounds: &Bounds, count: usize) -> Vec<Ray> {
         .collect()
 }
 
-/// Where the sun stands if the scene has none.
+/// The direction of the sun if the scene has none.
 const SUN: DVec3 = DVec3::new(0.3, -0.5, 0.8);
 
 /// From every hit towards the sun. Rounding to f32 may put a start below its

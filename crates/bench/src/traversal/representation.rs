@@ -1,163 +1,141 @@
-//! Who takes part: the names of representations, and what is asked of each.
+//! The contenders: representations of a scene, and the interface that is timed.
 
+use std::fmt;
 use std::ops::Range;
 
 use super::rays::Rays;
 use crate::rivals::Shape;
 use cyltrace::tracer::counters::Counts;
 
-/// How solids are represented and rays traced through them.
+/// How this library traces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, strum::Display)]
+#[strum(serialize_all = "snake_case")]
+pub enum Mode {
+    /// One ray at a time, one solid per primitive.
+    Single,
+    /// Batches of rays: in this library's order, and in packets if they are coherent.
+    Packet,
+    /// Batches of rays, and blocks of solids per primitive.
+    Block,
+}
+
+/// How solids are represented, and rays traced through them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Representation {
-    /// This library, a ray at a time, a cylinder a primitive.
-    AnalyticSingle,
-    /// This library, batches of rays: in an order of its own, in packets where
-    /// they are coherent.
-    AnalyticPacket,
-    /// The same with blocks of cylinders a primitive.
-    AnalyticBlock,
-    /// Embree's cone curve, a ray at a time.
-    EmbreeCone,
-    /// Embree's cone curve, 16 rays at a time.
-    EmbreeConePacket,
-    /// Embree's round linear curve, a ray at a time.
-    EmbreeRound,
-    /// The same, 16 rays at a time.
-    EmbreeRoundPacket,
-    /// Embree's sphere point, a ray at a time.
-    EmbreeSphere,
-    /// The same, 16 rays at a time.
-    EmbreeSpherePacket,
-    /// Embree's oriented disk point, a ray at a time.
-    EmbreeDisk,
-    /// The same, 16 rays at a time.
-    EmbreeDiskPacket,
-    /// Inscribed meshes of 8 sides.
-    Mesh8,
-    /// Inscribed meshes of 16 sides.
-    Mesh16,
-    /// Inscribed meshes of 32 sides.
-    Mesh32,
-    /// Inscribed meshes of 64 sides.
-    Mesh64,
-    /// Cuboids as the triangles of their faces.
-    MeshFaces,
+    /// This library.
+    Ours(Mode),
+    /// What Embree intersects by itself.
+    Embree {
+        /// The geometry.
+        shape: Shape,
+        /// Whether Embree gets packets of rays of its widest kind, not single rays.
+        in_packets: bool,
+    },
 }
 
 impl Representation {
-    /// All, in the order of tables; this library's own come first.
+    /// All, in the order of tables.
     pub const ALL: [Self; 16] = [
-        Self::AnalyticSingle,
-        Self::AnalyticPacket,
-        Self::AnalyticBlock,
-        Self::EmbreeCone,
-        Self::EmbreeConePacket,
-        Self::EmbreeRound,
-        Self::EmbreeRoundPacket,
-        Self::EmbreeSphere,
-        Self::EmbreeSpherePacket,
-        Self::EmbreeDisk,
-        Self::EmbreeDiskPacket,
-        Self::Mesh8,
-        Self::Mesh16,
-        Self::Mesh32,
-        Self::Mesh64,
-        Self::MeshFaces,
+        Self::Ours(Mode::Single),
+        Self::Ours(Mode::Packet),
+        Self::Ours(Mode::Block),
+        Self::single(Shape::Cone),
+        Self::packets(Shape::Cone),
+        Self::single(Shape::Round),
+        Self::packets(Shape::Round),
+        Self::single(Shape::Sphere),
+        Self::packets(Shape::Sphere),
+        Self::single(Shape::Disk),
+        Self::packets(Shape::Disk),
+        Self::single(Shape::Mesh(8)),
+        Self::single(Shape::Mesh(16)),
+        Self::single(Shape::Mesh(32)),
+        Self::single(Shape::Mesh(64)),
+        Self::single(Shape::Faces),
     ];
 
-    /// The modes of this library.
-    pub const OURS: [Self; 3] = [
-        Self::AnalyticSingle,
-        Self::AnalyticPacket,
-        Self::AnalyticBlock,
-    ];
-
-    /// Embree's own geometry for solids of any kind: its curves and points, and the
-    /// triangles of cuboids. A scene of one kind has one of these shapes.
+    /// Embree's geometry, a ray at a time.
     #[must_use]
-    pub fn own() -> Vec<Self> {
-        let is_own = |one: &Self| {
-            let shape = one.shape();
-            shape.is_some_and(|shape| !matches!(shape, Shape::Mesh(_)))
+    pub const fn single(shape: Shape) -> Self {
+        Self::Embree {
+            shape,
+            in_packets: false,
+        }
+    }
+
+    /// Embree's geometry, a packet of rays at a time.
+    #[must_use]
+    pub const fn packets(shape: Shape) -> Self {
+        Self::Embree {
+            shape,
+            in_packets: true,
+        }
+    }
+
+    /// The rivals of a name: one representation, or all of Embree's [own](Self::is_own)
+    /// geometry for `own`. Empty for an unknown name.
+    #[must_use]
+    pub fn rivals(name: &str) -> Vec<Self> {
+        let is_named = |one: &Self| match name {
+            "own" => one.is_own(),
+            _ => !one.is_ours() && one.to_string() == name,
         };
-        Self::ALL.into_iter().filter(is_own).collect()
+        Self::ALL.into_iter().filter(is_named).collect()
     }
 
-    /// The rivals of this name: `own` is [`own`](Self::own), others are one
-    /// representation each. `None` for a name that is none of theirs.
-    #[must_use]
-    pub fn rivals(name: &str) -> Option<Vec<Self>> {
-        if name == "own" {
-            return Some(Self::own());
-        }
-        let mut all = Self::ALL.into_iter();
-        let named = all.find(|one| !one.is_ours() && one.name() == name);
-        named.map(|one| vec![one])
-    }
-
-    /// The name in tables.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::AnalyticSingle => "analytic_single",
-            Self::AnalyticPacket => "analytic_packet",
-            Self::AnalyticBlock => "analytic_block",
-            Self::EmbreeCone => "embree_cone",
-            Self::EmbreeConePacket => "embree_cone_packet",
-            Self::EmbreeRound => "embree_round",
-            Self::EmbreeRoundPacket => "embree_round_packet",
-            Self::EmbreeSphere => "embree_sphere",
-            Self::EmbreeSpherePacket => "embree_sphere_packet",
-            Self::EmbreeDisk => "embree_disk",
-            Self::EmbreeDiskPacket => "embree_disk_packet",
-            Self::Mesh8 => "mesh_8",
-            Self::Mesh16 => "mesh_16",
-            Self::Mesh32 => "mesh_32",
-            Self::Mesh64 => "mesh_64",
-            Self::MeshFaces => "mesh_faces",
-        }
-    }
-
-    /// What Embree intersects by itself, if it does.
+    /// The geometry that Embree intersects by itself, if it does.
     #[must_use]
     pub fn shape(self) -> Option<Shape> {
         match self {
-            Self::EmbreeCone | Self::EmbreeConePacket => Some(Shape::Cone),
-            Self::EmbreeRound | Self::EmbreeRoundPacket => Some(Shape::Round),
-            Self::EmbreeSphere | Self::EmbreeSpherePacket => Some(Shape::Sphere),
-            Self::EmbreeDisk | Self::EmbreeDiskPacket => Some(Shape::Disk),
-            Self::Mesh8 => Some(Shape::Mesh(8)),
-            Self::Mesh16 => Some(Shape::Mesh(16)),
-            Self::Mesh32 => Some(Shape::Mesh(32)),
-            Self::Mesh64 => Some(Shape::Mesh(64)),
-            Self::MeshFaces => Some(Shape::Faces),
-            _ => None,
+            Self::Ours(_) => None,
+            Self::Embree { shape, .. } => Some(shape),
         }
-    }
-
-    /// Whether Embree is handed packets of rays.
-    #[must_use]
-    pub fn is_by_packets(self) -> bool {
-        matches!(
-            self,
-            Self::EmbreeConePacket
-                | Self::EmbreeRoundPacket
-                | Self::EmbreeSpherePacket
-                | Self::EmbreeDiskPacket
-        )
     }
 
     /// Whether it is this library.
     #[must_use]
     pub fn is_ours(self) -> bool {
-        Self::OURS.contains(&self)
+        matches!(self, Self::Ours(_))
+    }
+
+    /// Whether it is Embree's own geometry for a kind of solid: curves, points, and the
+    /// triangles of cuboids. A scene of one kind has one of these shapes.
+    #[must_use]
+    pub fn is_own(self) -> bool {
+        !self.is_ours() && !matches!(self.shape(), Some(Shape::Mesh(_)))
+    }
+
+    /// Whether solids are triangle meshes.
+    #[must_use]
+    pub fn is_mesh(self) -> bool {
+        matches!(self.shape(), Some(Shape::Mesh(_) | Shape::Faces))
+    }
+}
+
+/// The name in tables, in the JSON and on the command line.
+impl fmt::Display for Representation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (shape, in_packets) = match *self {
+            Self::Ours(mode) => return write!(f, "analytic_{mode}"),
+            Self::Embree { shape, in_packets } => (shape, in_packets),
+        };
+        match shape {
+            Shape::Cone => write!(f, "embree_cone")?,
+            Shape::Round => write!(f, "embree_round")?,
+            Shape::Sphere => write!(f, "embree_sphere")?,
+            // After Embree's `ORIENTED_DISC_POINT`.
+            Shape::Disk => write!(f, "embree_disc")?,
+            Shape::Mesh(sides) => write!(f, "mesh_{sides}")?,
+            Shape::Faces => write!(f, "mesh_faces")?,
+        }
+        f.write_str(if in_packets { "_packet" } else { "" })
     }
 }
 
 /// A solid of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SolidId {
-    /// Where its prototype stands: the position in
+    /// The placement of its prototype: the position in
     /// [`Flat::placed`](super::Flat::placed).
     pub placed: u32,
     /// Its number within the prototype.
@@ -169,7 +147,7 @@ pub struct SolidId {
 pub struct Met {
     /// The ray's parameter.
     pub t: f64,
-    /// What is hit.
+    /// The solid that is hit.
     pub solid: SolidId,
 }
 
@@ -182,16 +160,35 @@ pub trait Representative: Send + Sync {
     /// Whether those rays hit anything.
     fn blocked(&self, rays: &Rays, range: Range<usize>) -> Vec<bool>;
 
-    /// Asks the rays' own question of each, and answers with a number that
-    /// depends on every answer. It is what is timed.
+    /// Traces the rays by the query of their kind and returns a number that depends on
+    /// every answer. This is timed.
     fn run(&self, rays: &Rays, range: Range<usize>) -> u64;
 
-    /// What is kept for the scene, in bytes: records of solids and
-    /// placements, and what Embree holds.
+    /// The bytes that the scene takes: records of solids and placements, and Embree's
+    /// memory.
     fn bytes(&self) -> usize;
 
-    /// What all rays cost, where it is counted.
+    /// The callbacks and solves of all rays, if they are counted.
     fn counts(&self, _rays: &Rays) -> Option<Counts> {
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_choose_their_representation_and_own_all_of_embree_s() {
+        for one in Representation::ALL {
+            let expected = if one.is_ours() { vec![] } else { vec![one] };
+            assert_eq!(Representation::rivals(&one.to_string()), expected);
+        }
+        let names = Representation::ALL.map(|one| one.to_string());
+        assert_eq!(names[2], "analytic_block");
+        assert_eq!(names[10..12], ["embree_disc_packet", "mesh_8"]);
+        let own = Representation::rivals("own");
+        assert_eq!(own.len(), 9);
+        assert!(!own.contains(&Representation::single(Shape::Mesh(8))));
     }
 }

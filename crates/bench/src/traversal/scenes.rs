@@ -2,70 +2,59 @@
 
 use std::path::{Path, PathBuf};
 
+use strum::{IntoStaticStr, VariantArray};
+
 use super::random_scene::{random_scene, sticks};
 use cyltrace::scene::{self, Scene};
 use cyltrace::solid::SolidKind;
 
 /// A scene of the benchmark.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
 pub enum SceneName {
     /// 10^4 random sticks.
+    #[strum(serialize = "sticks_1e4")]
     Sticks1e4,
     /// 10^5 random sticks.
+    #[strum(serialize = "sticks_1e5")]
     Sticks1e5,
     /// 10^6 random sticks.
+    #[strum(serialize = "sticks_1e6")]
     Sticks1e6,
     /// The block of octet truss of `lattice.toml`.
     Lattice,
     /// The trees of `forest.toml`.
     Forest,
     /// 10^5 random cones.
+    #[strum(serialize = "cones_1e5")]
     Cones1e5,
     /// 10^5 random rounded cones.
+    #[strum(serialize = "rounded_cones_1e5")]
     RoundedCones1e5,
     /// 10^5 random spheres.
+    #[strum(serialize = "spheres_1e5")]
     Spheres1e5,
     /// 10^5 random cuboids.
+    #[strum(serialize = "cuboids_1e5")]
     Cuboids1e5,
     /// 10^5 random disks.
+    #[strum(serialize = "disks_1e5")]
     Disks1e5,
 }
 
 impl SceneName {
     /// All, in the order of tables.
-    pub const ALL: [Self; 10] = [
-        Self::Sticks1e4,
-        Self::Sticks1e5,
-        Self::Sticks1e6,
-        Self::Lattice,
-        Self::Forest,
-        Self::Cones1e5,
-        Self::RoundedCones1e5,
-        Self::Spheres1e5,
-        Self::Cuboids1e5,
-        Self::Disks1e5,
-    ];
+    pub const ALL: &'static [Self] = Self::VARIANTS;
 
     /// The name in tables.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Sticks1e4 => "sticks_1e4",
-            Self::Sticks1e5 => "sticks_1e5",
-            Self::Sticks1e6 => "sticks_1e6",
-            Self::Lattice => "lattice",
-            Self::Forest => "forest",
-            Self::Cones1e5 => "cones_1e5",
-            Self::RoundedCones1e5 => "rounded_cones_1e5",
-            Self::Spheres1e5 => "spheres_1e5",
-            Self::Cuboids1e5 => "cuboids_1e5",
-            Self::Disks1e5 => "disks_1e5",
-        }
+        self.into()
     }
 
-    /// Makes the scene, or reads its file from `directory`. The error is why it
-    /// is not there.
+    /// Makes the scene, or reads its file from `directory`. The error is the reason why
+    /// it is missing.
     pub(super) fn make(self, directory: &Path, seed: u64) -> Result<Scene, String> {
         let others = |kind| Ok(random_scene(kind, 100_000, seed));
         let file: PathBuf = match self {
@@ -81,7 +70,7 @@ impl SceneName {
             Self::Disks1e5 => return others(SolidKind::Disk),
         };
         if !file.exists() {
-            return Err(format!("{} is not there", file.display()));
+            return Err(format!("the file {} does not exist", file.display()));
         }
         scene::load(&file).map_err(|error| error.to_string())
     }
@@ -101,6 +90,6 @@ mod tests {
     fn make_absent_file_is_named() {
         let absent = SceneName::Forest.make(Path::new("nowhere"), 0);
         let reason = absent.expect_err("there is no such directory");
-        assert!(reason.contains("forest.toml is not there"), "{reason}");
+        assert!(reason.contains("forest.toml does not exist"), "{reason}");
     }
 }

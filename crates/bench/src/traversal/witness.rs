@@ -3,7 +3,7 @@
 //!
 //! **Candidates.** Every place's solids are tried with what `sight.rs` knows of a ray
 //! and a solid: their balls, and their axes where they have any. Those that are left
-//! are tried in the order in which the ray enters their balls; the oracle is not asked
+//! are tried in the order in which the ray enters their balls; the oracle is not run
 //! about those that it enters behind a hit.
 //!
 //! **Wrong** is a hit for a miss, a miss for a hit, and a hit of another
@@ -178,7 +178,7 @@ fn scale(placed: &Placed) -> f64 {
     libm::cbrt(placed.world_from_object.matrix3.determinant().abs())
 }
 
-/// At most so many of `count` rays, in whole tiles as far from one another as
+/// At most this number of `count` rays, in whole tiles as far from one another as
 /// can be; all rays if they are no more.
 fn sample(count: usize, most: usize) -> Vec<Range<usize>> {
     let tiles = count.div_ceil(TILE);

@@ -3,11 +3,14 @@
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Subcommand};
 use cyltrace::scene::{GREATEST_CASES, GREATEST_ROUNDS, GREATEST_TIMED_RAYS};
 use cyltrace_bench::traversal::{Representation, SceneName};
+use cyltrace_bench::{formulations, rival_names};
 
-use super::numbers::count_up_to;
+use super::names::one_of;
+use super::numbers::{count_up_to, parse_seed};
 use super::{Common, DecisionArguments};
 use crate::memory;
 
@@ -25,70 +28,64 @@ pub enum Bench {
     Scale(ScaleArguments),
 }
 
-/// Compare the time and the error of every known formulation, of Embree's cone
-/// curve and of meshes, on the same cases
+/// Compare time and error of every formulation of the ray/cylinder test
+///
+/// Embree's cone curve and inscribed meshes take part. All contenders get the same cases
+/// and are timed in turns.
 #[derive(Args, Debug)]
 pub struct AccuracyArguments {
-    /// Write accuracy.svg, accuracy.csv and index.html to DIR
+    /// Write `accuracy.svg`, `accuracy.csv` and `index.html` to DIR
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
-    /// Cases of each family; meshes and other rivals get at most 1000 of them
+    /// Judge N cases of each family, 1 to 10^7; Embree's curve and meshes get at most 1000
     #[arg(long, value_name = "N", default_value = "5000", value_parser = count_up_to::<NonZeroU64>(GREATEST_CASES))]
     pub cases: NonZeroU64,
-    /// Chooses the cases
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    /// Seed the cases
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_seed, allow_negative_numbers = true)]
     pub seed: u64,
-    /// Samples of each time
+    /// Take N samples of each time
     #[arg(long, value_name = "N", default_value = "101", value_parser = count_up_to::<NonZeroUsize>(GREATEST_ROUNDS))]
     pub rounds: NonZeroUsize,
-    /// Measure this formulation or rival only, beside triple-product; may be
-    /// given several times
-    #[arg(long, value_name = "NAME")]
+    /// Measure only this contender beside `triple-product`; may be repeated [default: all]
+    #[arg(long, value_name = "NAME", value_parser = contender())]
     pub formulation: Vec<String>,
     #[command(flatten)]
     pub common: Common,
 }
 
-/// Compare whole traversals: this library beside a callback in C, Embree's own
-/// solids, meshes and instances
+/// Compare whole traversals with Embree's own solids, meshes and instances
 ///
-/// Each rival is timed in turns with this library, on the same coherent, shadow
-/// and incoherent rays, in the order given and in that of this library's batches;
-/// the better order counts. An exact oracle judges a sample of the rays: the exit
-/// code is 1 if this library has one of them wrong. A rival that cannot be built
-/// here is a row without figures that says why.
-///
-/// Scenes: sticks_1e4, sticks_1e5 and sticks_1e6 are random sticks in the unit
-/// cube, 2 n^(-1/3) long and a twentieth of that in radius; lattice and forest are
-/// read from their files in --scenes; cones_1e5, rounded_cones_1e5, spheres_1e5,
-/// cuboids_1e5 and disks_1e5 are random solids, of which a ray meets as many as of
-/// sticks. Without --threads, one thread and all are timed.
+/// Each rival is built alone beside this library, timed in turns with it on the same rays,
+/// and freed before the next. Rivals get the rays in the given order and in the order of
+/// this library's batches; the better one counts. An exact oracle judges a sample of the
+/// rays, and the exit code is 1 if any answer of this library is wrong. A rival that cannot
+/// be built here is a row with a reason in place of figures.
 #[derive(Args, Debug)]
 pub struct TraversalArguments {
-    /// Only this scene; may be repeated [default: all ten]
-    #[arg(long, value_name = "NAME", value_parser = parse_scene)]
+    /// Trace only this scene; may be repeated [default: all]
+    #[arg(long, value_name = "NAME", value_parser = one_of(SceneName::ALL.iter().copied(), SceneName::name))]
     pub scene: Vec<SceneName>,
-    /// Only this rival: a name of the column representation, or own for Embree's own
-    /// geometry of each kind of solid (curves, points, the triangles of cuboids); may
-    /// be repeated [default: all]
-    #[arg(long, value_name = "NAME", value_parser = parse_rival)]
+    /// Time only this rival beside this library; may be repeated. `own` is Embree's own
+    /// geometry for each kind of solid: curves, points and the triangles of cuboids
+    /// [default: all]
+    #[arg(long, value_name = "NAME", value_parser = rival())]
     pub rival: Vec<Chosen>,
-    /// Where lattice.toml and forest.toml are
+    /// Read `lattice.toml` and `forest.toml` from DIR
     #[arg(long, value_name = "DIR", default_value = "scenes")]
     pub scenes: PathBuf,
-    /// Rays of each kind
+    /// Trace N rays of each kind
     #[arg(long, value_name = "N", default_value = "16384", value_parser = count_up_to::<NonZeroUsize>(GREATEST_TIMED_RAYS))]
     pub rays: NonZeroUsize,
-    /// Samples of each time
+    /// Take N samples of each time
     #[arg(long, value_name = "N", default_value = "11", value_parser = count_up_to::<NonZeroUsize>(GREATEST_ROUNDS))]
     pub rounds: NonZeroUsize,
-    /// Chooses solids and rays
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    /// Seed the solids and the rays
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_seed, allow_negative_numbers = true)]
     pub seed: u64,
-    /// Leave out rivals that would take more than SIZE, such as 500MB or 4GiB
+    /// Leave out rivals that take more than SIZE of memory, such as `500MB` or `4GiB`
     #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = memory::parse_size)]
     pub max_memory: u64,
-    /// Write figures, traversal.csv and index.html to DIR
+    /// Write figures (SVG), `traversal.csv` and `index.html` to DIR
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
     #[command(flatten)]
@@ -97,30 +94,30 @@ pub struct TraversalArguments {
     pub common: Common,
 }
 
-/// Follow this library to larger and larger scenes
+/// Measure how time and memory grow with the scene
 ///
-/// Time to build, memory and rays a second against the number of cylinders
-/// (random sticks, 10^3 to 10^7) and of placements of a prototype of 1000 sticks
-/// (10^2 to 10^7), with the exponents by which they grow.
+/// Build time, memory and rays per second are measured against the number of cylinders
+/// (random sticks, 10^3 to 10^7) and of placements of a prototype of 1000 sticks (10^2 to
+/// 10^7), with the exponents of their growth.
 #[derive(Args, Debug)]
 pub struct ScaleArguments {
     /// Stop at N cylinders and N placements
     #[arg(long, value_name = "N", default_value = "10000000")]
     pub most: NonZeroUsize,
-    /// Rays of each kind
+    /// Trace N rays of each kind
     #[arg(long, value_name = "N", default_value = "65536", value_parser = count_up_to::<NonZeroUsize>(GREATEST_TIMED_RAYS))]
     pub rays: NonZeroUsize,
-    /// Samples of each time
+    /// Take N samples of each time
     #[arg(long, value_name = "N", default_value = "5", value_parser = count_up_to::<NonZeroUsize>(GREATEST_ROUNDS))]
     pub rounds: NonZeroUsize,
-    /// Chooses scenes and rays
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    /// Seed the scenes and the rays
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_seed, allow_negative_numbers = true)]
     pub seed: u64,
-    /// Leave out scenes whose records and trees would take more than SIZE, such
-    /// as 500MB or 4GiB
+    /// Leave out scenes whose records and trees take more than SIZE of memory, such as
+    /// `500MB` or `4GiB`
     #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = memory::parse_size)]
     pub max_memory: u64,
-    /// Write figures, scale.csv and index.html to DIR
+    /// Write figures (SVG), `scale.csv` and `index.html` to DIR
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
     #[command(flatten)]
@@ -131,21 +128,20 @@ pub struct ScaleArguments {
 #[derive(Clone, Debug)]
 pub struct Chosen(pub Vec<Representation>);
 
-/// The error names what is known.
-fn parse_rival(text: &str) -> Result<Chosen, String> {
-    Representation::rivals(text).map(Chosen).ok_or_else(|| {
-        let all = Representation::ALL.into_iter();
-        let rivals = all.filter(|one| !one.is_ours()).map(Representation::name);
-        let names: Vec<&str> = ["own"].into_iter().chain(rivals).collect();
-        format!("it must be one of {}", names.join(", "))
-    })
+/// Accepts `own` and the names of single rivals.
+fn rival() -> impl TypedValueParser<Value = Chosen> {
+    let all = Representation::ALL.into_iter();
+    let rivals = all.filter(|one| !one.is_ours()).map(|one| one.to_string());
+    let names: Vec<String> = [String::from("own")].into_iter().chain(rivals).collect();
+    PossibleValuesParser::new(names).map(|name| Chosen(Representation::rivals(&name)))
 }
 
-/// The error names what is known.
-fn parse_scene(text: &str) -> Result<SceneName, String> {
-    let known = SceneName::ALL.into_iter().find(|one| one.name() == text);
-    known.ok_or_else(|| {
-        let names = SceneName::ALL.map(SceneName::name).join(", ");
-        format!("it must be one of {names}")
-    })
+/// Accepts the names of the formulations, of the tracer, and of Embree's geometry.
+fn contender() -> PossibleValuesParser {
+    let all = formulations::all();
+    let mut names: Vec<&str> = all.iter().map(|one| one.name()).collect();
+    // Each name occurs for f32 and for f64.
+    names.sort_unstable();
+    names.dedup();
+    PossibleValuesParser::new(names.into_iter().chain(rival_names()))
 }

@@ -2,21 +2,20 @@
 
 use cyltrace::tracer::Options;
 use cyltrace_bench::scale::{
-    Fits, Plan, Resident, Row, SUMMARY_HEADINGS, Scale, Series, figures, growths, page, summary,
-    table,
+    Plan, Resident, SUMMARY_HEADINGS, Scale, Series, figures, growths, page, records, summary,
 };
 use cyltrace_bench::traversal::Workers;
 use cyltrace_bench::{Environment, WallClock};
-use cyltrace_output::Table;
+use cyltrace_output::{Table, csv};
 use serde_json::{Value, json};
 
-use super::{rays_sentence, tell, with_circumstances};
+use super::{print_summary, rays_sentence, with_environment};
 use crate::arguments::ScaleArguments;
 use crate::memory::{forget_peak, peak_resident_bytes};
 use crate::output_sink::{make_directory, write_text};
 use crate::{interrupt, json, progress, scene};
 
-/// Time to build, memory and rays a second against the size of scenes.
+/// Measures build time, memory and rays per second against the size of scenes.
 pub fn run(arguments: &ScaleArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
     json::check(common)?;
@@ -58,12 +57,14 @@ pub fn run(arguments: &ScaleArguments) -> anyhow::Result<()> {
         for shown in figures(&found) {
             write_text(&directory.join(format!("{}.svg", shown.name)), &shown.svg)?;
         }
-        write_text(&directory.join("scale.csv"), &table(&found))?;
+        let rows = Series::ALL.map(|series| records(&found, series));
+        let rows: Vec<_> = rows.into_iter().flatten().collect();
+        write_text(&directory.join("scale.csv"), &csv(&rows))?;
         write_text(&directory.join("index.html"), &page(&found, &sentence))?;
     }
     json::write(common, &all_figures(&found, &environment))?;
     let text = summary_text(&found, &sentence);
-    tell(common, text, arguments.report.as_deref())
+    print_summary(common, text, arguments.report.as_deref())
 }
 
 fn summary_text(found: &Scale, sentence: &str) -> String {
@@ -81,45 +82,25 @@ fn summary_text(found: &Scale, sentence: &str) -> String {
     format!("{sentence}\n{table}{missing}{cylinders}\n{placements}\n")
 }
 
-/// All figures; null where there is none.
+/// All figures; null for missing ones.
 fn all_figures(found: &Scale, environment: &Environment) -> Value {
-    let rows = |series| -> Vec<Value> { found.of(series).iter().map(row_figures).collect() };
     let fits = |series| {
-        let Fits {
-            build_s,
-            bytes,
-            rays_per_s,
-            incoherent_rays_per_s,
-        } = found.fits(series);
+        let fits = found.fits(series);
         json!({
-            "build_s": build_s,
-            "bytes": bytes,
-            "rays_per_s": rays_per_s,
-            "incoherent_rays_per_s": incoherent_rays_per_s,
+            "build_s": fits.build_s,
+            "bytes": fits.bytes,
+            "rays_per_s": fits.rays_per_s,
+            "incoherent_rays_per_s": fits.incoherent_rays_per_s,
         })
     };
     let figures = json!({
-        "cylinders": rows(Series::Cylinders),
-        "placements": rows(Series::Placements),
+        "cylinders": records(found, Series::Cylinders),
+        "placements": records(found, Series::Placements),
         "fits": {
             "cylinders": fits(Series::Cylinders),
             "placements": fits(Series::Placements),
         },
         "threads": found.threads,
     });
-    with_circumstances(figures, environment, "rays")
-}
-
-fn row_figures(row: &Row) -> Value {
-    let found = row.found.as_ref().ok();
-    json!({
-        "n": row.n,
-        "build_s": found.map(|one| one.build_s),
-        "bytes": found.map(|one| one.bytes),
-        "bytes_per": found.map(|one| one.bytes as f64 / row.n as f64),
-        "resident_bytes": found.and_then(|one| one.resident_bytes),
-        "rays_per_s": found.map(|one| one.rays_per_s),
-        "incoherent_rays_per_s": found.map(|one| one.incoherent_rays_per_s),
-        "reason": row.found.as_ref().err(),
-    })
+    with_environment(figures, environment, "rays")
 }

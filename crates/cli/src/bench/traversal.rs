@@ -2,31 +2,31 @@
 
 use cyltrace::tracer::Options;
 use cyltrace_bench::traversal::{
-    BEST_HEADINGS, BEST_NAMES, Best, Figures, Kind, Plan, RIVALS, Ratio, Representation, Row,
-    SUMMARY_HEADINGS, SceneName, Traversal, Workers, figures, page, summary, table,
+    BEST_HEADINGS, BEST_NAMES, Best, Figures, Kind, Plan, RIVALS, Ratio, Representation,
+    SUMMARY_HEADINGS, SceneName, Traversal, Workers, figures, page, ratio_key, records, summary,
 };
 use cyltrace_bench::{Environment, ThreadClock, Timer, WallClock};
-use cyltrace_output::Table;
+use cyltrace_output::{Table, csv};
 use serde_json::{Map, Value, json};
 
-use super::{rays_sentence, tell, with_circumstances};
+use super::{print_summary, rays_sentence, with_environment};
 use crate::arguments::TraversalArguments;
 use crate::output_sink::{make_directory, write_text};
 use crate::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
 
-/// Time, error and memory of everything that traces solids. The check is that this
-/// library has no wrong answer.
+/// Measures time, error and memory of everything that traces solids. The check fails if
+/// this library has a wrong answer.
 pub fn run(arguments: &TraversalArguments) -> anyhow::Result<u8> {
     let common = &arguments.common;
     json::check(common)?;
     if let Some(directory) = &arguments.report {
         make_directory(directory)?;
     }
-    // What is not timed runs on all of these.
+    // Everything that is not timed runs on all of these.
     let workers = scene::workers(common)?;
     let plan = plan(arguments, workers.current_num_threads())?;
     let bar = progress::bar(common, Traversal::steps(&plan) as u64, "steps");
-    // One thread's processor time leaves out what other programs do meanwhile.
+    // One thread's processor time excludes other programs.
     let is_one_thread = plan.worker_sets.iter().all(|workers| workers.threads == 1);
     let timer: &mut (dyn Timer + Send) = match is_one_thread {
         true => &mut ThreadClock,
@@ -49,7 +49,7 @@ pub fn run(arguments: &TraversalArguments) -> anyhow::Result<u8> {
         }
         write_text(
             &directory.join("traversal.csv"),
-            &table(&found, &environment),
+            &csv(&records(&found, &environment)),
         )?;
         write_text(&directory.join("index.html"), &page(&found, &sentence))?;
     }
@@ -59,12 +59,12 @@ pub fn run(arguments: &TraversalArguments) -> anyhow::Result<u8> {
     all["clock"] = json!(if is_one_thread { "thread" } else { "wall" });
     json::write(common, &all)?;
     let text = summary_text(&found, &sentence);
-    tell(common, text, arguments.report.as_deref())?;
+    print_summary(common, text, arguments.report.as_deref())?;
     let is_good = found.wrong().next().is_none();
     Ok(if is_good { GOOD } else { CHECK_FAILED })
 }
 
-/// One thread and all, or as many as `--threads` says.
+/// The settings: one thread and all threads, or the number that `--threads` states.
 fn plan(arguments: &TraversalArguments, all_threads: usize) -> anyhow::Result<Plan> {
     let common = &arguments.common;
     let threads = match common.threads {
@@ -97,8 +97,8 @@ fn plan(arguments: &TraversalArguments, all_threads: usize) -> anyhow::Result<Pl
     })
 }
 
-/// The tables for people: all that was measured, each side at its best, and this
-/// library's wrong answers.
+/// The tables for people: all rows, each side at its best, and this library's wrong
+/// answers.
 fn summary_text(found: &Traversal, sentence: &str) -> String {
     let mut table = Table::new(&SUMMARY_HEADINGS, 3);
     let measured = found.rows.iter().filter(|row| row.found.is_ok());
@@ -108,9 +108,9 @@ fn summary_text(found: &Traversal, sentence: &str) -> String {
     let mut text = format!("{sentence}\n{table}");
     for &scene in &found.scenes {
         for rays in Kind::ALL {
-            let ratios = RIVALS.iter().filter_map(|(key, rivals)| {
-                let ratio = found.ratio(scene, rays, rivals).ok()?;
-                Some(format!("{key} {:.2}", ratio.spread.median))
+            let ratios = RIVALS.iter().filter_map(|&rival| {
+                let ratio = found.ratio_to(scene, rays, rival).ok()?;
+                Some(format!("{} {:.2}", ratio_key(rival), ratio.spread.median))
             });
             let ratios: Vec<String> = ratios.collect();
             let (scene, rays) = (scene.name(), rays.name());
@@ -125,14 +125,14 @@ fn summary_text(found: &Traversal, sentence: &str) -> String {
     text + &wrong_text(found)
 }
 
-/// Which rows of this library have wrong answers.
+/// The rows of this library with wrong answers.
 fn wrong_text(found: &Traversal) -> String {
     let ours = found.rows.iter().filter(|row| row.representation.is_ours());
     let measured = ours.filter(|row| row.found.is_ok()).count();
     let wrong = found.wrong().map(|row| {
         let (scene, rays) = (row.scene.name(), row.rays.name());
         let percent = row.found.as_ref().map_or(0.0, |one| one.wrong_percent);
-        let name = row.representation.name();
+        let name = row.representation;
         format!("wrong: {name}, {scene}, {rays}: {percent:.3} % of the rays judged\n")
     });
     let wrong: String = wrong.collect();
@@ -142,14 +142,14 @@ fn wrong_text(found: &Traversal) -> String {
     }
 }
 
-/// All figures; null where there is none.
+/// All figures; null for missing ones.
 fn all_figures(found: &Traversal, environment: &Environment) -> Value {
     let numbers = |of: fn(Ratio) -> Value| by_scene(found, |ratio| ratio.map_or(Value::Null, of));
     let figures = json!({
-        "rows": found.rows.iter().map(row_figures).collect::<Vec<_>>(),
+        "rows": records(found, environment),
         "ratios": numbers(|ratio| json!(ratio.spread.median)),
         "ratio_spreads": numbers(|ratio| json!(ratio.spread.deviation)),
-        "ratio_of": numbers(|ratio| json!([ratio.rival.name(), ratio.ours.name()])),
+        "ratio_of": numbers(|ratio| json!([ratio.rival.to_string(), ratio.ours.to_string()])),
         "reasons": by_scene(found, |ratio| {
             ratio.err().map_or(Value::Null, |reason| json!(reason))
         }),
@@ -157,32 +157,7 @@ fn all_figures(found: &Traversal, environment: &Environment) -> Value {
         "ratio_threads": found.threads.first(),
         "spread": "median absolute deviation",
     });
-    with_circumstances(figures, environment, "rays")
-}
-
-fn row_figures(row: &Row) -> Value {
-    let figures = row.found.as_ref().ok();
-    let number = |of: fn(&Figures) -> Option<f64>| figures.and_then(of);
-    json!({
-        "scene": row.scene.name(),
-        "rays": row.rays.name(),
-        "representation": row.representation.name(),
-        "threads": row.threads,
-        "ns_per_ray": number(|one| Some(one.ns.median)),
-        "spread": number(|one| Some(one.ns.deviation)),
-        "wrong_percent": number(|one| Some(one.wrong_percent)),
-        "p99_error_r": number(|one| one.p99_error_r),
-        "bytes_per_cylinder": number(|one| Some(one.bytes_per_cylinder)),
-        "build_s": number(|one| Some(one.build_s)),
-        "mrays_per_s": number(|one| Some(one.mrays_per_s())),
-        "callbacks_per_ray": number(|one| one.callbacks_per_ray),
-        "solves_per_ray": number(|one| one.solves_per_ray),
-        "ratio": number(|one| one.ratio.map(|(spread, _)| spread.median)),
-        "ratio_spread": number(|one| one.ratio.map(|(spread, _)| spread.deviation)),
-        "ratio_to": figures.and_then(|one| one.ratio.map(|(_, ours)| ours.name())),
-        "reason": row.found.as_ref().err(),
-        "order": figures.map(|one| one.order.name()),
-    })
+    with_environment(figures, environment, "rays")
 }
 
 fn best_figures(best: &Best) -> Value {
@@ -191,8 +166,8 @@ fn best_figures(best: &Best) -> Value {
     json!({
         "scene": best.scene.name(),
         "rays": best.rays.name(),
-        "ours": ratio.map(|ratio| ratio.ours.name()),
-        "rival": ratio.map(|ratio| ratio.rival.name()),
+        "ours": ratio.map(|ratio| ratio.ours.to_string()),
+        "rival": ratio.map(|ratio| ratio.rival.to_string()),
         "order": ratio.map(|ratio| ratio.order.name()),
         "ratio": ratio.map(|ratio| ratio.spread.median),
         "ratio_spread": ratio.map(|ratio| ratio.spread.deviation),
@@ -210,12 +185,12 @@ fn best_figures(best: &Best) -> Value {
 fn by_scene(found: &Traversal, value: impl Fn(Result<Ratio, String>) -> Value) -> Value {
     let scenes = found.scenes.iter().map(|&scene| {
         let kinds = Kind::ALL.map(|rays| {
-            let rivals = RIVALS
-                .map(|(key, rivals)| (key.to_owned(), value(found.ratio(scene, rays, rivals))));
-            (
-                rays.name().to_owned(),
-                Value::Object(Map::from_iter(rivals)),
-            )
+            let rivals = RIVALS.map(|rival| {
+                let ratio = found.ratio_to(scene, rays, rival);
+                (ratio_key(rival), value(ratio))
+            });
+            let rivals = Value::Object(Map::from_iter(rivals));
+            (rays.name().to_owned(), rivals)
         });
         (
             scene.name().to_owned(),

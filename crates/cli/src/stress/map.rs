@@ -1,4 +1,4 @@
-//! `cyltrace stress --map`: a picture of which formulations are right.
+//! `cyltrace stress --map`: a picture of the formulations that are right.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! `cyltrace stress --replay`: one case, and what everyone says of it.
+//! `cyltrace stress --replay`: one case, and the answer of every solver.
 
 use cyltrace::math::UNIT_ROUNDOFF;
 use cyltrace::solid::AnySolid;

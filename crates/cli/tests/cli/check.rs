@@ -311,7 +311,7 @@ fn arguments_that_do_not_fit_are_refused() {
             &[
                 "--rays", "rays.csv", "--hits", "hits.csv", "--json", "hits.csv",
             ],
-            "destroy",
+            "overwrite",
         ),
     ] {
         let (code, out, err) = cyltrace(

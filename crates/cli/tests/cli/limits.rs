@@ -82,7 +82,7 @@ fn parsing_a_scene_stays_within_max_memory() {
         assert_eq!((code, printed.as_str()), (2, ""), "{line}: {error}");
         assert_eq!(
             error,
-            "error: scene.toml: reading the scene takes more memory than it may: --max-memory allows 20.0 MB\n"
+            "error: scene.toml: reading the scene takes more memory than the limit: --max-memory allows 20.0 MB\n"
         );
         assert_eq!(names_in(folder.path()), ["rays.csv", "scene.toml"]);
     }

@@ -10,6 +10,7 @@ mod fuzz_corpus;
 mod hit_rows;
 mod info;
 mod limits;
+mod manual;
 mod memory;
 mod outputs;
 mod points;

@@ -61,7 +61,7 @@ fn refused(directory: &Path, line: &str, expected: &[&str]) {
 fn output_that_is_an_input_refused_with_both_names() {
     let directory = workplace();
     let trace = "trace scene.toml --rays rays.csv";
-    let destroys = "would destroy";
+    let overwrites = "would overwrite";
     for (line, expected) in [
         (
             format!("{trace} -o rays.csv"),
@@ -107,7 +107,7 @@ fn output_that_is_an_input_refused_with_both_names() {
         refused(
             directory.path(),
             &line,
-            &[destroys, expected[0], expected[1]],
+            &[overwrites, expected[0], expected[1]],
         );
     }
 }
@@ -147,12 +147,12 @@ fn output_that_is_a_link_to_an_input_refused() {
     refused(
         directory.path(),
         "render scene.toml -o link.png",
-        &["would destroy", "link.png", "scene.toml"],
+        &["would overwrite", "link.png", "scene.toml"],
     );
     refused(
         directory.path(),
         "trace scene.toml --rays rays.csv -o hard.csv",
-        &["would destroy", "hard.csv", "rays.csv"],
+        &["would overwrite", "hard.csv", "rays.csv"],
     );
 }
 

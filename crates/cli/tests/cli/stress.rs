@@ -187,7 +187,10 @@ fn command_writes_a_row_for_each_family_inputs_and_formulation() {
 
     for (arguments, message) in [
         (["--family", "knot"], "there is no family"),
-        (["--formulation", "guess"], "there is no formulation"),
+        (
+            ["--formulation", "guess"],
+            "invalid value 'guess' for '--formulation <NAME>'",
+        ),
         (["--replay", "1:2"], "16 parts"),
     ] {
         let failed = command().args(arguments).assert().code(2);

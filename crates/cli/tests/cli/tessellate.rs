@@ -168,9 +168,9 @@ fn refusals_name_the_remedy_and_write_nothing() {
         ),
         (
             "scene.toml -o old.obj --max-memory 2kB",
-            "error: nothing is written, as the file may take ",
+            "error: the mesh needs up to ",
         ),
-        ("scene.toml -o scene.toml", "would destroy"),
+        ("scene.toml -o scene.toml", "would overwrite"),
         ("scene.toml -o a.obj --json a.obj", "are the same file"),
     ] {
         let (code, _, err) = tessellate(directory.path(), line);

@@ -93,7 +93,7 @@ fn accuracy_unknown_name_is_refused_with_the_known_ones() {
     let folder = tempfile::tempdir().expect("a directory");
     let (code, out, err) = bench(folder.path(), &["accuracy", "--formulation", "triple"]);
     assert_eq!((code, out.as_str()), (2, ""));
-    for part in ["\"triple\"", "triple-product", "cone-curve", "mesh-1024"] {
+    for part in ["'triple'", "triple-product", "cone-curve", "mesh-1024"] {
         assert!(err.contains(part), "no {part} in {err}");
     }
 }

@@ -4,39 +4,37 @@ use std::fs;
 
 use super::{bench, figures, keys, report};
 
-const ROW_KEYS: [&str; 10] = [
+const ROW_KEYS: [&str; 11] = [
     "scene",
     "rays",
     "representation",
     "threads",
     "ns_per_ray",
     "spread",
+    "mrays_per_s",
     "wrong_percent",
     "p99_error_r",
     "bytes_per_cylinder",
     "build_s",
 ];
 
-const REPRESENTATIONS: [&str; 19] = [
+const REPRESENTATIONS: [&str; 16] = [
     "analytic_single",
     "analytic_packet",
     "analytic_block",
-    "c_callback",
     "embree_cone",
     "embree_cone_packet",
     "embree_round",
     "embree_round_packet",
     "embree_sphere",
     "embree_sphere_packet",
-    "embree_disk",
-    "embree_disk_packet",
+    "embree_disc",
+    "embree_disc_packet",
     "mesh_8",
     "mesh_16",
     "mesh_32",
     "mesh_64",
     "mesh_faces",
-    "native_instances",
-    "instance_array",
 ];
 
 /// Too little memory for meshes of more than 16 sides.
@@ -80,7 +78,7 @@ fn traversal_json_has_every_row_and_ratio_or_its_reason() {
         assert!(row["ns_per_ray"].as_f64().unwrap() > 0.0, "{row}");
         assert!(row["reason"].is_null(), "{row}");
         let is_ours = name.starts_with("analytic");
-        if is_ours || name == "c_callback" {
+        if is_ours {
             assert_eq!(row["wrong_percent"], 0.0, "{row}");
         }
         assert_eq!(row["ratio"].is_null(), is_ours, "{row}");
@@ -105,7 +103,7 @@ fn traversal_json_has_every_row_and_ratio_or_its_reason() {
                 "vs_embree_cone",
                 "vs_embree_round",
                 "vs_embree_sphere",
-                "vs_embree_disk",
+                "vs_embree_disc",
                 "vs_mesh_32",
                 "vs_mesh_64",
                 "vs_mesh_faces",
@@ -182,13 +180,11 @@ fn traversal_nested_placements_are_instanced_and_absent_scenes_say_so() {
         let name = row["representation"].as_str().unwrap();
         let missing = row["reason"].as_str();
         if row["scene"] == "forest" {
-            let missing = missing.expect("the forest is not there");
-            assert!(missing.contains("forest.toml is not there"), "{missing}");
+            let missing = missing.expect("the forest does not exist");
+            assert!(missing.contains("forest.toml does not exist"), "{missing}");
             continue;
         }
         match name {
-            "c_callback" => assert!(missing.unwrap().contains("places prototypes")),
-            "instance_array" => {}
             _ if is_of_other_kinds(name) => {
                 assert!(missing.unwrap().contains("of the kind cylinder"), "{row}");
             }
@@ -199,7 +195,7 @@ fn traversal_nested_placements_are_instanced_and_absent_scenes_say_so() {
         }
         // Poles of one scale: what f32 gets wrong is at edges. Packets through instances of
         // curves find what single rays find.
-        if ["native_instances", "mesh_64"].contains(&name) {
+        if name == "mesh_64" {
             assert!(row["wrong_percent"].as_f64().unwrap() < 3.0, "{row}");
         }
     }
@@ -208,7 +204,7 @@ fn traversal_nested_placements_are_instanced_and_absent_scenes_say_so() {
 }
 
 fn is_of_other_kinds(representation: &str) -> bool {
-    let own = ["embree_round", "embree_sphere", "embree_disk", "mesh_faces"];
+    let own = ["embree_round", "embree_sphere", "embree_disc", "mesh_faces"];
     own.iter().any(|one| representation.starts_with(one))
 }
 
@@ -219,7 +215,7 @@ fn traversal_other_solids_have_rows_and_rivals_of_their_own() {
         ("cuboids_1e5", &["mesh_faces"][..]),
         (
             "disks_1e5",
-            &["embree_disk", "embree_disk_packet", "mesh_8"],
+            &["embree_disc", "embree_disc_packet", "mesh_8"],
         ),
     ];
     for (scene, rivals) in scenes {
@@ -247,9 +243,6 @@ fn traversal_other_solids_have_rows_and_rivals_of_their_own() {
             assert!(row["ns_per_ray"].is_null(), "{row}");
             let reason = row["reason"].as_str().unwrap();
             let expected = match name {
-                "c_callback" => "this scene has other solids",
-                "native_instances" => "other solids",
-                "instance_array" => "no placements",
                 _ if name.starts_with("mesh_") && scene == "disks_1e5" && name != "mesh_faces" => {
                     "more than the 160 MB"
                 }
@@ -328,28 +321,19 @@ fn traversal_own_rivals_alone_are_summed_up_with_their_orders() {
     let mut arguments = STICKS.to_vec();
     // Shadow rays of one tile are in one order only.
     arguments[4] = "256";
-    arguments.extend([
-        "--rival",
-        "own",
-        "--rival",
-        "c_callback",
-        "--max-isa",
-        "avx2",
-    ]);
+    arguments.extend(["--rival", "own", "--max-isa", "avx2"]);
     let found = figures(folder.path(), &arguments);
     let rows = found["rows"].as_array().expect("an array");
     let expected: Vec<&str> = REPRESENTATIONS
         .into_iter()
         .filter(|name| !name.starts_with("mesh_") || *name == "mesh_faces")
-        .filter(|name| !["native_instances", "instance_array"].contains(name))
         .collect();
     assert_eq!(rows.len(), 3 * expected.len());
     for (row, name) in rows.iter().zip(expected.iter().cycle()) {
         assert_eq!(row["representation"], *name);
         let order = row["order"].as_str();
         assert_eq!(order.is_some(), row["reason"].is_null(), "{row}");
-        // The callback in C answers for single rays as they come.
-        if name.starts_with("analytic") || *name == "c_callback" {
+        if name.starts_with("analytic") {
             assert_eq!(order, Some("given"), "{row}");
         }
     }
@@ -380,7 +364,7 @@ fn traversal_report_is_written_whole_and_needs_nothing_else() {
     let folder = tempfile::tempdir().expect("a directory");
     let (out, names) = report(folder.path(), &STICKS);
     for part in [
-        "c_callback",
+        "embree_cone_packet",
         "times as fast: sticks_1e4",
         "Embree's own",
         "0 wrong in all 9 rows",
@@ -404,7 +388,7 @@ fn traversal_report_is_written_whole_and_needs_nothing_else() {
     let table = read("traversal.csv").unwrap();
     assert_eq!(table.lines().count(), 1 + rows);
     let headings = table.lines().next().unwrap();
-    assert!(headings.ends_with("ratio_spread,reason,order,processor,embree,isa"));
+    assert!(headings.ends_with("ratio_spread,reason,order,processor,embree,isa,ratio_to"));
     let page = read("index.html").unwrap();
     assert!(page.contains(&read("sticks_1e4-coherent.svg").unwrap()));
 }
@@ -425,9 +409,13 @@ fn traversal_unknown_rival_is_refused_with_the_known_ones() {
     for name in ["cone", "analytic_single"] {
         let (code, out, err) = bench(folder.path(), &["traversal", "--rival", name]);
         assert_eq!((code, out.as_str()), (2, ""));
-        for part in ["one of own, c_callback", "embree_disk_packet", "mesh_faces"] {
+        for part in [
+            "[possible values: own, embree_cone",
+            "embree_disc_packet",
+            "mesh_faces",
+        ] {
             assert!(err.contains(part), "no {part} in {err}");
         }
-        assert!(!err.contains("of analytic"), "{err}");
+        assert!(!err.contains("analytic_block"), "{err}");
     }
 }
