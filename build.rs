@@ -1,14 +1,15 @@
 //! Finds the installed Embree, generates its bindings from its own headers,
 //! compiles the C shim and links the library.
 //!
-//! Bindings are never committed: the layout of a hit depends on how the
-//! installed library was configured, and headers of another version corrupt
-//! memory without a word.
+//! A program never uses bindings from the repository: the layout of a hit depends on how
+//! the installed library was configured, and headers of another version corrupt memory
+//! silently. Documentation does (`build/docs_rs.rs`), so that docs.rs needs no Embree.
 
 #[path = "build/locate.rs"]
 mod locate;
 
 use std::env;
+use std::fs;
 use std::panic;
 use std::path::{Path, PathBuf};
 use std::process::exit;
@@ -61,10 +62,19 @@ const CONSTANTS: [&str; 33] = [
     "RTC_SCENE_FLAG_ROBUST",
 ];
 
+/// Bindings that are documented and never linked.
+const DOCS_BINDINGS: &str = "build/docs_rs.rs";
+
 fn main() {
     println!("cargo::rerun-if-changed=src/embree/shim.h");
     println!("cargo::rerun-if-changed=src/embree/shim.c");
     println!("cargo::rerun-if-changed=build/locate.rs");
+    println!("cargo::rerun-if-env-changed=DOCS_RS");
+    if env::var_os("DOCS_RS").is_some() {
+        println!("cargo::rerun-if-changed={DOCS_BINDINGS}");
+        fs::copy(DOCS_BINDINGS, bindings_path()).expect("the bindings for docs.rs are copied");
+        return;
+    }
     for variable in VARIABLES {
         println!("cargo::rerun-if-env-changed={variable}");
     }
@@ -107,7 +117,12 @@ impl ParseCallbacks for UsedConstants {
     }
 }
 
-/// Writes the bindings to `OUT_DIR/embree.rs`.
+/// Where `src/embree/sys.rs` includes the bindings from.
+fn bindings_path() -> PathBuf {
+    Path::new(&env::var("OUT_DIR").expect("cargo sets OUT_DIR")).join("embree.rs")
+}
+
+/// Writes the bindings.
 fn bind(embree: &Embree) {
     let builder = bindgen::Builder::default()
         .header("src/embree/shim.h")
@@ -144,7 +159,7 @@ fn bind(embree: &Embree) {
             panic.downcast_ref::<String>().map_or("", String::as_str)
         )),
     };
-    let target = Path::new(&env::var("OUT_DIR").expect("cargo sets OUT_DIR")).join("embree.rs");
+    let target = bindings_path();
     if let Err(error) = bindings.write_to_file(&target) {
         fail(&format!("{}: {error}", target.display()));
     }

@@ -34,16 +34,16 @@ Install it (`sh setup.sh` does) with one of
   pacman -S embree
   brew install embree
   conda install -c conda-forge embree
-or name a place: EMBREE_DIR (holds include/ and lib/), or EMBREE_INCLUDE_DIR (holds embree4/rtcore.h) with EMBREE_LIB_DIR.";
+or name a place: EMBREE_DIR (contains include/ and lib/), or EMBREE_INCLUDE_DIR (contains embree4/rtcore.h) with EMBREE_LIB_DIR.";
 
 /// An Embree that can be compiled against.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Embree {
     /// 3 or 4.
     pub major: u32,
-    /// The directory that holds `embree3/` or `embree4/`.
+    /// The directory that contains `embree3/` or `embree4/`.
     pub include: PathBuf,
-    /// The directory that holds the library.
+    /// The directory of the library.
     pub library_directory: PathBuf,
     /// The library's name for the linker, such as `embree3`.
     pub library: String,

@@ -11,7 +11,7 @@
 # next time; fuzz/corpus/TARGET is what is committed. An input that fails ends its target,
 # is kept in target/fuzz/found/TARGET and named at the end; then the exit code is 1. It
 # belongs into fuzz/corpus/TARGET with the change that mends it: `cargo test --release
-# --test fuzz_corpus` replays all of that. `BINARY FILE`, as printed, runs it alone, and
+# --test cli fuzz_corpus` replays all of that. `BINARY FILE`, as printed, runs it alone, and
 # `BINARY -minimize_crash=1 -max_total_time=60 FILE` makes it smaller.
 #
 # An input may take 20 s and 2 GB. Needs a C++ compiler.

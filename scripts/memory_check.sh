@@ -5,16 +5,17 @@
 #   sh scripts/memory_check.sh            valgrind
 #   sh scripts/memory_check.sh address    AddressSanitizer, which needs a nightly
 #
-# Both run the example in C (examples/c/check.c, a whole check with its callback)
-# and the calls of tests/capi. Valgrind also sees Embree's own code; it knows no
-# AVX-512, so that Embree and the tracer choose AVX2 by themselves. A block that is
-# definitely lost is an error. Exits with 0 when nothing is found or when the tool
-# cannot be had (and says so), with 1 otherwise.
+# Both run the calls of crates/capi/tests/capi; valgrind also runs the example in C
+# (crates/capi/examples/c/check.c, a whole check with its callback). Valgrind sees Embree's
+# own code too; it lacks AVX-512, so Embree and the tracer choose AVX2. A block that is
+# definitely lost is an error. Exits with 0 if there are no errors, or if the tool is not
+# installed (which it reports), and with 1 otherwise.
 set -eu
 cd "$(dirname "$0")/.."
 
 tool=${1:-valgrind}
 work=target/memory_check
+example=crates/capi/examples/c
 mkdir -p "$work"
 
 skip() {
@@ -33,24 +34,17 @@ test_binary() {
         sed -n 's/.*"name":"capi".*"executable":"\([^"]*\)".*/\1/p'
 }
 
-# Compiles the example in C against the library in $1, with further flags.
-compile_example() {
-    folder=$(cd "$1" && pwd)
-    shift
-    cc -std=c99 -O1 -g -DREAL=double -I include examples/c/check.c -o "$work/check" \
-        "$@" -L "$folder" -lcyltrace_c -lm "-Wl,-rpath,$folder"
-}
-
 case $tool in
 valgrind)
     command -v valgrind >/dev/null || skip "valgrind is not installed (apt install valgrind)"
-    cargo build --release --example cyltrace_c
-    compile_example target/release/examples
+    sh scripts/capi.sh "$work"
+    cc -std=c99 -O1 -g -DREAL=double -I "$work/include" "$example/check.c" -o "$work/check" \
+        -L "$work/lib" -lcyltrace_c -lm "-Wl,-rpath,$PWD/$work/lib"
     run() {
         valgrind --quiet --error-exitcode=99 --leak-check=full --num-callers=30 \
             --show-leak-kinds=definite --errors-for-leak-kinds=definite "$@"
     }
-    capi=$(test_binary test --release --test capi)
+    capi=$(test_binary test --release -p cyltrace-capi --test capi)
     ;;
 address)
     cargo +nightly --version >/dev/null 2>&1 || skip "there is no nightly toolchain"
@@ -61,7 +55,7 @@ address)
     build="--release --target $host --target-dir target/memory_check/build"
     # A C program does not bring the sanitizer's runtime; a Rust program does.
     # shellcheck disable=SC2086 # words are wanted
-    capi=$(test_binary +nightly test $build --test capi)
+    capi=$(test_binary +nightly test $build -p cyltrace-capi --test capi)
     run() { "$@"; }
     ;;
 *)
@@ -72,9 +66,9 @@ esac
 
 [ -n "$capi" ] || failed "tests/capi could not be built"
 echo "memory_check.sh: $tool, the calls of tests/capi"
-run "$capi" calls:: || failed "tests/capi"
+run "$capi" calls:: batches:: version:: || failed "tests/capi"
 if [ "$tool" = valgrind ]; then
-    echo "memory_check.sh: $tool, examples/c/check.c"
-    run "$work/check" examples/c/scene.toml || failed "examples/c/check.c"
+    echo "memory_check.sh: $tool, $example/check.c"
+    run "$work/check" "$example/scene.toml" || failed "$example/check.c"
 fi
 echo "memory_check.sh: $tool: no errors, nothing definitely lost"

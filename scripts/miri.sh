@@ -21,7 +21,5 @@ fi
 MIRIFLAGS="-Zmiri-disable-isolation"
 CYLTRACE_CASES=10
 export MIRIFLAGS CYLTRACE_CASES
-[ $# -gt 0 ] || set -- math:: solid:: oracle::number
-for filter in "$@"; do
-    cargo +nightly miri test --target-dir target/miri --lib "$filter"
-done
+[ $# -gt 0 ] || set -- math:: solid:: number::
+cargo +nightly miri test --target-dir target/miri -p cyltrace -p cyltrace-oracle --lib -- "$@"

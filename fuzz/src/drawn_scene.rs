@@ -105,7 +105,7 @@ fn prototype(drawing: &mut Drawing, later: std::ops::Range<u32>) -> Result<Proto
             AnySolid::Disk(one) => others.disks.push(SolidRecord::new(one, number, material)),
         }
     }
-    prototype.cylinders = cylinders.into();
+    prototype.solids.cylinders = cylinders.into();
     for _ in 0..drawing.below(2)? {
         if let Some(
             solid @ (Composition::Union(_)
@@ -118,7 +118,7 @@ fn prototype(drawing: &mut Drawing, later: std::ops::Range<u32>) -> Result<Proto
         }
     }
     if !later.is_empty() {
-        let least = usize::from(prototype.has_no_solids());
+        let least = usize::from(prototype.solids.is_empty());
         for _ in 0..least.max(drawing.below(2)?) {
             let of = drawing.bytes.int_in_range(later.start..=later.end - 1)?;
             prototype.placements.push(Placement {

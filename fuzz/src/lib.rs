@@ -2,7 +2,7 @@
 //!
 //! Each target is a function of bytes that panics when something is wrong. The same
 //! functions run under libFuzzer (`fuzz/targets`) and, over the inputs of
-//! `fuzz/corpus`, in a plain test (`tests/fuzz_corpus.rs`).
+//! `fuzz/corpus`, in a plain test (`crates/cli/tests/cli/fuzz_corpus.rs`).
 
 mod command_line;
 mod composed;

@@ -1,6 +1,6 @@
 //! Meshes of other programs: OBJ, PLY and STL.
 
-use cyltrace::meshes::{MeshError, MeshFile, MeshPlace, parse_obj, parse_ply, parse_stl};
+use cyltrace::meshes::{Format, MeshPlace};
 use cyltrace::scene::GREATEST_MESH_COORDINATE;
 
 /// A mesh in OBJ.
@@ -8,7 +8,7 @@ use cyltrace::scene::GREATEST_MESH_COORDINATE;
 /// # Panics
 /// When something is wrong with what it becomes.
 pub fn obj(bytes: &[u8]) {
-    judge(bytes, parse_obj);
+    judge(bytes, Format::Obj);
 }
 
 /// A mesh in PLY, in any of its three forms.
@@ -16,7 +16,7 @@ pub fn obj(bytes: &[u8]) {
 /// # Panics
 /// When something is wrong with what it becomes.
 pub fn ply(bytes: &[u8]) {
-    judge(bytes, parse_ply);
+    judge(bytes, Format::Ply);
 }
 
 /// A mesh in STL, as text or binary.
@@ -24,13 +24,13 @@ pub fn ply(bytes: &[u8]) {
 /// # Panics
 /// When something is wrong with what it becomes.
 pub fn stl(bytes: &[u8]) {
-    judge(bytes, parse_stl);
+    judge(bytes, Format::Stl);
 }
 
 /// A mesh is one whose corners exist and are numbers, and no larger than its file; an
 /// error names a place in the file.
-fn judge(bytes: &[u8], parse: fn(&[u8]) -> Result<MeshFile, MeshError>) {
-    let file = match parse(bytes) {
+fn judge(bytes: &[u8], format: Format) {
+    let file = match format.parse(bytes) {
         Ok(file) => file,
         Err(error) => {
             assert!(!error.message.trim().is_empty(), "{error:?}");

@@ -20,7 +20,7 @@ use zip::{CompressionMethod, ZipWriter};
 
 /// The most solids and placements of a scene that is loaded; a larger one is only
 /// counted. The program compares the counts with `--max-memory` likewise.
-const MOST_RECORDS: u64 = 20_000;
+const MOST_RECORDS: u128 = 20_000;
 
 /// The most solids and placements, with all nesting, that a ray tries one by one.
 const MOST_TRIED: u128 = 2_000;
@@ -171,10 +171,10 @@ fn load(folder: &TempDir) {
     }
     let counted = file.contents();
     let records = counted.iter().map(|contents| {
-        let own = contents.cylinders.saturating_add(contents.others.count);
-        own.saturating_add(contents.placements())
+        let own = contents.solids.counts.total();
+        own.saturating_add(contents.placements().into())
     });
-    if records.fold(0, u64::saturating_add) > MOST_RECORDS {
+    if records.fold(0, u128::saturating_add) > MOST_RECORDS {
         return;
     }
     let scene = match file.load() {
@@ -184,7 +184,7 @@ fn load(folder: &TempDir) {
     for (counted, held) in counted.iter().zip(&scene.contents()) {
         // A neuron's segments and somata are counted together: which are balls is not
         // known by its lines.
-        let solids = |contents: &ExpectedCounts| contents.cylinders + contents.others.count;
+        let solids = |contents: &ExpectedCounts| contents.solids.counts.total();
         let is_enough =
             solids(counted) >= solids(held) && counted.placements() >= held.placements();
         assert!(is_enough, "counted {counted:?}, loaded {held:?}");
@@ -218,7 +218,7 @@ fn trace(scene: &Arc<Scene>) {
         Err(error) => return said(&error),
     };
     let statistics = tracer.statistics();
-    let tried = statistics.cylinders_instanced + statistics.other_solids_instanced;
+    let tried = statistics.instanced.total();
     if tried.saturating_add(statistics.instances) > MOST_TRIED {
         return;
     }

@@ -11,12 +11,9 @@
 //! ray is within 4 Δ of the surface there.
 
 use cyltrace::math::{Orientation, Ray, UNIT_ROUNDOFF, frobenius_norm, power_of_two};
-use cyltrace::solid::{AnySolid, Caps, Cone, Crossing, Cylinder, Part};
+use cyltrace::solid::{AnySolid, Caps, Crossing, Cylinder, Part};
 use cyltrace::tracer::{Containing, Hit};
-use cyltrace_oracle::{
-    ExactAffine, TrueHit, cone_holds, cuboid_holds, disk_holds, placed_hits_of_any,
-    rounded_cone_holds, sphere_holds,
-};
+use cyltrace_oracle::{ExactAffine, TrueHit, placed_hits_of_any, truth};
 use glam::{DAffine3, DVec3};
 
 use super::drawn_scene::{DrawnScene, PlacedSolid};
@@ -73,7 +70,7 @@ impl<'a> Truth<'a> {
         for placed in self.placed.iter().filter(|placed| placed.path.is_empty()) {
             let is_found = (found.iter())
                 .any(|one| one.instance.is_empty() && one.primitive == placed.primitive);
-            let is_true = truly_holds(&placed.solid, point);
+            let is_true = truth(&placed.solid).truly_contains(point);
             assert_eq!(
                 is_found, is_true,
                 "contains {point:?} {placed:?} {drawn:#?}"
@@ -243,21 +240,5 @@ impl PlacedSolid {
             "{off:e} along the ray at a slope of {slope:e}, Δ {displacement:e}: {}",
             case()
         );
-    }
-}
-
-/// Whether a solid contains a point, in exact arithmetic.
-fn truly_holds(solid: &AnySolid, point: DVec3) -> bool {
-    match solid {
-        AnySolid::Cylinder(one) => {
-            let radius = one.radius();
-            let cone = Cone::new(one.p0(), one.p1(), radius, radius, one.caps());
-            cone_holds(&cone.expect("a cylinder is a cone"), point)
-        }
-        AnySolid::Cone(one) => cone_holds(one, point),
-        AnySolid::RoundedCone(one) => rounded_cone_holds(one, point),
-        AnySolid::Sphere(one) => sphere_holds(one, point),
-        AnySolid::Cuboid(one) => cuboid_holds(one, point),
-        AnySolid::Disk(one) => disk_holds(one, point),
     }
 }

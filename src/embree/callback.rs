@@ -2,7 +2,7 @@
 //!
 //! They find the state of the query in the context, turn lanes into rays, and
 //! hand both to the methods of [`UserGeometry`]. Each is compiled once for every
-//! set of instructions that there is reason to tell apart, so that a geometry's
+//! set of instructions that are worth a copy of the code, so that a geometry's
 //! methods, if they are `#[inline(always)]`, become code for that set; which one
 //! Embree calls is settled when the geometry is made.
 //!
@@ -15,8 +15,8 @@ use super::packet::Rays32;
 use super::query::Query;
 use super::ray::Ray32;
 use super::ray_set::{GREATEST_PACKET, RaySet};
-use super::scene::GeometryId;
 use super::sys::{self, word};
+use super::types::GeometryId;
 use super::user::{Reached, Registered, UserGeometry};
 use crate::math::{LANES, LaneMask};
 
@@ -58,7 +58,7 @@ macro_rules! callbacks {
             unsafe extern "C" fn intersect<G: UserGeometry>(
                 args: *const sys::RTCIntersectFunctionNArguments,
             ) {
-                // SAFETY: the caller's promises are those that are asked for.
+                // SAFETY: the caller promises what the callee requires.
                 unsafe { super::intersect::<G>(args) }
             }
 
@@ -87,7 +87,7 @@ callbacks!(
     )
 );
 
-/// What Embree calls back for in a context, which holds the instance on the way.
+/// What Embree calls back for in a context, which names the instance on the way.
 #[inline(always)]
 fn reached(primitive: u32, context: &sys::cyltrace_context) -> Reached {
     let instance = context.embree.instID[0];
@@ -118,7 +118,7 @@ type Packet<G> = <<G as UserGeometry>::Query as Query>::Packet;
 /// Embree's intersect callback.
 ///
 /// # Safety
-/// Invariants 2, 3, 4 and 7 hold for `args` and geometries of type `G`.
+/// Invariants 2, 3, 4 and 7 apply to `args` and geometries of type `G`.
 #[inline(always)]
 unsafe fn intersect<G: UserGeometry>(args: *const sys::RTCIntersectFunctionNArguments) {
     // SAFETY: invariant 7.
@@ -142,9 +142,9 @@ unsafe fn intersect<G: UserGeometry>(args: *const sys::RTCIntersectFunctionNArgu
         // SAFETY: invariant 7: one mask a lane.
         unsafe { *args.valid = -i32::from(hit.is_some()) };
         let Some(t_far) = hit else { return };
-        // SAFETY: invariant 7: the components stand where `sys::word` says, which
+        // SAFETY: invariant 7: the components are where `sys::word` says, which
         // is asserted there for one lane; every component is a 32-bit word, all
-        // bits of which are allowed in f32 as in u32.
+        // whose bits are all allowed in f32 as in u32.
         unsafe {
             let end = words.add(word::RAY_T_FAR).cast::<f32>();
             *end = (*end).min(t_far);
@@ -163,7 +163,7 @@ unsafe fn intersect<G: UserGeometry>(args: *const sys::RTCIntersectFunctionNArgu
     // SAFETY: invariant 4: the query of a packet is the packet's state.
     let packet = unsafe { &mut *context.query.cast::<Packet<G>>() };
     let (valid, id) = (args.valid, args.geomID);
-    // SAFETY: invariant 7: `N` lanes, of which Embree has these numbers.
+    // SAFETY: invariant 7: `N` lanes, whose numbers are from Embree.
     unsafe {
         match args.N {
             1 => intersect_lanes::<G, 1>(geometry, valid, words, at, id, packet),
@@ -265,7 +265,7 @@ unsafe fn occluded<G: UserGeometry>(args: *const sys::RTCOccludedFunctionNArgume
     }
 }
 
-/// The part of a packet that Embree calls back for, asked for any hit.
+/// The part of a packet that Embree calls back for, in a query for any hit.
 ///
 /// # Safety
 /// As [`intersect_lanes`], without hits.
@@ -307,7 +307,7 @@ fn unknown_width(callback: &'static str, lanes: u32) -> ! {
 
 /// The lanes of a callback, and which rays they are of.
 struct Lanes<const N: usize> {
-    /// Bit `i` tells whether lane `i` is active.
+    /// Bit `i` says whether lane `i` is active.
     active: u32,
     id: [u32; N],
     /// Where the lanes are rays in a row, the number of the first one. Embree's
@@ -397,7 +397,7 @@ impl<const N: usize> Lanes<N> {
         component: usize,
         of_rays: &mut [f32; GREATEST_PACKET],
     ) {
-        // SAFETY: the caller's promise; alignment is that of words, all bits of which are
+        // SAFETY: the caller's promise; alignment is that of words, whose bits are all
         // allowed in f32.
         let lanes = unsafe { &*words.add(component * N).cast::<[f32; N]>() };
         if let Some(first) = self.first {

@@ -1,22 +1,24 @@
 //! Every hit of a ray with triangles or curves, from one traversal.
 //!
 //! Embree looks for the closest hit: each candidate would shorten the ray and
-//! hide what lies behind it. A filter function is asked about every candidate
+//! hide what lies behind it. A filter function sees every candidate
 //! before that, and here it writes the candidate down and refuses it, so the
 //! ray keeps its length and the traversal reaches everything.
 //!
 //! Embree may ask about a triangle more than once (a hierarchy with spatial
-//! splits holds it in several leaves) and in an order that depends on the
-//! processor. Hits are therefore sorted and told apart by their triangle
+//! splits has it in several leaves) and in an order that depends on the
+//! processor. Hits are therefore sorted, and known by their triangle
 //! before anyone sees them.
 
 use super::abort::AbortOnPanic;
 use super::device::Device;
 use super::error::Error;
+use super::geometry::GeometryHandle;
 use super::native::Curve;
 use super::ray::{NativeHit, Ray32};
-use super::scene::{GeometryHandle, GeometryId, Scene, SceneBuilder};
+use super::scene::{Scene, SceneBuilder};
 use super::sys::{self, word};
+use super::types::GeometryId;
 
 /// A triangle that a ray meets, in f32 as Embree computes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -163,7 +165,7 @@ unsafe extern "C" fn collect<H: Collected>(args: *const sys::RTCFilterFunctionNA
         // SAFETY: invariant 4: this filter is set in scenes for this query only.
         let hits: &mut Vec<H> =
             unsafe { &mut *(*args.context.cast::<sys::cyltrace_context>()).query.cast() };
-        // SAFETY: invariant 7: the candidate's `t` stands as the ray's end.
+        // SAFETY: invariant 7: the candidate's `t` is the ray's end.
         let t = unsafe { *args.ray.cast::<f32>().add(word::RAY_T_FAR) };
         // SAFETY: invariant 7: one lane of hits is the structure of one hit.
         let hit = unsafe { &*args.hit.cast::<sys::RTCHit>() };

@@ -1,7 +1,7 @@
 //! The Embree device: its options, version and memory.
 
 use std::ffi::{CString, c_void};
-use std::fmt::{self, Write as _};
+use std::fmt::Write as _;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicIsize, Ordering};
@@ -10,9 +10,8 @@ use super::abort::AbortOnPanic;
 use super::error::{Error, check, keep_message};
 use super::isa::MaxIsa;
 use super::kernel::Instructions;
-use super::packet::PacketWidth;
-use super::probe;
 use super::sys;
+use super::types::{PacketWidth, Version};
 
 /// How a device is set up; the default leaves all to Embree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,32 +34,6 @@ impl DeviceOptions {
             let _ = write!(config, "max_isa={isa},");
         }
         config
-    }
-}
-
-/// A version of Embree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Version {
-    /// 3 or 4.
-    pub major: u32,
-    /// Counts features.
-    pub minor: u32,
-    /// Counts corrections.
-    pub patch: u32,
-}
-
-impl Version {
-    /// The version of the headers this program was built with.
-    pub const BUILT_FOR: Self = Self {
-        major: sys::RTC_VERSION_MAJOR,
-        minor: sys::RTC_VERSION_MINOR,
-        patch: sys::RTC_VERSION_PATCH,
-    };
-}
-
-impl fmt::Display for Version {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{}.{}.{}", self.major, self.minor, self.patch)
     }
 }
 
@@ -87,7 +60,7 @@ unsafe impl Sync for Shared {}
 
 impl Drop for Shared {
     fn drop(&mut self) {
-        // SAFETY: invariant 1: this is the one reference that `Device::new`
+        // SAFETY: invariant 1: this is the one reference that `Device::open`
         // made. Invariant 2: `memory`, to which Embree still counts while it
         // frees, is dropped after this body.
         unsafe { sys::rtcReleaseDevice(self.handle) }
@@ -95,14 +68,13 @@ impl Drop for Shared {
 }
 
 impl Device {
-    /// Sets up Embree.
+    /// Sets up Embree, without a look at the layout of its hits.
     ///
     /// # Errors
-    /// When Embree refuses, is of another version (major or minor) than the
-    /// headers this program was built with, or writes another hit layout.
-    pub fn new(options: &DeviceOptions) -> Result<Self, Error> {
+    /// When Embree refuses, or is of another version (major or minor) than the headers.
+    pub(super) fn open(options: &DeviceOptions) -> Result<Self, Error> {
         const STEP: &str = "set up a device";
-        let config = CString::new(options.config()).expect("the options hold no zero byte");
+        let config = CString::new(options.config()).expect("the options contain no zero byte");
         // SAFETY: the string ends in a zero byte and outlives the call.
         let handle = unsafe { sys::rtcNewDevice(config.as_ptr()) };
         if handle.is_null() {
@@ -129,7 +101,6 @@ impl Device {
         if (loaded.major, loaded.minor) != (built_for.major, built_for.minor) {
             return Err(Error::Version { built_for, loaded });
         }
-        probe::check_hit_layout(&device)?;
         Ok(device)
     }
 
@@ -144,14 +115,14 @@ impl Device {
         }
     }
 
-    /// Bytes that Embree holds now: hierarchies and buffers of all scenes of
+    /// Bytes that Embree uses now: hierarchies and buffers of all scenes of
     /// this device, without user data.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
         as_bytes(&self.shared.memory.live)
     }
 
-    /// The most bytes that Embree held at a time.
+    /// The most bytes that Embree used at a time.
     #[must_use]
     pub fn peak_memory_bytes(&self) -> usize {
         as_bytes(&self.shared.memory.peak)
@@ -209,7 +180,7 @@ fn widest_packets(device: sys::RTCDevice) -> Option<PacketWidth> {
         .find(|&width| native(width))
 }
 
-/// What Embree holds, counted by its memory monitor.
+/// The memory that Embree uses, as its monitor counts it.
 #[derive(Debug, Default)]
 struct Memory {
     live: AtomicIsize,

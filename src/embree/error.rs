@@ -10,10 +10,8 @@ use std::ffi::{CStr, c_char, c_void};
 use std::fmt;
 
 use super::abort::AbortOnPanic;
-use super::device::Version;
-use super::ray::GREATEST_COORDINATE;
-use super::scene::GeometryId;
 use super::sys;
+use super::types::{GREATEST_COORDINATE, GeometryId, Version};
 
 /// Why Embree could not be set up or a scene not be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -56,7 +54,7 @@ pub enum Error {
     },
     /// A map that an instance cannot have.
     #[error(
-        "the instance's map {map:?} must be of finite numbers below {GREATEST_COORDINATE:e}, with a determinant that f32 holds and that is not zero"
+        "the instance's map {map:?} must be of finite numbers below {GREATEST_COORDINATE:e}, with a determinant that is not zero and within the range of f32"
     )]
     InstanceMap {
         /// Its rows.
@@ -65,8 +63,8 @@ pub enum Error {
     /// An instance of a scene of another device.
     #[error("an instanced scene must be of the same device as the scene it is placed in")]
     OtherDevice,
-    /// An instance of a scene that holds instances.
-    #[error("an instanced scene must not hold instances itself")]
+    /// An instance of a scene that contains instances.
+    #[error("an instanced scene must not contain instances itself")]
     NestedInstance,
     /// A primitive of a user geometry has bounds that Embree would leave out.
     #[error(
@@ -158,7 +156,7 @@ pub(super) unsafe extern "C" fn keep_message(
 /// `step` says what it was to do. `device` is alive, or null right after
 /// creating one failed.
 pub(super) fn check(device: sys::RTCDevice, step: &'static str) -> Result<(), Error> {
-    // SAFETY: invariant 1; null asks for the error of creating a device.
+    // SAFETY: invariant 1; null stands for the error of creating a device.
     let code = unsafe { sys::rtcGetDeviceError(device) };
     if code == sys::RTC_ERROR_NONE {
         return Ok(());

@@ -5,11 +5,11 @@
 //! denormal numbers to zero (FTZ and DAZ of MXCSR), and bounds callbacks run
 //! among that. Rust code assumes the default mode, and a box must not depend on
 //! which thread computed it. Queries and returned calls are in the caller's
-//! mode; `tests/embree_ffi` holds all three.
+//! mode; `tests/embree_ffi` tests all three.
 //!
 //! Embree's manual advises its callers to flush denormal numbers too, so that
 //! the solvers may well run in that mode in another's renderer:
-//! `tests/invariance.rs` holds that they answer the same.
+//! `crates/bench/tests/bench/invariance.rs` tests that they answer the same.
 
 use std::hint::black_box;
 

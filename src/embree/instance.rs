@@ -7,10 +7,12 @@
 use std::sync::Arc;
 
 use super::error::Error;
+use super::geometry::GeometryHandle;
 use super::query::Query;
 use super::ray::is_inside;
-use super::scene::{GeometryHandle, GeometryId, Scene, SceneBuilder};
+use super::scene::{Scene, SceneBuilder};
 use super::sys;
+use super::types::GeometryId;
 
 impl<Q: Query> SceneBuilder<Q> {
     /// Adds an instance of `scene`, which it keeps. The map takes the scene's
@@ -21,7 +23,7 @@ impl<Q: Query> SceneBuilder<Q> {
     ///
     /// # Errors
     /// When the map has a number that is not finite or too large, or a
-    /// determinant that f32 does not hold or that is zero; when `scene` holds
+    /// determinant that is zero or beyond the range of f32; when `scene` contains
     /// instances itself; when it is of another device, or Embree refuses.
     pub fn attach_instance(
         &mut self,

@@ -10,7 +10,7 @@ use std::sync::{Arc, Condvar, Mutex, OnceLock, PoisonError};
 use super::error::Error;
 use super::float_mode::with_default_float_mode;
 use super::query::Query;
-use super::scene::{Parts, Scene};
+use super::scene::{Parts, Scene, SceneBuilder};
 use super::sys;
 
 /// A scene to be built by whoever [joins](Self::join); from
@@ -40,8 +40,16 @@ struct Work {
     error: Option<Error>,
 }
 
+impl<Q: Query> SceneBuilder<Q> {
+    /// Lets several threads take part in building the hierarchy.
+    #[must_use]
+    pub fn into_joint(self) -> JointCommit<Q> {
+        JointCommit::new(self.into_parts())
+    }
+}
+
 impl<Q: Query> JointCommit<Q> {
-    pub(super) fn new(parts: Parts) -> Self {
+    fn new(parts: Parts) -> Self {
         let property = sys::RTC_DEVICE_PROPERTY_JOIN_COMMIT_SUPPORTED;
         Self {
             may_join: parts.device().property(property) != 0,

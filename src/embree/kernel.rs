@@ -1,4 +1,4 @@
-//! Code that is compiled for several instruction sets, of which one is chosen
+//! Code that is compiled for several instruction sets; one is chosen
 //! when the program runs.
 
 use super::isa::MaxIsa;

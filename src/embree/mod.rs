@@ -20,8 +20,8 @@
 //! 2. **Scenes go first.** [`Scene`] and [`SceneBuilder`] drop the Embree scene
 //!    (with it, its geometries), then the user data, then the scenes that it has
 //!    instances of, then the device; a device gives its handle back before its
-//!    memory counters. So every pointer that Embree holds outlives the Embree
-//!    object that holds it.
+//!    memory counters. So every pointer that Embree keeps outlives the Embree
+//!    object that keeps it.
 //! 3. **User data has one type and is shared.** The data pointer of a geometry
 //!    and its callbacks are set together, for the same type, from an `Arc`
 //!    that is never written to; `UserGeometry` is `Send + Sync`, so any thread
@@ -36,12 +36,12 @@
 //!    it is placed in, so that callbacks in an instance get the same pointer. A nested query borrows from the reference
 //!    its callback was given and ends before it.
 //! 5. **Builders write, scenes read.** Until [`SceneBuilder::commit`] one owner
-//!    holds the Embree scene and no query can run; afterwards nothing is
+//!    has the Embree scene and no query can run; afterwards nothing is
 //!    written, and Embree's queries may run on any number of threads.
 //! 6. **Bindings are of the installed headers.** `build.rs` generates them, and
 //!    [`Device::new`] refuses a library that writes another hit layout. It tries
 //!    a single ray: what may differ between libraries is how many words of
-//!    instances end a hit, and the layouts of packets hold the same words, one
+//!    instances end a hit, and the layouts of packets have the same words, one
 //!    a lane.
 //! 7. **Callback arguments are whole.** Embree passes a structure that is valid
 //!    for the call, in the layout of its headers; rays and hits in it are
@@ -49,7 +49,7 @@
 //! 8. **No unwinding.** A panic in a callback ends the process and names the
 //!    callback, so no frame of Embree's is ever unwound.
 //! 9. **The processor has the instructions.** Code for an instruction set is
-//!    called where [`MaxIsa`] found the processor to have it, which it asks for
+//!    called where [`MaxIsa`] found the processor to have it
 //!    every feature that the code is compiled with.
 //!
 //! # What is left out, and why
@@ -68,11 +68,13 @@
 )]
 
 mod abort;
+mod attach_user;
 mod callback;
 mod collect;
 mod device;
 mod error;
 mod float_mode;
+mod geometry;
 mod instance;
 mod isa;
 mod joint;
@@ -86,19 +88,21 @@ mod ray;
 mod ray_set;
 mod scene;
 mod sys;
+mod types;
 mod user;
 
 pub use collect::MeshHit;
-pub use device::{Device, DeviceOptions, Version};
+pub use device::{Device, DeviceOptions};
 pub use error::Error;
 pub use float_mode::with_flushed_denormals;
 pub use isa::{MaxIsa, UnknownIsa};
 pub use joint::JointCommit;
 pub use kernel::{Instructions, Kernel};
-pub use packet::{Coherence, PacketWidth, Rays32};
+pub use packet::{Coherence, Rays32};
 pub(crate) use prefetch::prefetch;
 pub use query::{NoPackets, Query};
-pub use ray::{Box32, GREATEST_COORDINATE, NativeHit, Ray32};
+pub use ray::{Box32, NativeHit, Ray32};
 pub use ray_set::{GREATEST_PACKET, RayNumbers, RaySet};
-pub use scene::{GeometryId, Scene, SceneBuilder};
+pub use scene::{Scene, SceneBuilder};
+pub use types::{GREATEST_COORDINATE, GeometryId, PacketWidth, Version};
 pub use user::{Reached, UserGeometry};

@@ -2,10 +2,12 @@
 //! spheres and disks.
 
 use super::error::Error;
+use super::geometry::GeometryHandle;
 use super::query::Query;
 use super::ray::is_inside;
-use super::scene::{GeometryHandle, GeometryId, SceneBuilder};
+use super::scene::SceneBuilder;
 use super::sys;
+use super::types::GeometryId;
 
 /// How the ends of a straight curve look.
 #[derive(Clone, Copy)]

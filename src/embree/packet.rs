@@ -13,36 +13,11 @@ use std::ptr;
 use super::query::Query;
 use super::ray::{NativeHit, Ray32};
 use super::ray_set::{GREATEST_PACKET, RaySet};
-use super::scene::{GeometryId, Scene};
+use super::scene::Scene;
 use super::sys::{self, word};
+use super::types::{GeometryId, PacketWidth};
 
-/// How many rays Embree traverses at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum PacketWidth {
-    /// As SSE2 and NEON have registers for.
-    Four,
-    /// As AVX has.
-    Eight,
-    /// As AVX-512 has.
-    Sixteen,
-}
-
-impl PacketWidth {
-    /// All of them, the least first.
-    pub const ALL: [Self; 3] = [Self::Four, Self::Eight, Self::Sixteen];
-
-    /// The number of rays.
-    #[must_use]
-    pub fn rays(self) -> usize {
-        match self {
-            Self::Four => 4,
-            Self::Eight => 8,
-            Self::Sixteen => 16,
-        }
-    }
-}
-
-/// What Embree is told of a packet; it is a matter of speed alone.
+/// What Embree assumes of the rays of a packet; it changes speed alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Coherence {
     /// The rays may go anywhere.
@@ -52,7 +27,7 @@ pub enum Coherence {
 }
 
 /// The rays of a packet, each as [`Ray32`] says, by component; they start at
-/// `t = 0`. What stands at the place of a ray that is not asked for does not
+/// `t = 0`. The values of a ray that is not active do not
 /// matter.
 #[derive(Clone, Debug, PartialEq)]
 #[repr(C, align(64))]
@@ -217,7 +192,7 @@ impl<const N: usize> Group<N> {
         Valid(array::from_fn(|lane| -i32::from(self.is_active(lane))))
     }
 
-    /// The lanes. Those that are not active hold a ray that Embree knows how to
+    /// The lanes. Those that are not active have a ray that Embree knows how to
     /// handle, of an empty range.
     #[inline]
     fn ray_lanes(&self, rays: &Rays32) -> RayLanes<N> {
@@ -272,7 +247,7 @@ impl<Q: Query> Scene<Q> {
     /// by itself is not reported. A ray with an empty range is a miss.
     ///
     /// The answer does not depend on `width` and `coherence`;
-    /// [`Device::packet_width`](super::Device::packet_width) tells the widest
+    /// [`Device::packet_width`](super::Device::packet_width) is the widest
     /// that Embree does not take apart.
     ///
     /// # Panics
@@ -295,7 +270,7 @@ impl<Q: Query> Scene<Q> {
         }
     }
 
-    /// The closest hits as Embree reports them, each told to `tell` with the
+    /// The closest hits as Embree reports them, each passed to `report` with the
     /// number of its ray.
     ///
     /// # Panics
@@ -308,12 +283,12 @@ impl<Q: Query> Scene<Q> {
         width: PacketWidth,
         coherence: Coherence,
         packet: &mut Q::Packet,
-        tell: impl FnMut(usize, NativeHit),
+        report: impl FnMut(usize, NativeHit),
     ) {
         match width {
-            PacketWidth::Four => self.intersect::<4>(rays, active, coherence, packet, tell),
-            PacketWidth::Eight => self.intersect::<8>(rays, active, coherence, packet, tell),
-            PacketWidth::Sixteen => self.intersect::<16>(rays, active, coherence, packet, tell),
+            PacketWidth::Four => self.intersect::<4>(rays, active, coherence, packet, report),
+            PacketWidth::Eight => self.intersect::<8>(rays, active, coherence, packet, report),
+            PacketWidth::Sixteen => self.intersect::<16>(rays, active, coherence, packet, report),
         }
     }
 
@@ -344,7 +319,7 @@ impl<Q: Query> Scene<Q> {
         active: RaySet,
         coherence: Coherence,
         packet: &mut Q::Packet,
-        mut tell: impl FnMut(usize, NativeHit),
+        mut report: impl FnMut(usize, NativeHit),
     ) {
         self.assert_packets();
         for group in Group::<N>::all(rays.not_empty(active)) {
@@ -363,7 +338,7 @@ impl<Q: Query> Scene<Q> {
             }
             for lane in 0..N {
                 if group.is_active(lane) && lanes.geometry[lane] != sys::INVALID_ID {
-                    tell(group.first + lane, lanes.hit(lane));
+                    report(group.first + lane, lanes.hit(lane));
                 }
             }
         }

@@ -5,7 +5,7 @@
 //! alone. Headers of 4.2 with a library of 4.4 let every query write a word
 //! behind the hit, without any error.
 
-use super::device::Device;
+use super::device::{Device, DeviceOptions};
 use super::error::Error;
 use super::ray::Ray32;
 use super::scene::SceneBuilder;
@@ -22,8 +22,21 @@ struct Padded {
     margin: [u32; MARGIN_WORDS],
 }
 
+impl Device {
+    /// Sets up Embree.
+    ///
+    /// # Errors
+    /// When Embree refuses, is of another version (major or minor) than the
+    /// headers this program was built with, or writes another hit layout.
+    pub fn new(options: &DeviceOptions) -> Result<Self, Error> {
+        let device = Self::open(options)?;
+        check_hit_layout(&device)?;
+        Ok(device)
+    }
+}
+
 /// Traces one ray against one triangle, into a hit with a margin behind it.
-pub(super) fn check_hit_layout(device: &Device) -> Result<(), Error> {
+fn check_hit_layout(device: &Device) -> Result<(), Error> {
     let mut builder = SceneBuilder::<()>::new(device)?;
     let corners = [[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0]];
     builder.attach_triangles(&corners, &[[0, 1, 2]])?;

@@ -1,11 +1,7 @@
 //! Embree's f32 values: rays, boxes, and the hits it finds by itself.
 
-use super::scene::GeometryId;
 use super::sys;
-
-/// Coordinates of rays, boxes and vertices stay below this: Embree's own
-/// limit for a finite value, 1.844e18.
-pub const GREATEST_COORDINATE: f32 = 1.844e18;
+use super::types::{GREATEST_COORDINATE, GeometryId};
 
 /// A ray as Embree traverses it: `origin + t * direction`,
 /// `t_near <= t <= t_far`.
@@ -82,13 +78,13 @@ pub struct Box32 {
 }
 
 impl Box32 {
-    /// The box that holds nothing; the neutral element of [`Box32::union`].
+    /// The box that contains nothing; the neutral element of [`Box32::union`].
     pub const EMPTY: Self = Self {
         lower: [f32::INFINITY; 3],
         upper: [f32::NEG_INFINITY; 3],
     };
 
-    /// The least box that holds both.
+    /// The least box that contains both.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         Self {

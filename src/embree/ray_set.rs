@@ -5,7 +5,7 @@ use std::ops::{BitAnd, BitOr, Sub};
 /// The most rays of a packet.
 pub const GREATEST_PACKET: usize = 16;
 
-/// A set of rays of a packet. Rays are told apart by the numbers that the caller
+/// A set of rays of a packet. Rays are known by the numbers that the caller
 /// of the query gave them, from 0 to [`GREATEST_PACKET`] - 1, wherever Embree
 /// puts them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -24,7 +24,7 @@ impl RaySet {
         Self(bits)
     }
 
-    /// Bit `i` tells whether ray `i` is in the set.
+    /// Bit `i` says whether ray `i` is in the set.
     #[inline(always)]
     #[must_use]
     pub const fn bits(self) -> u16 {

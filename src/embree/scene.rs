@@ -7,16 +7,11 @@ use std::sync::Arc;
 
 use super::device::Device;
 use super::error::Error;
-use super::joint::JointCommit;
+use super::geometry::{GeometryHandle, UserData};
 use super::query::Query;
 use super::ray::{Box32, NativeHit, Ray32};
 use super::sys;
-use super::user::{UserData, UserGeometry, new_user_geometry};
-
-/// The number of a geometry in its scene; they count from 0 in the order in
-/// which they were attached, but for instances with numbers of their own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct GeometryId(pub u32);
+use super::types::GeometryId;
 
 /// One reference to an Embree scene.
 struct SceneHandle(sys::RTCScene);
@@ -36,36 +31,6 @@ impl Drop for SceneHandle {
     }
 }
 
-/// One reference to an Embree geometry; attaching adds one for the scene.
-pub(super) struct GeometryHandle(sys::RTCGeometry);
-
-impl GeometryHandle {
-    /// A geometry of the given kind that every ray may hit.
-    pub(super) fn new(device: &Device, kind: sys::RTCGeometryType) -> Result<Self, Error> {
-        // SAFETY: invariant 1.
-        let geometry = Self(unsafe { sys::rtcNewGeometry(device.handle(), kind) });
-        device.check("make a geometry")?;
-        // The default mask differs between Embree 3 and 4.
-        // SAFETY: invariant 1.
-        unsafe { sys::rtcSetGeometryMask(geometry.0, u32::MAX) };
-        device.check("set a geometry's mask")?;
-        Ok(geometry)
-    }
-
-    pub(super) fn raw(&self) -> sys::RTCGeometry {
-        self.0
-    }
-}
-
-impl Drop for GeometryHandle {
-    fn drop(&mut self) {
-        if !self.0.is_null() {
-            // SAFETY: invariant 1: the one reference that `new` made.
-            unsafe { sys::rtcReleaseGeometry(self.0) }
-        }
-    }
-}
-
 /// A scene that others have instances of, whatever its queries.
 trait Instanced: Send + Sync {}
 
@@ -76,7 +41,7 @@ impl<Q: Query> Instanced for Scene<Q> {}
 pub(super) struct Parts {
     handle: SceneHandle,
     /// Shared pointers because, unlike a box, one may be moved while Embree
-    /// holds a pointer into it. There is no second owner.
+    /// keeps a pointer into it. There is no second owner.
     user_data: Vec<(GeometryId, Arc<dyn UserData>)>,
     /// Scenes that this one has instances of.
     instanced: Vec<Arc<dyn Instanced>>,
@@ -104,7 +69,7 @@ impl<Q: Query> SceneBuilder<Q> {
     /// An empty scene.
     ///
     /// # Errors
-    /// When Embree refuses, say for want of memory.
+    /// When Embree refuses, for example for lack of memory.
     pub fn new(device: &Device) -> Result<Self, Error> {
         // SAFETY: invariant 1.
         let handle = SceneHandle(unsafe { sys::rtcNewScene(device.handle()) });
@@ -124,19 +89,6 @@ impl<Q: Query> SceneBuilder<Q> {
             query: PhantomData,
             unshared: PhantomData,
         })
-    }
-
-    /// Adds a geometry whose primitives `geometry` bounds and intersects.
-    ///
-    /// # Errors
-    /// When Embree refuses.
-    pub fn attach_user<G>(&mut self, geometry: G) -> Result<GeometryId, Error>
-    where
-        G: UserGeometry<Query = Q>,
-    {
-        // Declared before the handle, hence dropped after it on an error.
-        let (data, handle) = new_user_geometry(&self.parts.device, geometry)?;
-        self.attach_with(data, &handle)
     }
 
     /// Attaches a geometry and keeps what its data pointer points to.
@@ -193,7 +145,7 @@ impl<Q: Query> SceneBuilder<Q> {
     /// thread and from Embree's own.
     ///
     /// # Errors
-    /// When Embree refuses, say for want of memory, or when a primitive of a
+    /// When Embree refuses, for example for lack of memory, or when a primitive of a
     /// user geometry has bounds that it would leave out.
     pub fn commit(self) -> Result<Scene<Q>, Error> {
         let parts = self.parts;
@@ -204,10 +156,9 @@ impl<Q: Query> SceneBuilder<Q> {
         parts.into_scene()
     }
 
-    /// Lets several threads take part in building the hierarchy.
-    #[must_use]
-    pub fn into_joint(self) -> JointCommit<Q> {
-        JointCommit::new(self.parts)
+    /// What was attached so far.
+    pub(super) fn into_parts(self) -> Parts {
+        self.parts
     }
 }
 
@@ -234,7 +185,7 @@ impl Parts {
         let mut bounds = sys::RTCBounds::default();
         // SAFETY: invariant 1; `bounds` is written during the call only.
         unsafe { sys::rtcGetSceneBounds(self.handle.0, &raw mut bounds) };
-        self.device.check("tell a scene's bounds")?;
+        self.device.check("report a scene's bounds")?;
         Ok(Scene {
             parts: self,
             bounds: Some(Box32::from_embree(&bounds)).filter(Box32::is_legal),

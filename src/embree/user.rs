@@ -1,23 +1,17 @@
 //! Geometry whose primitives are bounded and intersected in Rust.
 //!
 //! Embree calls the functions that are registered here with a pointer to the user
-//! data: [`bounds`] while a scene is built, those of [`callback`](super::callback)
+//! data: `bounds` of `attach_user` while a scene is built, those of [`callback`](super::callback)
 //! while a ray or a packet of rays is traced.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use super::abort::AbortOnPanic;
-use super::callback::Callbacks;
-use super::device::Device;
-use super::error::Error;
-use super::float_mode::with_default_float_mode;
+use super::geometry::UserData;
 use super::packet::Rays32;
 use super::query::Query;
 use super::ray::{Box32, Ray32};
 use super::ray_set::{GREATEST_PACKET, RaySet};
-use super::scene::{GeometryHandle, GeometryId};
-use super::sys;
+use super::types::GeometryId;
 
 /// What Embree calls back for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,15 +56,15 @@ pub trait UserGeometry: Send + Sync + 'static {
 
     /// Intersects rays of a packet with a primitive, each as
     /// [`intersect`](Self::intersect) does. A hit is accepted for the rays that
-    /// are in the answer, for which `t_far` then holds where they end, by their
-    /// numbers; what it holds before and for others has no meaning.
+    /// are in the answer, for which `t_far` then has their ends, by their
+    /// numbers; what it has before, and for other rays, has no meaning.
     ///
     /// `rays32` has Embree's own rays by their numbers, as the `ray` of
     /// [`intersect`](Self::intersect) is; the numbers of other rays have no meaning.
     ///
-    /// `rays` may be any part of the packet. It need not hold all rays that may
-    /// meet the box: for the others this is called again. And it may hold rays
-    /// that do not meet the box, or end before it: Embree asks for all when one
+    /// `rays` may be any part of the packet. It need not contain all rays that may
+    /// meet the box: for the others this is called again. And it may contain rays
+    /// that do not meet the box, or end before it: Embree calls for all when one
     /// does.
     fn intersect_packet(
         &self,
@@ -83,7 +77,7 @@ pub trait UserGeometry: Send + Sync + 'static {
 
     /// For which of `rays` a primitive ends the query, in
     /// [`Scene::any_packet`](super::Scene::any_packet). Here `rays` commonly
-    /// holds all rays of the packet that have not ended yet, wherever they go.
+    /// contains all rays of the packet that have not ended yet, wherever they go.
     fn occluded_packet(
         &self,
         at: Reached,
@@ -93,69 +87,15 @@ pub trait UserGeometry: Send + Sync + 'static {
     ) -> RaySet;
 }
 
-/// What a scene holds of a user geometry, whatever its type.
-pub(super) trait UserData: Send + Sync {
-    /// The least primitive whose bounds were not legal.
-    fn refused(&self) -> Option<u32>;
-}
-
 /// What the data pointer of a geometry points to.
 pub(super) struct Registered<G> {
     pub geometry: G,
     /// The least refused primitive; `u32::MAX`, which is none, if there is none.
-    refused: AtomicU32,
+    pub refused: AtomicU32,
 }
 
 impl<G: UserGeometry> UserData for Registered<G> {
     fn refused(&self) -> Option<u32> {
         Some(self.refused.load(Ordering::Relaxed)).filter(|&primitive| primitive != u32::MAX)
     }
-}
-
-/// Makes an Embree geometry that calls `geometry`. The data has to outlive the
-/// handle and the scene that it is attached to.
-pub(super) fn new_user_geometry<G: UserGeometry>(
-    device: &Device,
-    geometry: G,
-) -> Result<(Arc<dyn UserData>, GeometryHandle), Error> {
-    let primitives = geometry.primitive_count();
-    let data = Arc::new(Registered {
-        geometry,
-        refused: AtomicU32::new(u32::MAX),
-    });
-    let handle = GeometryHandle::new(device, sys::RTC_GEOMETRY_TYPE_USER)?;
-    let raw = handle.raw();
-    let callbacks = Callbacks::of::<G>(device.isa_in_use());
-    // SAFETY: invariants 1, 3, 5 and 9: the pointer and the callbacks are set for
-    // the same `G`.
-    unsafe {
-        sys::rtcSetGeometryUserPrimitiveCount(raw, primitives);
-        sys::rtcSetGeometryUserData(raw, Arc::as_ptr(&data).cast_mut().cast());
-        sys::rtcSetGeometryBoundsFunction(raw, Some(bounds::<G>), std::ptr::null_mut());
-        sys::rtcSetGeometryIntersectFunction(raw, Some(callbacks.intersect));
-        sys::rtcSetGeometryOccludedFunction(raw, Some(callbacks.occluded));
-    }
-    device.check("set up a user geometry")?;
-    Ok((data, handle))
-}
-
-unsafe extern "C" fn bounds<G: UserGeometry>(args: *const sys::RTCBoundsFunctionArguments) {
-    AbortOnPanic::run("bounds", || {
-        // SAFETY: invariant 7.
-        let args = unsafe { &*args };
-        // SAFETY: invariants 2 and 3.
-        let data = unsafe { &*args.geometryUserPtr.cast::<Registered<G>>() };
-        let mut bounds = with_default_float_mode(|| data.geometry.bounds(args.primID));
-        if !bounds.is_legal() {
-            // The commit fails for it; until then Embree gets a box it knows
-            // how to handle.
-            data.refused.fetch_min(args.primID, Ordering::Relaxed);
-            bounds = Box32 {
-                lower: [0.0; 3],
-                upper: [0.0; 3],
-            };
-        }
-        // SAFETY: invariant 7: Embree waits for the box there.
-        unsafe { *args.bounds_o = bounds.to_embree() };
-    });
 }

@@ -14,7 +14,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box that holds nothing; the neutral element of [`Bounds::union`].
+    /// The box that contains nothing; the neutral element of [`Bounds::union`].
     pub const EMPTY: Self = Self {
         lower: DVec3::INFINITY,
         upper: DVec3::NEG_INFINITY,
@@ -32,7 +32,7 @@ impl Bounds {
         self.lower.cmple(other.upper).all() && other.lower.cmple(self.upper).all()
     }
 
-    /// The least box that holds both.
+    /// The least box that contains both.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         Self {
@@ -53,7 +53,7 @@ impl Bounds {
         self.upper - self.lower
     }
 
-    /// The box that holds one point only.
+    /// The box of one point.
     #[must_use]
     pub fn at(point: DVec3) -> Self {
         Self {
@@ -81,7 +81,7 @@ impl Bounds {
         }
     }
 
-    /// A box that holds the image of every point of this one.
+    /// A box that contains the image of every point of this one.
     ///
     /// The image of the middle and of the half extent (through the matrix of
     /// absolute values) are computed with at most 6 roundings a term; the box

@@ -70,7 +70,7 @@ impl LaneMask {
         (self.bytes().wrapping_mul(TO_HIGH_BYTE) >> 56) as u8
     }
 
-    /// Whether it holds in any lane.
+    /// Whether it is true in any lane.
     #[inline(always)]
     #[must_use]
     pub fn any(self) -> bool {

@@ -1,7 +1,7 @@
 //! Rays, boxes, roundings and random numbers, on top of glam's f64 vectors.
 //!
 //! This layer knows nothing of the rest of the crate. Everything here is f64;
-//! f32 appears where a value is handed to Embree, and is then rounded in a
+//! f32 appears where a value goes to Embree, and is then rounded in a
 //! stated direction, and in [`Real`], for solvers that exist in both. [`Lanes`]
 //! are eight f64 that the same sources compute at once.
 

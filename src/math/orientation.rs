@@ -1,4 +1,4 @@
-//! Which way an object is turned: an orthonormal right-handed frame.
+//! How an object is turned: an orthonormal right-handed frame.
 //!
 //! The frame is the matrix `M` that takes the object's directions to the world's;
 //! its columns are the object's axes as the world sees them. A product of two

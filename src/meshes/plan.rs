@@ -24,7 +24,7 @@
 //! the mesh. The roundings of the bounds themselves, six a level on at most a
 //! few thousand levels, are covered by a factor `1 + 2^-36`.
 
-use super::{Format, MeshFileError, obj, ply};
+use super::MeshFileError;
 use crate::math::{ChildFromParent, PlacementErrors, UNIT_ROUNDOFF, power_of_two};
 use crate::scene::{Placement, Prototype, PrototypeIndex, Scene};
 use crate::solid::SolidKind;
@@ -136,34 +136,6 @@ impl Plan {
         self.whole.rounding * (1.0 + power_of_two(-36))
     }
 
-    /// The size of the file in bytes: exact for PLY, and at most that for OBJ,
-    /// whose numbers differ in length.
-    #[must_use]
-    pub fn file_bytes(&self, format: Format, name: &str) -> u128 {
-        match format {
-            Format::Obj => obj::most_bytes(self, name),
-            Format::Ply => ply::bytes(self, name),
-        }
-    }
-
-    /// Refuses a file of more than `most_bytes`, or one that its format cannot
-    /// hold.
-    ///
-    /// # Errors
-    /// See above.
-    pub fn check(&self, format: Format, name: &str, most_bytes: u64) -> Result<(), MeshFileError> {
-        let vertices = self.vertices();
-        let needed = self.file_bytes(format, name);
-        if needed > u128::from(most_bytes) {
-            let allowed = most_bytes;
-            return Err(MeshFileError::TooLarge { needed, allowed });
-        }
-        if format == Format::Ply && vertices > u128::from(u32::MAX) {
-            return Err(MeshFileError::Vertices { vertices });
-        }
-        Ok(())
-    }
-
     /// At least the bytes of the names of all groups, and how many there are.
     pub(super) fn group_names(&self) -> (u128, u128) {
         (self.whole.names, self.whole.groups)
@@ -208,7 +180,7 @@ fn whole(
 impl Whole {
     /// The solids of a prototype alone.
     fn of_solids(prototype: &Prototype, segments: u32, fit: Fit) -> Self {
-        let is_group = !prototype.has_no_solids();
+        let is_group = !prototype.solids.is_empty();
         let mut whole = Self {
             groups: u128::from(is_group),
             names: u128::from(is_group) * prototype.name.len() as u128,

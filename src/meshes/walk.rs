@@ -71,7 +71,7 @@ impl Way {
         action: &mut dyn FnMut(&Instance) -> Result<(), MeshFileError>,
     ) -> Result<(), MeshFileError> {
         let prototype = &scene.prototypes[index.0 as usize];
-        if !prototype.has_no_solids() {
+        if !prototype.solids.is_empty() {
             action(&Instance {
                 prototype,
                 path: &self.path,

@@ -1,97 +1,49 @@
-//! What prototypes hold, counted: before the files that a scene names are
-//! read, or after.
+//! The numbers of solids and placements in prototypes, before the files that a scene names
+//! are read, or after.
 
-use std::array::from_fn;
 use std::collections::HashMap;
 
-use rayon::prelude::*;
-
 use super::cylinder_list::Records;
-use super::description::{Placement, PrototypeIndex, Scene};
-use super::solid_lists::{Listed, SolidRecord};
-use crate::solid::{Composition, ConvexSolid, SolidKind};
+use super::description::{PrototypeIndex, Scene};
+use super::solid_lists::{SolidList, Stored};
+use crate::solid::{Composition, SolidCounts, SolidKind};
+use crate::with_solid_kind;
 
-/// What a prototype holds, counted.
+/// The numbers of solids and placements in a prototype.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExpectedCounts {
     /// The name in the scene file; empty for the root.
     pub name: String,
-    /// Its own cylinders.
-    pub cylinders: u64,
-    /// How they are kept.
-    pub records: Records,
-    /// Its own solids of other kinds.
-    pub others: OtherSolids,
+    /// Its own solids.
+    pub solids: ExpectedSolids,
     /// Its own placements, by what is placed.
     pub placed: Vec<PlacedCount>,
     /// Whether the root places it, itself or through others, or is it.
     pub is_used: bool,
 }
 
-/// The solids of a prototype that are no cylinders, counted.
+/// The numbers of solids in a prototype.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct OtherSolids {
-    /// How many.
-    pub count: u64,
-    /// How many of each kind: spheres, cuboids, cones, rounded cones and disks, which
-    /// leaves the set operations.
-    pub singles: [u64; 5],
+pub struct ExpectedSolids {
+    /// How many of each kind.
+    pub counts: SolidCounts,
     /// The bytes of their records, with what compositions are made of.
     pub bytes: u64,
 }
 
-impl OtherSolids {
-    /// How many are set operations.
-    #[must_use]
-    pub fn composed(&self) -> u64 {
-        let singles = self.singles.iter().copied().fold(0, u64::saturating_add);
-        self.count.saturating_sub(singles)
+impl ExpectedSolids {
+    /// Adds solids of a kind, where cylinders are kept so. Operands of set operations count
+    /// extra.
+    pub fn add(&mut self, kind: SolidKind, more: u64, records: Records) {
+        let bytes = with_solid_kind!(kind, S => <S as Stored>::List::record_bytes(records));
+        self.counts.add(kind, more.into());
+        self.bytes = self.bytes.saturating_add(more.saturating_mul(bytes as u64));
     }
 
-    /// These and `count` of one kind more.
-    pub(super) fn and<S: Listed + ConvexSolid>(self, count: u64) -> Self {
-        let mut these = self.and_records::<S>(count);
-        let position = match S::KIND {
-            SolidKind::Sphere => 0,
-            SolidKind::Cuboid => 1,
-            SolidKind::Cone => 2,
-            SolidKind::RoundedCone => 3,
-            SolidKind::Disk => 4,
-            SolidKind::Cylinder
-            | SolidKind::Union
-            | SolidKind::Intersection
-            | SolidKind::Difference => return these,
-        };
-        these.singles[position] = these.singles[position].saturating_add(count);
-        these
-    }
-
-    /// These and so many set operations with so many operands in all.
-    pub(super) fn and_composed(self, count: u64, operands: u64) -> Self {
-        let operands = operands.saturating_mul(size_of::<Composition>() as u64);
-        let these = self.and_records::<Composition>(count);
-        Self {
-            bytes: these.bytes.saturating_add(operands),
-            ..these
-        }
-    }
-
-    fn and_records<S>(self, count: u64) -> Self {
-        let bytes = count.saturating_mul(size_of::<SolidRecord<S>>() as u64);
-        Self {
-            count: self.count.saturating_add(count),
-            bytes: self.bytes.saturating_add(bytes),
-            ..self
-        }
-    }
-
-    /// These and others.
-    pub(super) fn plus(self, other: Self) -> Self {
-        Self {
-            count: self.count.saturating_add(other.count),
-            singles: from_fn(|kind| self.singles[kind].saturating_add(other.singles[kind])),
-            bytes: self.bytes.saturating_add(other.bytes),
-        }
+    /// Adds the operands of set operations.
+    pub(super) fn add_operands(&mut self, more: u64) {
+        let bytes = more.saturating_mul(size_of::<Composition>() as u64);
+        self.bytes = self.bytes.saturating_add(bytes);
     }
 }
 
@@ -104,35 +56,24 @@ pub struct PlacedCount {
     pub count: u64,
 }
 
-impl ExpectedCounts {
-    /// What a prototype with these placements holds; equal `of` are joined.
-    pub(super) fn new(
-        name: &str,
-        cylinders: u64,
-        records: Records,
-        others: OtherSolids,
-        placed: impl IntoIterator<Item = (PrototypeIndex, u64)>,
-    ) -> Self {
-        let mut counts: HashMap<PrototypeIndex, u64> = HashMap::new();
-        for (of, count) in placed {
-            let sum = counts.entry(of).or_default();
-            *sum = sum.saturating_add(count);
-        }
-        let mut placed: Vec<_> = counts
-            .into_iter()
-            .map(|(of, count)| PlacedCount { of, count })
-            .collect();
-        placed.sort_unstable_by_key(|placed| placed.of);
-        Self {
-            name: name.to_owned(),
-            cylinders,
-            records,
-            others,
-            placed,
-            is_used: false,
-        }
+/// Joins the counts of the same prototype.
+pub(super) fn placed_counts(
+    counts: impl IntoIterator<Item = (PrototypeIndex, u64)>,
+) -> Vec<PlacedCount> {
+    let mut sums: HashMap<PrototypeIndex, u64> = HashMap::new();
+    for (of, count) in counts {
+        let sum = sums.entry(of).or_default();
+        *sum = sum.saturating_add(count);
     }
+    let placed = sums.into_iter();
+    let mut placed: Vec<_> = placed
+        .map(|(of, count)| PlacedCount { of, count })
+        .collect();
+    placed.sort_unstable_by_key(|placed| placed.of);
+    placed
+}
 
+impl ExpectedCounts {
     /// Its own placements.
     #[must_use]
     pub fn placements(&self) -> u64 {
@@ -155,42 +96,24 @@ pub(super) fn mark_used(contents: &mut [ExpectedCounts]) {
 }
 
 impl Scene {
-    /// What the prototypes hold, in their order. Runs on the rayon pool that
-    /// this is called in.
+    /// The numbers of solids and placements in the prototypes, in their order. Runs on the
+    /// rayon pool that this is called in.
     #[must_use]
     pub fn contents(&self) -> Vec<ExpectedCounts> {
-        let mut contents: Vec<_> = self
-            .prototypes
-            .iter()
-            .map(|prototype| {
-                ExpectedCounts::new(
-                    &prototype.name,
-                    prototype.cylinders.len() as u64,
-                    prototype.cylinders.records(),
-                    OtherSolids {
-                        count: prototype.solids.len() as u64,
-                        singles: prototype.solids.single_counts(),
-                        bytes: prototype.solids.records_bytes() as u64,
-                    },
-                    counted(&prototype.placements),
-                )
-            })
-            .collect();
+        let prototypes = self.prototypes.iter();
+        let contents = prototypes.map(|prototype| ExpectedCounts {
+            name: prototype.name.clone(),
+            solids: ExpectedSolids {
+                counts: prototype.solids.counts(),
+                bytes: prototype.solids.records_bytes() as u64,
+            },
+            placed: prototype.placed(),
+            is_used: false,
+        });
+        let mut contents: Vec<_> = contents.collect();
         mark_used(&mut contents);
         contents
     }
-}
-
-/// How often each prototype is placed, in parts.
-fn counted(placements: &[Placement]) -> Vec<(PrototypeIndex, u64)> {
-    /// Placements that a thread counts at a time.
-    const SHARE: usize = 1 << 16;
-    let shares = placements.par_chunks(SHARE).flat_map_iter(|share| {
-        share
-            .chunk_by(|one, next| one.of == next.of)
-            .map(|alike| (alike[0].of, alike.len() as u64))
-    });
-    shares.collect()
 }
 
 #[cfg(test)]
@@ -200,15 +123,17 @@ mod tests {
     #[test]
     fn contents_joined_and_marked_from_the_root() {
         let at = PrototypeIndex;
-        let holding = |name, placed: &[(PrototypeIndex, u64)]| {
-            let others = OtherSolids::default();
-            ExpectedCounts::new(name, 1, Records::F64, others, placed.iter().copied())
+        let containing = |name: &str, placed: &[(PrototypeIndex, u64)]| ExpectedCounts {
+            name: name.to_owned(),
+            solids: ExpectedSolids::default(),
+            placed: placed_counts(placed.iter().copied()),
+            is_used: false,
         };
         let mut contents = [
-            holding("", &[(at(2), 3), (at(1), 5), (at(2), 4)]),
-            holding("a", &[]),
-            holding("b", &[(at(2), 1)]),
-            holding("c", &[(at(1), u64::MAX), (at(2), 1)]),
+            containing("", &[(at(2), 3), (at(1), 5), (at(2), 4)]),
+            containing("a", &[]),
+            containing("b", &[(at(2), 1)]),
+            containing("c", &[(at(1), u64::MAX), (at(2), 1)]),
         ];
         mark_used(&mut contents);
         assert_eq!(contents[0].placements(), 12);

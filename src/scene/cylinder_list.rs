@@ -20,12 +20,14 @@
 
 mod arrangement;
 
+use std::borrow::Borrow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use glam::{DVec3, Vec3};
 
 use super::description::{CylinderRecord, MaterialIndex};
+use super::solid_lists::{SolidList, SolidRecord};
 use crate::solid::{Caps, Cylinder, CylinderError};
 
 /// The numbers in which cylinders are kept.
@@ -216,22 +218,6 @@ impl CylinderList {
         };
     }
 
-    /// Gives back the memory that no cylinder uses, if it is more than an
-    /// eighth: records are aligned, so that giving back is to copy them, with
-    /// both there for a while.
-    pub(super) fn trim(&mut self) {
-        let is_loose = |capacity: usize, len: usize| capacity - len > capacity / 8;
-        match &mut self.kept {
-            Kept::F64(records) if is_loose(records.capacity(), records.len()) => {
-                Arc::make_mut(records).shrink_to_fit();
-            }
-            Kept::F32(rounded) if is_loose(rounded.records.capacity(), rounded.records.len()) => {
-                Arc::make_mut(&mut rounded.records).shrink_to_fit();
-            }
-            _ => {}
-        }
-    }
-
     /// How many there are.
     #[inline]
     #[must_use]
@@ -283,20 +269,6 @@ impl CylinderList {
         }
     }
 
-    /// The position of a primitive number. The first time all are sorted, which
-    /// takes 4 bytes a cylinder from then on.
-    #[must_use]
-    pub fn position(&self, primitive: u32) -> Option<usize> {
-        let by_primitive = self.by_primitive.get_or_init(|| {
-            let mut positions: Vec<u32> = (0..self.len() as u32).collect();
-            positions.sort_by_key(|&position| self.primitive(position as usize));
-            positions
-        });
-        let number = |&position: &u32| self.primitive(position as usize);
-        let place = by_primitive.binary_search_by_key(&primitive, number).ok()?;
-        Some(by_primitive[place] as usize)
-    }
-
     /// All of them in order.
     #[must_use]
     pub fn iter(&self) -> Iter<'_> {
@@ -343,16 +315,6 @@ impl CylinderList {
         }
     }
 
-    /// The bytes of the records, and of the numbers that are kept apart.
-    #[must_use]
-    pub fn records_bytes(&self) -> usize {
-        let apart = match &self.kept {
-            Kept::F64(_) => 0,
-            Kept::F32(rounded) => size_of_val(rounded.runs.as_slice()),
-        };
-        self.len() * self.records().record_bytes() + apart
-    }
-
     /// The greatest difference of a coordinate or radius from what was stated:
     /// 0 in f64.
     #[must_use]
@@ -361,6 +323,81 @@ impl CylinderList {
             Kept::F64(_) => 0.0,
             Kept::F32(rounded) => rounded.rounding,
         }
+    }
+}
+
+impl SolidList for CylinderList {
+    type Solid = Cylinder;
+
+    #[inline]
+    fn len(&self) -> usize {
+        self.len()
+    }
+
+    #[inline]
+    fn solid(&self, position: usize) -> impl Borrow<Cylinder> {
+        match &self.kept {
+            Kept::F64(records) => records[position].cylinder(),
+            Kept::F32(rounded) => rounded.records[position].cylinder(),
+        }
+    }
+
+    fn primitive(&self, position: usize) -> u32 {
+        self.primitive(position)
+    }
+
+    fn material(&self, position: usize) -> MaterialIndex {
+        match &self.kept {
+            Kept::F64(records) => records[position].material(),
+            Kept::F32(rounded) => rounded.records[position].material(),
+        }
+    }
+
+    /// The position of a primitive number. The first time all are sorted, which
+    /// takes 4 bytes a cylinder from then on.
+    fn position(&self, primitive: u32) -> Option<usize> {
+        let by_primitive = self.by_primitive.get_or_init(|| {
+            let mut positions: Vec<u32> = (0..self.len() as u32).collect();
+            positions.sort_by_key(|&position| self.primitive(position as usize));
+            positions
+        });
+        let number = |&position: &u32| self.primitive(position as usize);
+        let place = by_primitive.binary_search_by_key(&primitive, number).ok()?;
+        Some(by_primitive[place] as usize)
+    }
+
+    fn push(&mut self, record: SolidRecord<Cylinder>) -> Result<(), String> {
+        let record = CylinderRecord::new(&record.solid, record.primitive, record.material);
+        self.push(record).map_err(|error| error.to_string())
+    }
+
+    /// Gives back the memory that no cylinder uses, if it is more than an
+    /// eighth: records are aligned, so that giving back is to copy them, with
+    /// both there for a while.
+    fn trim(&mut self) {
+        let is_loose = |capacity: usize, len: usize| capacity - len > capacity / 8;
+        match &mut self.kept {
+            Kept::F64(records) if is_loose(records.capacity(), records.len()) => {
+                Arc::make_mut(records).shrink_to_fit();
+            }
+            Kept::F32(rounded) if is_loose(rounded.records.capacity(), rounded.records.len()) => {
+                Arc::make_mut(&mut rounded.records).shrink_to_fit();
+            }
+            _ => {}
+        }
+    }
+
+    /// The bytes of the records, and of the numbers that are kept apart.
+    fn records_bytes(&self) -> usize {
+        let apart = match &self.kept {
+            Kept::F64(_) => 0,
+            Kept::F32(rounded) => size_of_val(rounded.runs.as_slice()),
+        };
+        self.len() * self.records().record_bytes() + apart
+    }
+
+    fn record_bytes(records: Records) -> usize {
+        records.record_bytes()
     }
 }
 

@@ -2,11 +2,13 @@
 //! nothing of the files it came from.
 
 use glam::{DAffine3, DVec3};
+use rayon::prelude::*;
 
-use super::cylinder_list::{CylinderList, Records};
+use super::contents::{PlacedCount, placed_counts};
+use super::cylinder_list::Records;
 use super::origins::Origins;
 use super::solid_lists::Solids;
-use crate::solid::{AnySolid, Caps, Cylinder, SolidKind};
+use crate::solid::{AnySolid, Caps, Cylinder};
 
 /// A whole scene. What it holds has been checked when it was loaded.
 #[derive(Clone, Debug)]
@@ -38,7 +40,8 @@ impl Scene {
     /// How cylinders are kept: in f32 where those of any prototype are.
     #[must_use]
     pub fn records(&self) -> Records {
-        let is_rounded = |prototype: &Prototype| prototype.cylinders.records() == Records::F32;
+        let is_rounded =
+            |prototype: &Prototype| prototype.solids.cylinders.records() == Records::F32;
         match self.prototypes.iter().any(is_rounded) {
             true => Records::F32,
             false => Records::F64,
@@ -49,7 +52,7 @@ impl Scene {
     #[must_use]
     pub fn rounding(&self) -> f64 {
         let lists = self.prototypes.iter();
-        let roundings = lists.map(|prototype| prototype.cylinders.rounding());
+        let roundings = lists.map(|prototype| prototype.solids.cylinders.rounding());
         roundings.fold(0.0, f64::max)
     }
 }
@@ -72,9 +75,7 @@ pub struct MaterialIndex(pub u16);
 pub struct Prototype {
     /// The name in the scene file; empty for the root.
     pub name: String,
-    /// The cylinders, in an order that suits tracing.
-    pub cylinders: CylinderList,
-    /// The solids of other kinds.
+    /// The solids.
     pub solids: Solids,
     /// The placements, in the order of their instance numbers.
     pub placements: Vec<Placement>,
@@ -85,48 +86,30 @@ pub struct Prototype {
 }
 
 impl Prototype {
-    /// Whether it holds no solids itself.
-    #[must_use]
-    pub fn has_no_solids(&self) -> bool {
-        self.cylinders.is_empty() && self.solids.is_empty()
-    }
-
-    /// Its solids that are not composed of others, each with its number: the cylinders,
-    /// then the other kinds, one after another.
+    /// As [`Solids::simple`].
     pub fn singles(&self) -> impl Iterator<Item = (u32, AnySolid)> {
-        let cylinders = self.cylinders.iter();
-        cylinders
-            .map(|record| (record.primitive(), record.cylinder().into()))
-            .chain(self.solids.singles())
+        self.solids.simple()
     }
 
-    /// The one of those with a number; `None` also of a solid composed of others.
+    /// As [`Solids::find_simple`].
     #[must_use]
     pub fn single(&self, primitive: u32) -> Option<AnySolid> {
-        match self.cylinders.position(primitive) {
-            Some(position) => Some(self.cylinders.get(position).cylinder().into()),
-            None => self.solids.single(primitive),
-        }
+        self.solids.find_simple(primitive)
     }
 
-    /// The number of the solid at a position in the list of its kind.
-    ///
-    /// # Panics
-    /// When the list is shorter.
+    /// How often it places each of the others, in their order. Runs on the rayon pool that
+    /// this is called in.
     #[must_use]
-    pub fn primitive(&self, kind: SolidKind, position: usize) -> u32 {
-        let solids = &self.solids;
-        match kind {
-            SolidKind::Cylinder => self.cylinders.primitive(position),
-            SolidKind::Sphere => solids.spheres[position].primitive,
-            SolidKind::Cuboid => solids.cuboids[position].primitive,
-            SolidKind::Cone => solids.cones[position].primitive,
-            SolidKind::RoundedCone => solids.rounded_cones[position].primitive,
-            SolidKind::Disk => solids.disks[position].primitive,
-            SolidKind::Union | SolidKind::Intersection | SolidKind::Difference => {
-                solids.compositions[position].primitive
-            }
-        }
+    pub fn placed(&self) -> Vec<PlacedCount> {
+        /// Placements that a thread counts at a time.
+        const SHARE: usize = 1 << 16;
+        let shares = self.placements.par_chunks(SHARE).map(|share| {
+            let runs = share.chunk_by(|one, next| one.of == next.of);
+            placed_counts(runs.map(|run| (run[0].of, run.len() as u64)))
+        });
+        let shares: Vec<_> = shares.collect();
+        let counts = shares.iter().flatten();
+        placed_counts(counts.map(|placed| (placed.of, placed.count)))
     }
 }
 

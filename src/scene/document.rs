@@ -1,34 +1,47 @@
-//! The keys of a scene file, as they stand there: types are checked, meaning
-//! is not. Where a value may turn out wrong later it keeps its place in the
+//! The keys of a scene file, as written: types are checked, meaning
+//! is not. A value that may turn out wrong later keeps its place in the
 //! file ([`Spanned`]).
 
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::solid_keys::{
-    BeamLatticeKeys, CompositionKeys, ConeKeys, CuboidKeys, CylinderKeys, CylinderTableKeys,
-    DiskKeys, RotationKeys, RoundedConeKeys, SphereKeys, SwcKeys,
+use super::formats::{
+    BeamLatticeKeys, CylinderTableKeys, SolidFile, SwcKeys, for_each_solid_format,
 };
+use super::set_operations::Operation;
+use super::solid_keys::{CompositionKeys, RotationKeys};
+use super::solids::SceneSolid;
 use super::table::ColumnKey;
 use super::values::{ColumnOrList, Keys, List, Number, NumberOrList, Whole};
+use crate::for_each_solid;
+use crate::solid::{Cone, Cuboid, Cylinder, Disk, RoundedCone, SolidKind, Sphere};
 
 /// Three numbers and their place.
 pub(super) type Triple = Spanned<List<Number, 3>>;
 /// Three columns, each with its place.
 pub(super) type ThreeColumns = List<Spanned<ColumnKey>, 3>;
 
-/// Declares the tables that hold solids and placements, each with the lists of
+/// Declares the tables that contain solids and placements, each with the lists of
 /// those behind its own keys, because serde cannot refuse unknown keys in a flattened
 /// struct; and [`Body`], which borrows the lists.
 macro_rules! holders {
-    ($lists:tt $($(#[$meta:meta])* $name:ident $keys:tt)*) => {
+    (
+        [$($others:tt)*], $($(#[$meta:meta])* $name:ident $keys:tt)*;
+        $({ $type:ident $solid:ident $($rest:tt)* })*
+    ) => {
+        holders! {
+            @ [$($solid: <$type as SceneSolid>::Keys,)* $($others)*]
+            $($(#[$meta])* $name $keys)*
+        }
+    };
+    (@ $lists:tt $($(#[$meta:meta])* $name:ident $keys:tt)*) => {
         $(holder!($lists $(#[$meta])* $name $keys);)*
         body!($lists);
     };
 }
 
 macro_rules! holder {
-    ([$($list:ident: $entry:ident,)*]
+    ([$($list:ident: $entry:ty,)*]
      $(#[$meta:meta])* $name:ident {
         $($(#[$attribute:meta])* pub $key:ident: $kind:ty,)*
      }) => {
@@ -41,7 +54,7 @@ macro_rules! holder {
         }
 
         impl $name {
-            /// What it holds, under a name.
+            /// What it contains, under a name.
             fn body<'a>(&'a self, name: &'a str) -> Body<'a> {
                 Body { name, $($list: &self.$list,)* }
             }
@@ -50,8 +63,8 @@ macro_rules! holder {
 }
 
 macro_rules! body {
-    ([$($list:ident: $entry:ident,)*]) => {
-        /// What the root and every prototype hold.
+    ([$($list:ident: $entry:ty,)*]) => {
+        /// What the root and every prototype contain.
         #[derive(Clone, Copy)]
         pub(super) struct Body<'a> {
             pub name: &'a str,
@@ -60,17 +73,24 @@ macro_rules! body {
     };
 }
 
-holders! {
+/// Adds the lists of files to those that `holders` gets.
+macro_rules! with_files {
+    ([$($others:tt)*] [$($structs:tt)*] $({ $keys:ident $name:ident })*) => {
+        for_each_solid! { holders [$($name: $keys,)* $($others)*], $($structs)*; }
+
+        impl<'a> Body<'a> {
+            /// The files of solids, in the order in which their solids are numbered.
+            pub fn files(self) -> impl Iterator<Item = &'a dyn SolidFile> {
+                std::iter::empty()
+                    $(.chain(self.$name.iter().map(|Keys(keys)| keys as &dyn SolidFile)))*
+            }
+        }
+    };
+}
+
+for_each_solid_format! {
+    with_files
     [
-        cylinder: CylinderKeys,
-        cylinder_table: CylinderTableKeys,
-        swc: SwcKeys,
-        beam_lattice: BeamLatticeKeys,
-        sphere: SphereKeys,
-        cuboid: CuboidKeys,
-        cone: ConeKeys,
-        rounded_cone: RoundedConeKeys,
-        disk: DiskKeys,
         union: CompositionKeys,
         intersection: CompositionKeys,
         difference: CompositionKeys,
@@ -78,6 +98,7 @@ holders! {
         instance_table: InstanceTableKeys,
         scatter: ScatterKeys,
     ]
+    [
 
     /// The whole file.
     Document {
@@ -98,6 +119,7 @@ holders! {
     PrototypeKeys {
         pub name: Spanned<String>,
     }
+    ]
 }
 
 impl Document {
@@ -106,6 +128,30 @@ impl Document {
         let prototypes = self.prototype.iter();
         let prototypes = prototypes.map(|Keys(keys)| keys.body(keys.name.get_ref()));
         std::iter::once(self.body("")).chain(prototypes)
+    }
+}
+
+macro_rules! body_solids {
+    ($({ $type:ident $name:ident $($rest:tt)* })*) => {
+        impl Body<'_> {
+            /// How many solids of each kind have a table.
+            pub fn solids(&self) -> impl Iterator<Item = (SolidKind, usize)> {
+                [$((SolidKind::$type, self.$name.len())),*].into_iter()
+            }
+        }
+    };
+}
+
+for_each_solid!(body_solids);
+
+impl<'a> Body<'a> {
+    /// The tables of set operations, in the order of their numbers.
+    pub fn operations(&self) -> [(Operation, &'a [Keys<CompositionKeys>]); 3] {
+        [
+            (Operation::Union, self.union),
+            (Operation::Intersection, self.intersection),
+            (Operation::Difference, self.difference),
+        ]
     }
 }
 

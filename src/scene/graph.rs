@@ -22,7 +22,7 @@ pub(super) struct Node<'a> {
 
 impl Node<'_> {
     fn has_solids(&self) -> bool {
-        !self.prototype.cylinders.is_empty() || !self.prototype.solids.is_empty()
+        !self.prototype.solids.is_empty()
     }
 
     /// Why it holds no solids, where rows were left out; all of them then.

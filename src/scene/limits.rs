@@ -71,6 +71,7 @@ pub const MOST_PLY_PROPERTIES: usize = 1 << 12;
 pub const MOST_FACE_CORNERS: usize = 1 << 20;
 
 /// Most bytes of a part of a 3MF file, unpacked, 2^30: some 16 million beams.
+#[cfg(feature = "three-mf")]
 pub(super) const MOST_PART_BYTES: u64 = 1 << 30;
 
 /// Most elements and texts of a part of a 3MF file, 2^26: each takes some 100 bytes while

@@ -6,13 +6,12 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::beam_lattice::{BeamLattice, UNITS, add_beam_lattice};
 use super::camera::camera;
 use super::cylinder_list::Records;
-use super::cylinder_table::add_table;
 use super::description::{Prototype, PrototypeIndex, Scene};
 use super::document::{Body, Document, PrototypeKeys, ScatterKeys};
 use super::error::SceneError;
+use super::formats::Context;
 use super::graph::{self, Node};
 use super::named_table::Tables;
 use super::names::{quoted, suggestion};
@@ -22,13 +21,13 @@ use super::scatter::{Pattern, Scatter};
 use super::scene_file::SceneFile;
 use super::set_operations::Operation;
 use super::settings::{Materials, check_names, film, lights, render};
-use super::solid_collector::{Degenerate, Look, Refusal, SolidCollector};
-use super::solid_keys::{BeamLatticeKeys, CompositionKeys, SolidTable};
-use super::solids::{SolidKeys, caps};
+use super::solid_collector::{Refusal, SolidCollector};
+use super::solid_keys::{CompositionKeys, SolidTable};
+use super::solids::SolidKeys;
 use super::source::Source;
-use super::swc::{Shape, add_swc};
 use super::transform::GREATEST_ENTRY;
 use super::values::{Keys, NumberOrList};
+use crate::for_each_solid;
 
 /// Reads a scene file and the tables it names, and checks everything.
 ///
@@ -152,19 +151,29 @@ impl Lowered {
     }
 }
 
+/// Adds the solids of each kind. Those of files are numbered behind the first kind, the
+/// cylinders.
+macro_rules! add_in_order {
+    (
+        $loader:ident $solids:ident $body:ident;
+        { $first_type:ident $first:ident $($first_rest:tt)* }
+        $({ $type:ident $name:ident $($rest:tt)* })*
+    ) => {
+        $loader.add_solids(&mut $solids, $body.$first)?;
+        $loader.add_files(&mut $solids, $body)?;
+        $($loader.add_solids(&mut $solids, $body.$name)?;)*
+    };
+}
+
 impl Loader<'_> {
     /// The solids and placements, in the order of their numbers.
     fn body(&self, body: &Body) -> Result<Lowered, SceneError> {
         let source = self.source;
-        let mut solids = self.files_and_cylinders(body)?;
-        self.add_solids(&mut solids, body.sphere)?;
-        self.add_solids(&mut solids, body.cuboid)?;
-        self.add_solids(&mut solids, body.cone)?;
-        self.add_solids(&mut solids, body.rounded_cone)?;
-        self.add_solids(&mut solids, body.disk)?;
-        self.add_compositions(&mut solids, Operation::Union, body.union)?;
-        self.add_compositions(&mut solids, Operation::Intersection, body.intersection)?;
-        self.add_compositions(&mut solids, Operation::Difference, body.difference)?;
+        let mut solids = SolidCollector::new(self.records);
+        for_each_solid!(add_in_order self solids body;);
+        for (operation, tables) in body.operations() {
+            self.add_compositions(&mut solids, operation, tables)?;
+        }
 
         let mut placements = Placements::default();
         let mut placement_origins = Origins::default();
@@ -183,15 +192,13 @@ impl Loader<'_> {
         });
         placements.add_scatters(source, &scatters.collect::<Result<Vec<_>, _>>()?)?;
 
-        solids.records.trim();
-        solids.records.arrange();
-        solids.others.trim();
+        solids.solids.trim();
+        solids.solids.cylinders.arrange();
         placements.list.shrink_to_fit();
         Ok(Lowered {
             prototype: Prototype {
                 name: body.name.to_owned(),
-                cylinders: solids.records,
-                solids: solids.others,
+                solids: solids.solids,
                 placements: placements.list,
                 solid_origins: solids.origins,
                 placement_origins,
@@ -203,33 +210,19 @@ impl Loader<'_> {
         })
     }
 
-    /// The cylinders and what comes from files, in the order of their numbers.
-    fn files_and_cylinders(&self, body: &Body) -> Result<SolidCollector, SceneError> {
-        let source = self.source;
-        let mut solids = SolidCollector::new(self.records);
-        self.add_solids(&mut solids, body.cylinder)?;
-        for Keys(keys) in body.cylinder_table {
-            let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
-            let degenerate = self.degenerate(keys.degenerate.as_ref())?;
+    /// Adds the solids that come from files.
+    fn add_files(&self, solids: &mut SolidCollector, body: &Body) -> Result<(), SceneError> {
+        let context = Context {
+            source: self.source,
+            tables: self.tables,
+            materials: self.materials,
+        };
+        for file in body.files() {
             let first = solids.numbers();
-            add_table(&mut solids, self.tables, keys, look, degenerate)?;
-            solids.came_from(keys.file.get_ref(), true, first);
+            file.add(&context, solids)?;
+            solids.came_from(file.file().get_ref(), file.has_rows(), first);
         }
-        for Keys(keys) in body.swc {
-            let look = self.look(keys.caps.as_ref(), keys.material.as_ref())?;
-            let degenerate = self.degenerate(keys.degenerate.as_ref())?;
-            let shape = Shape::new(source, keys)?;
-            let first = solids.numbers();
-            add_swc(&mut solids, self.tables, keys, look, shape, degenerate)?;
-            solids.came_from(keys.file.get_ref(), false, first);
-        }
-        for Keys(keys) in body.beam_lattice {
-            let lattice = self.beam_lattice(keys)?;
-            let first = solids.numbers();
-            add_beam_lattice(&mut solids, source, &keys.file, &lattice)?;
-            solids.came_from(keys.file.get_ref(), false, first);
-        }
-        Ok(solids)
+        Ok(())
     }
 
     /// Adds solids of one kind.
@@ -258,7 +251,7 @@ impl Loader<'_> {
             let solid = operation.of(self.source, keys)?;
             let material = self.materials.find(self.source, keys.material())?;
             let pushed = solids.push_composition(solid, material);
-            pushed.map_err(|refusal| self.refused(keys.of.span(), &refusal))?;
+            pushed.map_err(|refusal| self.refused(keys.of().span(), &refusal))?;
         }
         Ok(())
     }
@@ -270,38 +263,6 @@ impl Loader<'_> {
             Some(help) => self.source.error_with_help(place, message, help),
             None => self.source.error(place, message),
         }
-    }
-
-    fn beam_lattice(&self, keys: &BeamLatticeKeys) -> Result<BeamLattice, SceneError> {
-        const MESHES: [(&str, bool); 2] = [("error", false), ("skip", true)];
-        let (source, unit, meshes) = (self.source, keys.unit.as_ref(), keys.meshes.as_ref());
-        let unit = unit.map(|word| source.choose("unit", word, &UNITS));
-        let meshes = meshes.map(|word| source.choose("meshes", word, &MESHES));
-        Ok(BeamLattice {
-            unit: unit.transpose()?,
-            skips_meshes: meshes.transpose()?.unwrap_or(false),
-            material: self.materials.find(self.source, keys.material.as_ref())?,
-            degenerate: self.degenerate(keys.degenerate.as_ref())?,
-        })
-    }
-
-    fn look(
-        &self,
-        caps: Option<&Spanned<String>>,
-        material: Option<&Spanned<String>>,
-    ) -> Result<Look, SceneError> {
-        Ok(Look {
-            caps: self::caps(self.source, caps)?,
-            material: self.materials.find(self.source, material)?,
-        })
-    }
-
-    fn degenerate(&self, word: Option<&Spanned<String>>) -> Result<Degenerate, SceneError> {
-        const POLICIES: [(&str, Degenerate); 2] =
-            [("error", Degenerate::Error), ("skip", Degenerate::Skip)];
-        word.map_or(Ok(Degenerate::Error), |word| {
-            self.source.choose("degenerate", word, &POLICIES)
-        })
     }
 
     fn placed(&self, of: &Spanned<String>) -> Result<PrototypeIndex, SceneError> {

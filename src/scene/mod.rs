@@ -3,7 +3,7 @@
 //! [`load`] reads a scene file in TOML (`docs/scene-file.md`) in three steps:
 //! `document` holds the keys as they stand there, with their places; the
 //! entries are lowered one kind a file (`solids`, with their `pose`,
-//! `set_operations`, `cylinder_table`, `swc`, `beam_lattice`, `placing`, `scatter`,
+//! `set_operations`, the `formats` of files, `placing`, `scatter`,
 //! `camera`, `settings`), streaming the rows of tables, which `table` reads and
 //! `named_table` opens for them; `solid_collector` collects the
 //! solids of a prototype and numbers them; `graph` checks how prototypes place each
@@ -17,15 +17,14 @@
 //! hits of another program.
 
 mod aimed_camera;
-mod beam_lattice;
 mod camera;
 mod contents;
 mod cylinder_list;
-mod cylinder_table;
 mod defaults;
 mod description;
 mod document;
 mod error;
+mod formats;
 mod graph;
 mod hit_table;
 mod limits;
@@ -48,7 +47,6 @@ mod solid_keys;
 mod solid_lists;
 mod solids;
 mod source;
-mod swc;
 mod table;
 mod toml_message;
 mod transform;
@@ -56,8 +54,7 @@ mod values;
 mod view_volume;
 
 pub use aimed_camera::AimedCamera;
-pub use beam_lattice::beams_of_model;
-pub use contents::{ExpectedCounts, OtherSolids, PlacedCount};
+pub use contents::{ExpectedCounts, ExpectedSolids, PlacedCount};
 pub(crate) use cylinder_list::SharedRecords;
 pub use cylinder_list::{CylinderList, CylinderRecord32, Iter as CylinderIter, Records};
 pub use description::{
@@ -65,6 +62,7 @@ pub use description::{
     Projection, Prototype, PrototypeIndex, RenderSettings, Scene, Sky, Sun,
 };
 pub use error::{SceneError, Statement};
+pub use formats::{SOLID_FORMATS, SolidFormatInfo, beams_of_model, check_swc};
 pub use hit_table::{GivenHit, GivenHits};
 pub use limits::*;
 pub use load::load;
@@ -72,8 +70,7 @@ pub use number_table::{NumberColumns, NumberRow, NumberTable};
 pub use origins::{Origin, Origins};
 pub use scene_file::SceneFile;
 pub use scene_stats::SceneStats;
-pub use solid_lists::{CompositionRecord, Listed, SolidRecord, Solids};
-pub use swc::check_swc;
+pub use solid_lists::{CompositionRecord, Listed, SolidList, SolidRecord, Solids, Stored};
 pub use table::{
     Block, Column, ColumnKey, Decimal, Delimiter, Fault, Layout, Row, Rows, Table, TableFormat,
 };

@@ -157,6 +157,20 @@ impl NamedTable<'_> {
     }
 }
 
+/// The most rows of a table; 0 of one that cannot be read. One whose columns have numbers
+/// may have no header.
+pub(super) fn table_rows(source: &Source, file: &Spanned<String>, columns: &ThreeColumns) -> u64 {
+    let is_numbered = matches!(columns.0[0].get_ref(), ColumnKey::Number(_));
+    rows(source, file) + u64::from(is_numbered)
+}
+
+/// The lines of a file but the first, which is a header, a comment, or a sample without a
+/// parent; 0 of one that cannot be read.
+pub(super) fn rows(source: &Source, file: &Spanned<String>) -> u64 {
+    let lines = lines(&source.resolve(file.get_ref()));
+    lines.map_or(0, |lines| lines.saturating_sub(1))
+}
+
 /// The keys of some columns, without their places.
 pub(super) fn keys_of<'k>(
     columns: impl IntoIterator<Item = &'k Spanned<ColumnKey>>,

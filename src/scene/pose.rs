@@ -14,15 +14,17 @@ use toml::Spanned;
 use super::error::SceneError;
 use super::settings::vector;
 use super::solid_keys::{PoseKeys, RotationKeys};
+use super::solids::SceneSolid;
 use super::source::Source;
 use super::values::{Keys, Number};
 use crate::math::{Orientation, unit};
-use crate::solid::{AnySolid, Composition, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
+use crate::solid::{AnySolid, Composition};
+use crate::with_solid;
 
 /// A turn about a center that is not known yet, and a translation.
 pub(super) struct Motion<'a> {
     source: &'a Source,
-    /// Where to point at when a solid is none where it is moved to.
+    /// The place of errors about the solid where it is moved to.
     place: Range<usize>,
     turn: Option<Orientation>,
     translation: Option<DVec3>,
@@ -45,7 +47,7 @@ pub(super) fn axis(source: &Source, turn: &RotationKeys) -> Result<DVec3, SceneE
 }
 
 impl<'a> Motion<'a> {
-    /// The motion that the keys of a pose state, of what stands at `place`.
+    /// The motion that the keys of a pose state, for what is at `place` in the file.
     pub fn new(
         source: &'a Source,
         keys: &PoseKeys,
@@ -87,61 +89,44 @@ impl<'a> Motion<'a> {
         if self.turn.is_none() && self.translation.is_none() {
             return Ok(*solid);
         }
-        self.moved(solid, center).map_err(|error| {
-            let place = self.place.clone();
-            self.source
-                .error(place, format!("where the solid is moved to, {error}"))
-        })
-    }
-
-    fn moved(&self, solid: &AnySolid, center: DVec3) -> Result<AnySolid, String> {
-        let direction = |direction| self.turn.map_or(direction, |turn| turn.to_world(direction));
-        let point = |point: DVec3| {
-            let turned = match self.turn {
-                Some(turn) => center + turn.to_world(point - center),
-                None => point,
-            };
-            self.translation.map_or(turned, |by| turned + by)
+        let motion = RigidMotion {
+            turn: self.turn,
+            center,
+            translation: self.translation,
         };
-        match solid {
-            AnySolid::Cylinder(one) => {
-                let ends = (point(one.p0()), point(one.p1()));
-                any_solid(Cylinder::new(ends.0, ends.1, one.radius(), one.caps()))
-            }
-            AnySolid::Cone(one) => {
-                let ends = (point(one.p0()), point(one.p1()));
-                let radii = (one.radius0(), one.radius1());
-                any_solid(Cone::new(ends.0, ends.1, radii.0, radii.1, one.caps()))
-            }
-            AnySolid::RoundedCone(one) => {
-                let ends = (point(one.p0()), point(one.p1()));
-                any_solid(RoundedCone::new(
-                    ends.0,
-                    ends.1,
-                    one.radius0(),
-                    one.radius1(),
-                ))
-            }
-            AnySolid::Sphere(one) => any_solid(Sphere::new(point(one.center()), one.radius())),
-            AnySolid::Cuboid(one) => {
-                let orientation = one.orientation();
-                let orientation = self.turn.map_or(orientation, |turn| orientation.then(turn));
-                any_solid(Cuboid::new(
-                    point(one.center()),
-                    one.half_widths(),
-                    orientation,
-                ))
-            }
-            AnySolid::Disk(one) => any_solid(Disk::new(
-                point(one.center()),
-                direction(one.normal()),
-                one.radius(),
-            )),
-        }
+        with_solid!(solid, solid => {
+            solid.moved(&motion).map(AnySolid::from).map_err(|error| {
+                let place = self.place.clone();
+                self.source
+                    .error(place, format!("where the solid is moved to, {error}"))
+            })
+        })
     }
 }
 
-/// A solid of its kind, or why it is none.
-fn any_solid<S: Into<AnySolid>, E: ToString>(solid: Result<S, E>) -> Result<AnySolid, String> {
-    solid.map(Into::into).map_err(|error| error.to_string())
+/// A turn about a center and a translation. What is not stated changes no bit.
+pub(super) struct RigidMotion {
+    turn: Option<Orientation>,
+    center: DVec3,
+    translation: Option<DVec3>,
+}
+
+impl RigidMotion {
+    /// Where it takes a point.
+    pub fn point(&self, point: DVec3) -> DVec3 {
+        let turned = self.turn.map_or(point, |turn| {
+            self.center + turn.to_world(point - self.center)
+        });
+        self.translation.map_or(turned, |by| turned + by)
+    }
+
+    /// Where it turns a direction.
+    pub fn direction(&self, direction: DVec3) -> DVec3 {
+        self.turn.map_or(direction, |turn| turn.to_world(direction))
+    }
+
+    /// The orientation of what had this one before.
+    pub fn orientation(&self, before: Orientation) -> Orientation {
+        self.turn.map_or(before, |turn| before.then(turn))
+    }
 }

@@ -5,19 +5,17 @@ use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 
-use super::beam_lattice::counted;
-use super::contents::{ExpectedCounts, OtherSolids, mark_used};
+use super::contents::{ExpectedCounts, ExpectedSolids, mark_used, placed_counts};
+use super::cylinder_list::Records;
 use super::description::{PrototypeIndex, Scene};
-use super::document::{Body, Document, ThreeColumns};
+use super::document::{Body, Document};
 use super::error::SceneError;
-use super::lines::lines;
+use super::formats::{self, SolidFile};
 use super::load::{lower, records};
+use super::named_table::table_rows;
 use super::set_operations::operand_count;
 use super::source::Source;
-use super::swc::{Joints, SAMPLE_BYTES, Shape, most_balls};
-use super::table::ColumnKey;
 use super::values::Keys;
-use crate::solid::{Cone, Cuboid, Disk, RoundedCone, Sphere};
 
 /// A scene file that has been read; the files that it names have not.
 pub struct SceneFile {
@@ -55,9 +53,7 @@ impl SceneFile {
     pub fn files(&self) -> Vec<PathBuf> {
         let mut names = Vec::new();
         for body in self.document.bodies() {
-            names.extend(body.cylinder_table.iter().map(|Keys(keys)| &keys.file));
-            names.extend(body.swc.iter().map(|Keys(keys)| &keys.file));
-            names.extend(body.beam_lattice.iter().map(|Keys(keys)| &keys.file));
+            names.extend(body.files().map(SolidFile::file));
             names.extend(body.instance_table.iter().map(|Keys(keys)| &keys.file));
         }
         let paths = names.iter().map(|name| self.source.resolve(name.get_ref()));
@@ -81,7 +77,7 @@ impl SceneFile {
             let tables = body.instance_table.iter();
             let tables = tables.map(|Keys(keys)| {
                 let Keys(columns) = keys.columns.get_ref();
-                let rows = self.table_rows(&keys.file, &columns.position);
+                let rows = table_rows(&self.source, &keys.file, &columns.position);
                 (of(&keys.of), rows)
             });
             let mut placed: Vec<_> = single.chain(tables).collect();
@@ -97,8 +93,12 @@ impl SceneFile {
             let placed = placed
                 .into_iter()
                 .filter_map(|(of, count)| Some((of?, count)));
-            let (cylinders, others) = self.solids(&body);
-            ExpectedCounts::new(body.name, cylinders, records, others, placed)
+            ExpectedCounts {
+                name: body.name.to_owned(),
+                solids: self.solids(&body, records),
+                placed: placed_counts(placed),
+                is_used: false,
+            }
         };
         let mut contents: Vec<_> = self.document.bodies().map(count).collect();
         mark_used(&mut contents);
@@ -106,73 +106,30 @@ impl SceneFile {
     }
 
     /// The most bytes that any file takes while it is read, beside the records that are
-    /// made of it: the samples of a neuron, which are read before the first becomes a
-    /// record.
+    /// made of it.
     #[must_use]
     pub fn reading_bytes(&self) -> u64 {
-        let neurons = self.document.bodies().flat_map(|body| body.swc);
-        let rows = neurons.map(|Keys(keys)| self.rows(&keys.file));
-        rows.max().unwrap_or(0).saturating_mul(SAMPLE_BYTES)
+        let files = self.document.bodies().flat_map(Body::files);
+        let bytes = files.map(|file| file.reading_bytes(&self.source));
+        bytes.max().unwrap_or(0)
     }
 
-    /// The most rows of a table; none of what cannot be read. One whose columns have
-    /// numbers may have no header.
-    fn table_rows(&self, file: &Spanned<String>, columns: &ThreeColumns) -> u64 {
-        let is_numbered = matches!(columns.0[0].get_ref(), ColumnKey::Number(_));
-        self.rows(file) + u64::from(is_numbered)
-    }
-
-    /// The lines of a table but the first, which is the header, or a comment, or a sample
-    /// without a parent; none of what cannot be read.
-    fn rows(&self, file: &Spanned<String>) -> u64 {
-        let lines = lines(&self.source.resolve(file.get_ref()));
-        lines.map_or(0, |lines| lines.saturating_sub(1))
-    }
-
-    /// How many cylinders and other solids a prototype holds itself.
-    fn solids(&self, body: &Body) -> (u64, OtherSolids) {
-        let mut cylinders = body.cylinder.len() as u64;
-        let mut others = OtherSolids::default()
-            .and::<Sphere>(body.sphere.len() as u64)
-            .and::<Cuboid>(body.cuboid.len() as u64)
-            .and::<Cone>(body.cone.len() as u64)
-            .and::<RoundedCone>(body.rounded_cone.len() as u64)
-            .and::<Disk>(body.disk.len() as u64);
-        for Keys(keys) in body.cylinder_table {
-            let Keys(columns) = keys.columns.get_ref();
-            let rows = self.table_rows(&keys.file, &columns.p0);
-            cylinders = cylinders.saturating_add(rows);
+    /// How many solids a prototype contains itself.
+    fn solids(&self, body: &Body, records: Records) -> ExpectedSolids {
+        let mut solids = ExpectedSolids::default();
+        for (kind, stated) in body.solids() {
+            solids.add(kind, stated as u64, records);
         }
-        for Keys(keys) in body.swc {
-            let rows = self.rows(&keys.file);
-            // Loading makes nothing of what is stated wrongly.
-            let Ok(shape) = Shape::new(&self.source, keys) else {
-                continue;
-            };
-            match shape.joints {
-                Joints::Steps => cylinders = cylinders.saturating_add(rows),
-                Joints::Flat => others = others.and::<Cone>(rows),
-                Joints::Round => others = others.and::<RoundedCone>(rows),
-            }
-            if shape.has_soma {
-                let path = self.source.resolve(keys.file.get_ref());
-                others = others.and::<Sphere>(most_balls(&path));
+        for file in body.files() {
+            file.count(&self.source, records, &mut solids);
+        }
+        for (operation, tables) in body.operations() {
+            for Keys(keys) in tables {
+                solids.add(operation.kind(), 1, records);
+                solids.add_operands(operand_count(keys));
             }
         }
-        for Keys(keys) in body.beam_lattice {
-            if let Ok(lattice) = counted(&self.source, &keys.file) {
-                cylinders = cylinders.saturating_add(lattice.0);
-                others = others.plus(lattice.1);
-            }
-        }
-        for Keys(keys) in [body.union, body.intersection, body.difference]
-            .into_iter()
-            .flatten()
-        {
-            let operands = operand_count(keys);
-            others = others.and_composed(1, operands);
-        }
-        (cylinders, others)
+        solids
     }
 
     /// Reads the files that the scene names, and checks everything.
@@ -195,35 +152,17 @@ impl SceneFile {
 
 /// That a file which is no scene is data or a picture, as its name says.
 fn other_kind(path: &Path) -> Option<SceneError> {
-    const TO_READ: &str = " that names it";
+    const PICTURES: &[&str] = &["png", "exr", "jpg", "jpeg"];
+    let name = path.file_name()?.to_str()?;
     let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-    let file = |fallback: &str| {
-        let name = path.file_name().and_then(|name| name.to_str());
-        toml::Value::from(name.unwrap_or(fallback)).to_string()
-    };
-    let columns = r#"columns = { p0 = ["startX", "startY", "startZ"], p1 = ["endX", "endY", "endZ"], radius = "radius" }"#;
-    let (what, purpose, example) = match extension.as_str() {
-        "csv" | "tsv" => (
-            "a table",
-            TO_READ,
-            format!("[[cylinder_table]]\nfile = {}\n{columns}", file("tree.csv")),
-        ),
-        "swc" => (
-            "a neuron in SWC",
-            TO_READ,
-            format!("[[swc]]\nfile = {}", file("neuron.swc")),
-        ),
-        "3mf" => (
-            "a model in 3MF",
-            TO_READ,
-            format!("[[beam_lattice]]\nfile = {}", file("lattice.3mf")),
-        ),
-        "png" | "exr" | "jpg" | "jpeg" => (
-            "a picture",
-            "",
-            format!("[[cylinder_table]]\nfile = \"tree.csv\"\n{columns}"),
-        ),
-        _ => return None,
+    let named = |name: &str| toml::Value::from(name).to_string();
+    let (what, purpose, example) = match formats::example(&extension, &named(name)) {
+        Some((what, example)) => (what, " that names it", example),
+        None if PICTURES.contains(&extension.as_str()) => {
+            let (_, example) = formats::example("csv", &named("tree.csv"))?;
+            ("a picture", "", example)
+        }
+        None => return None,
     };
     Some(SceneError::NotAScene {
         path: path.to_owned(),

@@ -1,7 +1,5 @@
 //! Set operations: from the keys of a table to the tree of its solids.
 
-use std::ops::Range;
-
 use glam::DVec3;
 use toml::Spanned;
 
@@ -11,7 +9,7 @@ use super::solid_keys::{CompositionKeys, OperandKeys, SolidTable};
 use super::solids::SolidKeys;
 use super::source::Source;
 use super::values::Keys;
-use crate::solid::{AnySolid, Composition};
+use crate::solid::{AnySolid, Composition, SolidKind};
 
 /// What to do with the operands.
 #[derive(Clone, Copy)]
@@ -22,16 +20,25 @@ pub(super) enum Operation {
 }
 
 impl Operation {
+    /// What its solids are called.
+    pub fn kind(self) -> SolidKind {
+        match self {
+            Self::Union => SolidKind::Union,
+            Self::Intersection => SolidKind::Intersection,
+            Self::Difference => SolidKind::Difference,
+        }
+    }
+
     /// The solid that a table of this operation states.
     pub fn of(self, source: &Source, keys: &CompositionKeys) -> Result<Composition, SceneError> {
-        let operands = keys.of.get_ref().iter();
+        let operands = keys.of().get_ref().iter();
         let operands = operands.map(|keys| operand(source, keys));
         let mut operands = operands.collect::<Result<Vec<_>, _>>()?;
         // They stay as long as the scene does.
         operands.shrink_to_fit();
         if operands.is_empty() {
             return Err(source.error_with_help(
-                keys.of.span(),
+                keys.of().span(),
                 "of is empty: a set operation needs solids",
                 "of = [{ cuboid = { half_widths = [1, 1, 1] } }, { sphere = { center = [1, 0, 0], radius = 1 } }]",
             ));
@@ -46,7 +53,7 @@ impl Operation {
             .solids()
             .first()
             .map_or(DVec3::ZERO, AnySolid::center);
-        Motion::new(source, &keys.pose(), keys.of.span())?.of_composition(unmoved, center)
+        Motion::new(source, &keys.pose(), keys.of().span())?.of_composition(unmoved, center)
     }
 }
 
@@ -57,7 +64,7 @@ pub(super) fn operand_count(keys: &CompositionKeys) -> u64 {
         let nested = nested.into_iter().flatten();
         1 + nested.map(|Keys(keys)| operand_count(keys)).sum::<u64>()
     };
-    let operands = keys.of.get_ref().iter().map(Spanned::get_ref);
+    let operands = keys.of().get_ref().iter().map(Spanned::get_ref);
     operands.map(|Keys(keys)| of_operand(keys)).sum()
 }
 
@@ -65,41 +72,32 @@ pub(super) fn operand_count(keys: &CompositionKeys) -> u64 {
 fn operand(source: &Source, keys: &Spanned<Keys<OperandKeys>>) -> Result<Composition, SceneError> {
     let place = keys.span();
     let Keys(keys) = keys.get_ref();
-    if let Some(disk) = &keys.disk {
-        return Err(source.error(
-            disk.span(),
-            "a disk has no inside: it cannot be part of a set operation",
-        ));
-    }
-    let solids: [Option<&dyn SolidKeys>; 5] = [
-        keys.cylinder.as_ref().map(|Keys(keys)| keys as _),
-        keys.cone.as_ref().map(|Keys(keys)| keys as _),
-        keys.rounded_cone.as_ref().map(|Keys(keys)| keys as _),
-        keys.sphere.as_ref().map(|Keys(keys)| keys as _),
-        keys.cuboid.as_ref().map(|Keys(keys)| keys as _),
-    ];
     let nested = [
         (Operation::Union, &keys.union),
         (Operation::Intersection, &keys.intersection),
         (Operation::Difference, &keys.difference),
     ];
-    let solids = solids.into_iter().flatten();
     let nested = nested
         .into_iter()
         .filter_map(|(operation, keys)| keys.as_ref().map(|Keys(keys)| (operation, keys)));
-    let stated: Vec<_> = solids
+    let stated: Vec<_> = keys
+        .solids()
         .map(Stated::Solid)
         .chain(nested.map(|(operation, keys)| Stated::Nested(operation, keys)))
         .collect();
     let [stated] = stated.as_slice() else {
+        let names: Vec<&str> = SolidKind::all().map(SolidKind::name).collect();
         return Err(source.error_with_help(
             place,
             format!("an operand is one solid, and this states {}", stated.len()),
-            "write { cylinder = { ... } }, or cone, rounded_cone, sphere, cuboid, union, intersection or difference, each between braces of its own",
+            &format!(
+                "write {{ cylinder = {{ ... }} }}, or another of {}, each between braces of its own",
+                names.join(", ")
+            ),
         ));
     };
     match stated {
-        Stated::Solid(keys) => closed(source, *keys, place),
+        Stated::Solid(keys) => closed(source, keys),
         Stated::Nested(operation, keys) => {
             without_material(source, *keys)?;
             operation.of(source, keys)
@@ -109,25 +107,31 @@ fn operand(source: &Source, keys: &Spanned<Keys<OperandKeys>>) -> Result<Composi
 
 /// What an operand states.
 enum Stated<'a> {
-    Solid(&'a dyn SolidKeys),
+    Solid(Spanned<&'a dyn SolidKeys>),
     Nested(Operation, &'a CompositionKeys),
 }
 
 /// A solid that has an inside.
-fn closed(
-    source: &Source,
-    keys: &dyn SolidKeys,
-    place: Range<usize>,
-) -> Result<Composition, SceneError> {
+fn closed(source: &Source, stated: &Spanned<&dyn SolidKeys>) -> Result<Composition, SceneError> {
+    let keys = *stated.get_ref();
     without_material(source, keys)?;
     let solid = keys.solid(source)?;
-    if !solid.is_closed() {
-        return Err(source.error(
-            keys.caps_place().unwrap_or(place),
-            "a solid in a set operation must be closed: caps must be \"both\"",
-        ));
+    if solid.is_closed() {
+        return Ok(Composition::Solid(solid));
     }
-    Ok(Composition::Solid(solid))
+    Err(match keys.caps_place() {
+        Some(caps) => source.error(
+            caps,
+            "a solid in a set operation must be closed: caps must be \"both\"",
+        ),
+        None => source.error(
+            stated.span(),
+            format!(
+                "a {} has no inside: it cannot be part of a set operation",
+                solid.kind()
+            ),
+        ),
+    })
 }
 
 /// That a part of a set operation has no material of its own.

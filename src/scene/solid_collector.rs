@@ -1,29 +1,32 @@
 //! Gathers the solids of one prototype, and gives them their primitive numbers.
 
+use std::borrow::Borrow;
+
 use toml::Spanned;
 
 use super::cylinder_list::{CylinderList, Records};
-use super::description::{CylinderRecord, MaterialIndex};
+use super::description::MaterialIndex;
 use super::error::SceneError;
 use super::origins::Origins;
-use super::solid_lists::{SolidRecord, Solids};
+use super::solid_lists::{Listed, SolidList, SolidRecord, Solids};
 use super::source::Source;
 use crate::math::Bounds;
-use crate::solid::{AnySolid, Caps, Composition, ConeError, Cylinder, CylinderError};
+use crate::solid::{
+    AnySolid, Caps, Composition, ConeError, ConvexSolid, Cylinder, CylinderError, SolidKind,
+};
+use crate::with_solid;
 
 /// What to say about rows that `degenerate = "skip"` would leave out.
 pub(super) const SKIP_HELP: &str =
     "degenerate = \"skip\" in the scene file leaves such rows out and counts them";
 
-/// What to say about a cylinder that f32 does not hold.
+/// The help for a cylinder that f32 does not represent.
 const F64_HELP: &str = "records = \"f64\", the default, keeps every number as it is stated";
 
 /// The solids of one prototype.
 #[derive(Default)]
 pub(super) struct SolidCollector {
-    pub records: CylinderList,
-    /// The solids that are no cylinders.
-    pub others: Solids,
+    pub solids: Solids,
     /// How many primitive numbers are given away.
     numbers: u32,
     /// Rows that were left out, though they have a number.
@@ -43,13 +46,13 @@ pub(super) struct Look {
     pub material: MaterialIndex,
 }
 
-/// Why a cylinder is not added.
+/// Why a solid is not added.
 #[derive(Debug, PartialEq)]
 pub(super) enum Refusal {
     /// No primitive number is left.
     Numbers,
-    /// Rounded to f32 it is no cylinder.
-    Rounded(CylinderError),
+    /// Rounded to f32 it is no solid of its kind, for this reason.
+    Rounded { kind: SolidKind, error: String },
 }
 
 impl Refusal {
@@ -60,8 +63,8 @@ impl Refusal {
                 let most = u32::MAX;
                 (format!("a prototype holds at most {most} primitives"), None)
             }
-            Self::Rounded(error) => (
-                format!("rounded to f32 this is no cylinder: {error}"),
+            Self::Rounded { kind, error } => (
+                format!("rounded to f32 this is no {kind}: {error}"),
                 Some(F64_HELP),
             ),
         }
@@ -77,7 +80,7 @@ impl Refusal {
         let (message, help) = self.message();
         match self {
             Self::Numbers => source.error(file.span(), message),
-            Self::Rounded(_) => row(message, help),
+            Self::Rounded { .. } => row(message, help),
         }
     }
 }
@@ -90,10 +93,13 @@ pub(super) enum Degenerate {
 }
 
 impl SolidCollector {
-    /// No cylinders, to be kept so.
+    /// No solids; cylinders are to be kept so.
     pub fn new(records: Records) -> Self {
         Self {
-            records: CylinderList::new(records),
+            solids: Solids {
+                cylinders: CylinderList::new(records),
+                ..Solids::default()
+            },
             ..Self::default()
         }
     }
@@ -111,45 +117,27 @@ impl SolidCollector {
         Ok(number)
     }
 
-    /// Adds a cylinder.
-    pub fn push(&mut self, cylinder: &Cylinder, material: MaterialIndex) -> Result<(), Refusal> {
-        let number = self.number()?;
-        self.records
-            .push(CylinderRecord::new(cylinder, number, material))
-            .map_err(Refusal::Rounded)?;
-        let kept = self.records.get(self.records.len() - 1).cylinder();
-        let farthest = kept.p0().abs().max(kept.p1().abs()).max_element();
-        self.reach = self.reach.max(farthest + kept.radius());
+    /// Adds a solid.
+    pub fn push<S: Listed + ConvexSolid>(
+        &mut self,
+        solid: S,
+        material: MaterialIndex,
+    ) -> Result<(), Refusal> {
+        let record = SolidRecord::new(solid, self.number()?, material);
+        let list = S::list_mut(&mut self.solids);
+        list.push(record).map_err(|error| Refusal::Rounded {
+            kind: S::KIND,
+            error,
+        })?;
+        // The list may have rounded it.
+        let kept: S = *list.solid(list.len() - 1).borrow();
+        self.reach_to(&kept.bounds());
         Ok(())
     }
 
     /// Adds a solid of any kind.
     pub fn push_any(&mut self, solid: &AnySolid, material: MaterialIndex) -> Result<(), Refusal> {
-        if let AnySolid::Cylinder(cylinder) = solid {
-            return self.push(cylinder, material);
-        }
-        let primitive = self.number()?;
-        self.reach_to(&solid.bounds());
-        let others = &mut self.others;
-        match *solid {
-            AnySolid::Cylinder(_) => {}
-            AnySolid::Sphere(one) => others
-                .spheres
-                .push(SolidRecord::new(one, primitive, material)),
-            AnySolid::Cuboid(one) => others
-                .cuboids
-                .push(SolidRecord::new(one, primitive, material)),
-            AnySolid::Cone(one) => others
-                .cones
-                .push(SolidRecord::new(one, primitive, material)),
-            AnySolid::RoundedCone(one) => others
-                .rounded_cones
-                .push(SolidRecord::new(one, primitive, material)),
-            AnySolid::Disk(one) => others
-                .disks
-                .push(SolidRecord::new(one, primitive, material)),
-        }
-        Ok(())
+        with_solid!(*solid, solid => self.push(solid, material))
     }
 
     /// Adds a composed solid.
@@ -164,7 +152,7 @@ impl SolidCollector {
             self.reach_to(&part.bounds());
         }
         let record = SolidRecord::new(solid, primitive, material);
-        self.others.compositions.push(record);
+        self.solids.compositions.push(record);
         Ok(())
     }
 
@@ -229,8 +217,8 @@ mod tests {
             ..SolidCollector::default()
         };
         let cylinder = Cylinder::new(DVec3::ZERO, DVec3::X, 1.0, Caps::Both).expect("valid");
-        assert_eq!(solids.push(&cylinder, MaterialIndex(0)), Ok(()));
-        assert_eq!(solids.records.primitive(0), u32::MAX - 1);
+        assert_eq!(solids.push(cylinder, MaterialIndex(0)), Ok(()));
+        assert_eq!(solids.solids.cylinders.primitive(0), u32::MAX - 1);
         let refusal = solids.skip().expect_err("no number is left");
         assert_eq!(refusal, Refusal::Numbers);
         let (message, _) = refusal.message();

@@ -1,26 +1,18 @@
-//! The solids of a prototype that are no cylinders, one list a kind.
+//! The solids of a prototype, one list a kind.
 
-use super::description::MaterialIndex;
+use std::borrow::Borrow;
+use std::fmt::Debug;
+
+use rayon::prelude::*;
+
+use super::cylinder_list::Records;
+use super::description::{CylinderRecord, MaterialIndex};
 use crate::math::Bounds;
-use crate::solid::{AnySolid, Composition, Cone, ConvexSolid, Cuboid, Disk, RoundedCone, Sphere};
-
-/// The solids of a prototype that are no cylinders, each list in the order of
-/// the primitive numbers.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Solids {
-    /// The spheres.
-    pub spheres: Vec<SolidRecord<Sphere>>,
-    /// The cuboids.
-    pub cuboids: Vec<SolidRecord<Cuboid>>,
-    /// The cones.
-    pub cones: Vec<SolidRecord<Cone>>,
-    /// The rounded cones.
-    pub rounded_cones: Vec<SolidRecord<RoundedCone>>,
-    /// The disks.
-    pub disks: Vec<SolidRecord<Disk>>,
-    /// The solids that are composed of others.
-    pub compositions: Vec<CompositionRecord>,
-}
+use crate::solid::{
+    AnySolid, Composition, Cone, ConvexSolid, Cuboid, Cylinder, Disk, RoundedCone, SolidCounts,
+    SolidKind, Sphere,
+};
+use crate::{for_each_solid, with_solid, with_solid_kind};
 
 /// A solid with its number and material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,106 +37,309 @@ impl<S> SolidRecord<S> {
     }
 }
 
-/// What a list of [`Solids`] is of.
-pub trait Listed: Sized + 'static {
-    /// The list of its kind.
-    fn list(solids: &Solids) -> &[SolidRecord<Self>];
-}
-
 /// A composed solid with its number and material.
 pub type CompositionRecord = SolidRecord<Composition>;
 
-/// What is the same of every list; those of `singles` hold solids that are not composed
-/// of others.
+/// A list of the solids of one kind, each with its number and material.
+pub trait SolidList: Clone + Debug + Default + Send + Sync {
+    /// The kind of solid.
+    type Solid;
+
+    /// How many there are.
+    fn len(&self) -> usize;
+
+    /// Whether there are none.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The solid at a position.
+    ///
+    /// # Panics
+    /// When there is none.
+    fn solid(&self, position: usize) -> impl Borrow<Self::Solid>;
+
+    /// The primitive number at a position.
+    ///
+    /// # Panics
+    /// When there is no solid.
+    fn primitive(&self, position: usize) -> u32;
+
+    /// The material at a position.
+    ///
+    /// # Panics
+    /// When there is no solid.
+    fn material(&self, position: usize) -> MaterialIndex;
+
+    /// The position of a primitive number.
+    fn position(&self, primitive: u32) -> Option<usize>;
+
+    /// Adds a solid at the end.
+    ///
+    /// # Errors
+    /// When the list keeps rounded numbers and these are no solid: why not.
+    fn push(&mut self, record: SolidRecord<Self::Solid>) -> Result<(), String>;
+
+    /// Gives back the memory that no record uses.
+    fn trim(&mut self);
+
+    /// The bytes of the records.
+    fn records_bytes(&self) -> usize;
+
+    /// The bytes of one record where cylinders are kept so.
+    #[must_use]
+    fn record_bytes(_: Records) -> usize {
+        size_of::<SolidRecord<Self::Solid>>()
+    }
+}
+
+impl<S: Clone + Debug + Send + Sync> SolidList for Vec<SolidRecord<S>> {
+    type Solid = S;
+
+    fn len(&self) -> usize {
+        Vec::len(self)
+    }
+
+    #[inline(always)]
+    fn solid(&self, position: usize) -> impl Borrow<S> {
+        &self[position].solid
+    }
+
+    fn primitive(&self, position: usize) -> u32 {
+        self[position].primitive
+    }
+
+    fn material(&self, position: usize) -> MaterialIndex {
+        self[position].material
+    }
+
+    fn position(&self, primitive: u32) -> Option<usize> {
+        self.binary_search_by_key(&primitive, |record| record.primitive)
+            .ok()
+    }
+
+    fn push(&mut self, record: SolidRecord<S>) -> Result<(), String> {
+        Vec::push(self, record);
+        Ok(())
+    }
+
+    fn trim(&mut self) {
+        self.shrink_to_fit();
+    }
+
+    fn records_bytes(&self) -> usize {
+        size_of_val(self.as_slice())
+    }
+}
+
+/// A kind of solid that prototypes contain.
+pub trait Stored: Sized + 'static {
+    /// How its solids are kept.
+    type List: SolidList<Solid = Self>;
+}
+
+/// The list of a kind of solid.
+pub trait Listed: Stored {
+    /// That of a prototype.
+    fn list(solids: &Solids) -> &Self::List;
+
+    /// The same to be changed.
+    fn list_mut(solids: &mut Solids) -> &mut Self::List;
+}
+
+impl Stored for Composition {
+    type List = Vec<CompositionRecord>;
+}
+
 macro_rules! listed {
-    (singles: $($single:ident)*; all: $($kind:ident in $list:ident)*) => {
-        $(impl Listed for $kind {
+    ($($type:ident $list:ident)*) => {
+        $(impl Listed for $type {
             #[inline(always)]
-            fn list(solids: &Solids) -> &[SolidRecord<Self>] {
+            fn list(solids: &Solids) -> &Self::List {
                 &solids.$list
             }
+
+            fn list_mut(solids: &mut Solids) -> &mut Self::List {
+                &mut solids.$list
+            }
         })*
+    };
+}
+
+macro_rules! solids {
+    ($({ $type:ident $name:ident $list:ident $($rest:tt)* })*) => {
+        /// The solids of a prototype. The lists of all kinds but the cylinders are in the order
+        /// of the primitive numbers.
+        #[derive(Clone, Debug, Default)]
+        pub struct Solids {
+            $(
+                #[doc = concat!("Each a `", stringify!($name), "`.")]
+                pub $list: <$type as Stored>::List,
+            )*
+            /// The solids that are composed of others.
+            pub compositions: Vec<CompositionRecord>,
+        }
+
+        listed!($($type $list)* Composition compositions);
 
         impl Solids {
-            /// How many there are.
-            #[must_use]
-            pub fn len(&self) -> usize {
-                [$(self.$list.len()),*].iter().sum()
-            }
-
-            /// How many of each kind are not composed of others.
-            pub(super) fn single_counts(&self) -> [u64; 5] {
-                [$(self.$single.len() as u64),*]
-            }
-
-            /// The bytes of the records, with what the compositions are made of.
-            #[must_use]
-            pub fn records_bytes(&self) -> usize {
-                let lists: usize = [$(size_of_val(self.$list.as_slice())),*].iter().sum();
-                let compositions = self.compositions.iter();
-                let parts: usize = compositions.map(|record| record.solid.heap_bytes()).sum();
-                lists + parts
-            }
-
-            /// Those that are not composed of others, kind by kind, each with its number.
-            pub fn singles(&self) -> impl Iterator<Item = (u32, AnySolid)> {
-                std::iter::empty()$(.chain(numbered(&self.$single)))*
+            /// The solids that are not composed of others, kind by kind, each with its
+            /// number.
+            pub fn simple(&self) -> impl Iterator<Item = (u32, AnySolid)> {
+                std::iter::empty()$(.chain(numbered(&self.$list)))*
             }
 
             /// The one of those with a number.
             #[must_use]
-            pub fn single(&self, primitive: u32) -> Option<AnySolid> {
-                None$(.or_else(|| find(&self.$single, primitive)))*
+            pub fn find_simple(&self, primitive: u32) -> Option<AnySolid> {
+                None$(.or_else(|| find(&self.$list, primitive)))*
             }
 
-            /// A box around all of them.
+            /// The one of those with as many before it.
             #[must_use]
-            pub fn bounds(&self) -> Bounds {
-                let boxes = std::iter::empty()
-                    $(.chain(self.$list.iter().map(|record| record.solid.bounds())))*;
-                boxes.fold(Bounds::EMPTY, |sum, bounds| sum.union(&bounds))
-            }
-
-            /// Gives back the memory beyond what the lists hold.
-            pub(super) fn trim(&mut self) {
-                $(self.$list.shrink_to_fit();)*
+            pub fn nth_simple(&self, position: usize) -> Option<(u32, AnySolid)> {
+                let mut position = position;
+                None$(.or_else(|| nth(&self.$list, &mut position)))*
             }
         }
     };
 }
 
-listed! {
-    singles: spheres cuboids cones rounded_cones disks;
-    all:
-        Sphere in spheres
-        Cuboid in cuboids
-        Cone in cones
-        RoundedCone in rounded_cones
-        Disk in disks
-        Composition in compositions
-}
+for_each_solid!(solids);
 
 impl Solids {
+    /// Cylinders alone.
+    #[must_use]
+    pub fn of_cylinders(cylinders: impl IntoIterator<Item = CylinderRecord>) -> Self {
+        Self {
+            cylinders: cylinders.into_iter().collect(),
+            ..Self::default()
+        }
+    }
+
+    /// Adds a solid at the end of the list of its kind. Numbers ascend within a list.
+    ///
+    /// # Errors
+    /// When the list keeps rounded numbers and these are no solid: why not.
+    pub fn push(&mut self, record: SolidRecord<AnySolid>) -> Result<(), String> {
+        fn add<S: Listed>(solids: &mut Solids, record: SolidRecord<S>) -> Result<(), String> {
+            S::list_mut(solids).push(record)
+        }
+        let SolidRecord {
+            solid,
+            primitive,
+            material,
+        } = record;
+        with_solid!(solid, solid => add(self, SolidRecord::new(solid, primitive, material)))
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        let lists = SolidKind::LISTS.iter();
+        lists.map(|&kind| self.len_of(kind)).sum()
+    }
+
     /// Whether there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+
+    /// The length of the list with a kind. All set operations are in one list.
+    #[must_use]
+    pub fn len_of(&self, kind: SolidKind) -> usize {
+        with_solid_kind!(kind, S => S::list(self).len())
+    }
+
+    /// How many there are of each kind.
+    #[must_use]
+    pub fn counts(&self) -> SolidCounts {
+        let mut counts = SolidCounts::default();
+        for &kind in SolidKind::SIMPLE {
+            counts.add(kind, self.len_of(kind) as u128);
+        }
+        for record in &self.compositions {
+            counts.add(record.solid.kind(), 1);
+        }
+        counts
+    }
+
+    /// The number of the solid at a position in the list with its kind.
+    ///
+    /// # Panics
+    /// When the list is shorter.
+    #[must_use]
+    pub fn primitive(&self, kind: SolidKind, position: usize) -> u32 {
+        with_solid_kind!(kind, S => S::list(self).primitive(position))
+    }
+
+    /// The bytes of the records, with what the compositions are made of.
+    #[must_use]
+    pub fn records_bytes(&self) -> usize {
+        let lists = SolidKind::LISTS.iter();
+        let lists = lists.map(|&kind| with_solid_kind!(kind, S => S::list(self).records_bytes()));
+        let compositions = self.compositions.iter();
+        let operands = compositions.map(|record| record.solid.heap_bytes());
+        lists.chain(operands).sum()
+    }
+
+    /// A box around all of them. Runs on the rayon pool that this is called in.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        /// Fewer solids are not worth a thread.
+        const SHARE: usize = 1 << 12;
+        let of_list = |&kind| {
+            with_solid_kind!(kind, S => {
+                let list = S::list(self);
+                let positions = (0..list.len()).into_par_iter().with_min_len(SHARE);
+                let boxes = positions.map(|position| S::bounds(list.solid(position).borrow()));
+                boxes.reduce(|| Bounds::EMPTY, |sum, bounds| sum.union(&bounds))
+            })
+        };
+        let lists = SolidKind::LISTS.iter().map(of_list);
+        lists.fold(Bounds::EMPTY, |sum, bounds| sum.union(&bounds))
+    }
+
+    /// Gives back the memory that no record uses.
+    pub(super) fn trim(&mut self) {
+        for &kind in SolidKind::LISTS {
+            with_solid_kind!(kind, S => S::list_mut(self).trim());
+        }
+    }
 }
 
 /// The solids of a list with their numbers.
-fn numbered<S: ConvexSolid + Into<AnySolid>>(
-    list: &[SolidRecord<S>],
+fn numbered<L: SolidList<Solid: ConvexSolid + Into<AnySolid>>>(
+    list: &L,
 ) -> impl Iterator<Item = (u32, AnySolid)> {
-    list.iter()
-        .map(|record| (record.primitive, record.solid.into()))
+    let positions = 0..list.len();
+    positions.map(|position| (list.primitive(position), any(list, position)))
 }
 
 /// The solid of a list with a number.
-fn find<S: ConvexSolid + Into<AnySolid>>(
-    list: &[SolidRecord<S>],
+fn find<L: SolidList<Solid: ConvexSolid + Into<AnySolid>>>(
+    list: &L,
     primitive: u32,
 ) -> Option<AnySolid> {
-    let position = list.binary_search_by_key(&primitive, |record| record.primitive);
-    position.ok().map(|position| list[position].solid.into())
+    let position = list.position(primitive)?;
+    Some(any(list, position))
+}
+
+/// The solid of a list at a position, with its number. A position beyond the list is then
+/// counted from its end.
+fn nth<L: SolidList<Solid: ConvexSolid + Into<AnySolid>>>(
+    list: &L,
+    position: &mut usize,
+) -> Option<(u32, AnySolid)> {
+    if *position < list.len() {
+        return Some((list.primitive(*position), any(list, *position)));
+    }
+    *position -= list.len();
+    None
+}
+
+fn any<L: SolidList<Solid: ConvexSolid + Into<AnySolid>>>(list: &L, position: usize) -> AnySolid {
+    let solid: L::Solid = *list.solid(position).borrow();
+    solid.into()
 }

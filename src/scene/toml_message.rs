@@ -1,29 +1,25 @@
 //! What the messages of the TOML parser mean to a user, and what to do.
 
+use super::formats;
 use super::names::{quoted, suggestion};
+use crate::solid::SolidKind;
 
-/// Keys of the scene that hold many tables, `[[...]]`.
-const LISTS: [&str; 17] = [
+/// Keys of the scene that contain many tables, `[[...]]`, beside those of solids
+/// and of their files.
+const LISTS: [&str; 5] = [
     "material",
     "prototype",
-    "cylinder",
-    "cylinder_table",
-    "swc",
-    "beam_lattice",
-    "sphere",
-    "cuboid",
-    "cone",
-    "rounded_cone",
-    "disk",
-    "union",
-    "intersection",
-    "difference",
     "instance",
     "instance_table",
     "scatter",
 ];
 /// The other keys of the scene.
 const SINGLE: [&str; 6] = ["background", "camera", "film", "render", "sun", "sky"];
+
+/// Whether a key of the scene contains many tables.
+fn is_list(key: &str) -> bool {
+    LISTS.contains(&key) || formats::KEYS.contains(&key) || key.parse::<SolidKind>().is_ok()
+}
 
 /// Most characters of a message that are passed on, from its beginning and
 /// from its end: it repeats the user's keys and values, however long.
@@ -45,7 +41,7 @@ pub(super) fn explain(message: &str, line: &str) -> (String, Option<String>) {
     if let (Some(key), Some(last)) = (key, last) {
         let wants_list = message.starts_with("invalid type: map, expected a sequence")
             || (message == "duplicate key" && path.is_some() && !line.starts_with("[["));
-        if wants_list && LISTS.contains(&last) {
+        if wants_list && is_list(last) {
             return (
                 format!("[{key}] is one table where there may be many"),
                 Some(format!("write [[{key}]] in front of each")),
@@ -73,7 +69,7 @@ fn unknown_field(message: &str) -> Option<(&str, Vec<&str>)> {
 
 fn unknown_key(key: &str, expected: &[&str], line: &str) -> (String, Option<String>) {
     let message = format!("unknown key {}", quoted(key));
-    let is_top = LISTS.contains(&key) || SINGLE.contains(&key);
+    let is_top = is_list(key) || SINGLE.contains(&key);
     let help = if !is_top {
         suggestion(key, expected.iter().copied(), "keys")
     } else if line.trim_start().starts_with('[') {

@@ -1,21 +1,21 @@
-//! What a solid has to know of itself.
+//! What every kind of solid implements.
 //!
 //! Solids are closed convex sets (a disk is one without an inside), so a line is
-//! inside one in a single closed interval, its [`Chord`]. All that is asked of a
-//! ray follows from that interval and from which parts of the boundary are
-//! there; `chord.rs` has the one step that turns it into hits.
+//! inside one in a single closed interval, its [`Chord`]. Every query of a
+//! ray follows from that interval and from which parts of the boundary exist;
+//! `chord.rs` has the one step that turns it into hits.
 
 use std::cmp::Ordering;
 use std::fmt::Debug;
 
 use glam::DVec3;
 
-use super::quick::{Quick, Range};
-use super::{Caps, Chord, Intersection, RayOrigin, SolidKind, SurfacePoint};
-use crate::math::Bounds;
+use super::lanes::RayLanes;
+use super::quick::{self, Quick, QuickLanes, Range};
+use super::{Caps, Chord, Intersection, Part, RayOrigin, SolidKind, SpawnMargin, SurfacePoint};
+use crate::math::{Bounds, LaneMask};
 
-/// A kind of solid. Adding one is a file with an implementation of this, and its
-/// truth in `oracle`.
+/// A kind of solid, which is a row of [`for_each_solid!`](crate::for_each_solid).
 ///
 /// Solvers are given a ray's origin as seen from the solid's
 /// [anchor](ConvexSolid::anchor): the difference is taken once, relative to
@@ -35,6 +35,18 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
 
     /// The point that the solver counts from.
     fn anchor(&self) -> DVec3;
+
+    /// Its own center, about which it is turned: the middle of the axis, if it has one,
+    /// rounded.
+    fn center(&self) -> DVec3;
+
+    /// The radius of its thickest part; of a cuboid half of its least width.
+    fn radius(&self) -> f64;
+
+    /// Whether its surface is the boundary of a solid with an inside.
+    fn is_closed(&self) -> bool {
+        self.caps() == Caps::Both
+    }
 
     /// Which disks the surface has; [`Caps::Both`] for solids without open ends.
     fn caps(&self) -> Caps {
@@ -97,21 +109,47 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
         Quick::OPEN
     }
 
+    /// [`ConvexSolid::first`] of eight rays that are seen from the anchor, for those that are
+    /// `active`. Rays that take exact numbers are left open.
+    #[inline(always)]
+    fn first_in_lanes(&self, rays: &RayLanes, active: &LaneMask) -> QuickLanes {
+        quick::first(self, rays, active)
+    }
+
+    /// [`ConvexSolid::exact_first`] likewise, for rays whose origins f64 has.
+    #[inline(always)]
+    fn exact_first_in_lanes(&self, rays: &RayLanes, active: &LaneMask) -> QuickLanes {
+        if Self::QUICK_IS_EXACT {
+            quick::first(self, rays, active)
+        } else {
+            QuickLanes::all_open(quick::near(self, rays, active))
+        }
+    }
+
     /// The point of a part of the surface that is nearest to `anchor +
     /// from_anchor`, its outward unit normal, parameters and error bound.
-    fn surface_point(&self, part: super::Part, from_anchor: DVec3) -> SurfacePoint;
+    fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint;
 
     /// Where a point is. Exact: the point's numbers and the solid's are taken as
     /// they are.
     fn locate(&self, point: DVec3) -> Location;
 
-    /// Whether the closed solid holds a point, as exactly.
+    /// Whether a point of the boundary is on the surface of a part, as exactly. A point on
+    /// an edge is on that of several.
+    fn is_on(&self, part: Part, point: DVec3) -> bool;
+
+    /// Whether the closed solid contains a point, as exactly.
     fn contains(&self, point: DVec3) -> bool {
         self.locate(point).is_held()
     }
 
     /// Bounds the distance of any two of its points.
     fn size(&self) -> f64;
+
+    /// What a query that starts at a point of the surface may be displaced by.
+    fn spawn_margin(&self, surface: &SurfacePoint) -> SpawnMargin {
+        SpawnMargin::of_solid(self, surface)
+    }
 }
 
 /// Where a point is, seen from a closed solid; in the order of how far in.

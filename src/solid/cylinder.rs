@@ -2,11 +2,13 @@
 
 use glam::DVec3;
 
+use super::lanes::{self, AllCapped, AllOpen, CylinderLanes, LaneCaps, MixedCaps, RayLanes};
+use super::quick::QuickLanes;
 use super::{
-    Chord, Cone, ConvexSolid, Intersection, Location, Part, RayOrigin, SolidKind, SurfacePoint,
-    settled, surface_point, triple_product,
+    Chord, Cone, ConvexSolid, Intersection, Location, Part, RayOrigin, SolidKind, SpawnMargin,
+    SurfacePoint, settled, surface_point, triple_product,
 };
-use crate::math::{Bounds, UNIT_ROUNDOFF, power_of_two};
+use crate::math::{Bounds, LANES, LaneMask, LaneVectors, Lanes, UNIT_ROUNDOFF, power_of_two};
 
 /// Which ends of a cylinder are closed by a disk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -193,8 +195,16 @@ impl Cylinder {
     }
 }
 
-/// The fast paths of the tracer know cylinders by themselves; this is for where
-/// kinds are mixed.
+/// A cylinder eight times, and what is known of its caps.
+#[inline(always)]
+fn eight<C: LaneCaps>(cylinder: &Cylinder, caps: C) -> CylinderLanes<C> {
+    CylinderLanes {
+        axis: LaneVectors::splat(cylinder.p1 - cylinder.p0),
+        radius: Lanes::splat(cylinder.radius),
+        caps,
+    }
+}
+
 impl ConvexSolid for Cylinder {
     const KIND: SolidKind = SolidKind::Cylinder;
 
@@ -204,6 +214,14 @@ impl ConvexSolid for Cylinder {
 
     fn anchor(&self) -> DVec3 {
         self.p0
+    }
+
+    fn center(&self) -> DVec3 {
+        middle(self.p0(), self.p1())
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius
     }
 
     fn caps(&self) -> Caps {
@@ -228,6 +246,45 @@ impl ConvexSolid for Cylinder {
         settled::first(self, origin, direction, shift, range)
     }
 
+    #[inline(always)]
+    fn first(
+        &self,
+        from_anchor: DVec3,
+        direction: DVec3,
+        shift: f64,
+        t_min: f64,
+        t_max: f64,
+    ) -> Option<Intersection> {
+        triple_product::first(self, from_anchor, direction, shift, t_min, t_max)
+    }
+
+    // Where the caps are known at compile time, one case is left of the three.
+    #[inline(always)]
+    fn first_in_lanes(&self, rays: &RayLanes, active: &LaneMask) -> QuickLanes {
+        let (met, t) = match self.caps {
+            Caps::Both => lanes::first(&eight(self, AllCapped), rays, active),
+            Caps::None => lanes::first(&eight(self, AllOpen), rays, active),
+            caps => lanes::first(&eight(self, MixedCaps([caps; LANES])), rays, active),
+        };
+        QuickLanes {
+            open: LaneMask::splat(false),
+            met,
+            t,
+        }
+    }
+
+    #[inline(always)]
+    fn exact_first_in_lanes(&self, rays: &RayLanes, active: &LaneMask) -> QuickLanes {
+        match self.caps {
+            Caps::Both => settled::first_in_lanes(&eight(self, AllCapped), rays, active),
+            Caps::None => settled::first_in_lanes(&eight(self, AllOpen), rays, active),
+            caps => {
+                let caps = MixedCaps([caps; LANES]);
+                settled::first_in_lanes(&eight(self, caps), rays, active)
+            }
+        }
+    }
+
     fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {
         surface_point(self, part, from_anchor)
     }
@@ -237,9 +294,22 @@ impl ConvexSolid for Cylinder {
         self.as_cone().locate(point)
     }
 
+    fn is_on(&self, part: Part, point: DVec3) -> bool {
+        self.as_cone().is_on(part, point)
+    }
+
     fn size(&self) -> f64 {
         (self.p1 - self.p0).length() + 2.0 * self.radius
     }
+
+    fn spawn_margin(&self, surface: &SurfacePoint) -> SpawnMargin {
+        SpawnMargin::new(self, surface)
+    }
+}
+
+/// The middle between two points. Halves are exact, so only their sum is rounded.
+pub(super) fn middle(p0: DVec3, p1: DVec3) -> DVec3 {
+    p0 * 0.5 + p1 * 0.5
 }
 
 /// How far a disk across the axis `a` reaches from its middle, rounded up.

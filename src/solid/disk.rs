@@ -144,6 +144,18 @@ impl ConvexSolid for Disk {
         self.center
     }
 
+    fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    fn is_closed(&self) -> bool {
+        false
+    }
+
     #[inline]
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
         self.chord_of(from_anchor, direction)
@@ -197,6 +209,10 @@ impl ConvexSolid for Disk {
         } else {
             Location::Outside
         }
+    }
+
+    fn is_on(&self, part: Part, _: DVec3) -> bool {
+        part == Part::Side
     }
 
     fn size(&self) -> f64 {

@@ -6,6 +6,7 @@ mod chord;
 mod composition;
 mod cone;
 mod convex;
+mod counts;
 mod cuboid;
 mod cylinder;
 mod disk;
@@ -14,6 +15,7 @@ pub mod lanes;
 mod linear;
 mod passing;
 pub mod quick;
+mod registry;
 mod rounded_cone;
 pub mod settled;
 pub mod slab;
@@ -29,55 +31,16 @@ pub use chord::{Chord, ChordEnd, Intersection};
 pub use composition::{ComposedIntersection, Composition, Operand};
 pub use cone::{Cone, ConeError};
 pub use convex::{ConvexSolid, Location};
+pub use counts::SolidCounts;
 pub use cuboid::{Cuboid, CuboidError};
 pub use cylinder::{Caps, Cylinder, CylinderError};
 pub use disk::{Disk, DiskError};
+pub use registry::{SolidKind, UnknownSolid};
 pub use rounded_cone::{RoundedCone, RoundedConeError};
 pub use spawn::{SpawnMargin, spawned_ray};
 pub use sphere::{Sphere, SphereError};
 pub use surface::{SurfacePoint, angle_frame, surface_point};
 pub use way::RayOrigin;
-
-/// The kinds of solids; [`SolidKind::name`] is the `solid` column of `trace`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum SolidKind {
-    /// A circular cylinder, see [`Cylinder`].
-    Cylinder,
-    /// A part of a circular cone between two disks.
-    Cone,
-    /// Two spheres and the cone that touches both.
-    RoundedCone,
-    /// A ball.
-    Sphere,
-    /// A box that may be turned.
-    Cuboid,
-    /// A flat disk.
-    Disk,
-    /// What is in any of several solids, see [`Composition`].
-    Union,
-    /// What is in all of several solids.
-    Intersection,
-    /// What is in a solid and in none of others.
-    Difference,
-}
-
-impl SolidKind {
-    /// The name in files and tables.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Cylinder => "cylinder",
-            Self::Cone => "cone",
-            Self::RoundedCone => "rounded_cone",
-            Self::Sphere => "sphere",
-            Self::Cuboid => "cuboid",
-            Self::Disk => "disk",
-            Self::Union => "union",
-            Self::Intersection => "intersection",
-            Self::Difference => "difference",
-        }
-    }
-}
 
 /// The part of a solid's surface that a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -89,6 +89,14 @@ impl ConvexSolid for Sphere {
         self.center
     }
 
+    fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius
+    }
+
     #[inline]
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
         ball::chord(from_anchor, direction, self.radius, Part::Side)
@@ -134,6 +142,10 @@ impl ConvexSolid for Sphere {
 
     fn locate(&self, point: DVec3) -> Location {
         ball::locate(self.center, self.radius, point)
+    }
+
+    fn is_on(&self, part: Part, _: DVec3) -> bool {
+        part == Part::Side
     }
 
     fn size(&self) -> f64 {

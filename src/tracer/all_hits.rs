@@ -122,7 +122,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::scene::{CylinderRecord, MaterialIndex, Prototype, Scene};
+    use crate::scene::{CylinderRecord, MaterialIndex, Prototype, Scene, Solids};
     use crate::solid::{Caps, Cylinder};
     use crate::tracer::Options;
 
@@ -135,7 +135,7 @@ mod tests {
             CylinderRecord::new(&cylinder, number as u32, MaterialIndex(0))
         };
         let root = Prototype {
-            cylinders: cylinders.enumerate().map(record).collect(),
+            solids: Solids::of_cylinders(cylinders.enumerate().map(record)),
             ..Prototype::default()
         };
         let scene = Arc::new(Scene::new(vec![root]));

@@ -8,8 +8,10 @@ use super::prototype::{BuildContext, Outlines, Prototype};
 use crate::embree;
 use crate::math::{ChildFromParent, PlacementErrors};
 use crate::scene::{
-    GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_STRETCH, Placement, PrototypeIndex, Scene,
+    GREATEST_CONDITION, GREATEST_DEPTH, GREATEST_STRETCH, PlacedCount, Placement, PrototypeIndex,
+    Scene,
 };
+use crate::solid::SolidCounts;
 
 /// Why a scene cannot be traced.
 #[derive(Debug, thiserror::Error)]
@@ -56,12 +58,10 @@ pub enum TracerError {
 pub(crate) struct Plan {
     /// The prototypes that the root needs, children before parents.
     pub order: Vec<PrototypeIndex>,
-    /// For every prototype, the cylinders in it and in all it places; counts
+    /// For every prototype, the solids in it and in all it places.
+    pub instanced: Vec<SolidCounts>,
+    /// For every prototype, the placements in it and in all it places; counts
     /// beyond u128 stay at its greatest number.
-    pub instanced_cylinders: Vec<u128>,
-    /// For every prototype, the solids of other kinds likewise.
-    pub instanced_others: Vec<u128>,
-    /// For every prototype, the placements in it and in all it places.
     pub instances: Vec<u128>,
 }
 
@@ -79,8 +79,7 @@ impl Plan {
         let count = scene.prototypes.len();
         let mut plan = Self {
             order: Vec::new(),
-            instanced_cylinders: vec![0; count],
-            instanced_others: vec![0; count],
+            instanced: vec![SolidCounts::default(); count],
             instances: vec![0; count],
         };
         let mut nesting = vec![None; count];
@@ -104,41 +103,32 @@ impl Plan {
             return Ok(nesting);
         }
         let prototype = &scene.prototypes[index.0 as usize];
-        // Scattered placements come in runs of the same prototype.
-        let mut last = None;
-        for placement in &prototype.placements {
-            if last.replace(placement.of) != Some(placement.of) {
-                self.visit(scene, placement.of, level + 1, known)?;
-            }
+        let mut instances = 0_u128;
+        let mut solids = prototype.solids.counts();
+        for PlacedCount { of, count } in prototype.placed() {
+            self.visit(scene, of, level + 1, known)?;
+            let (of, count) = (of.0 as usize, u128::from(count));
+            let each = self.instances[of].saturating_add(1);
+            instances = instances.saturating_add(each.saturating_mul(count));
+            solids = solids.plus(&self.instanced[of].times(count));
         }
-        let total = prototype
-            .placements
-            .par_iter()
+        let placements = prototype.placements.par_iter().enumerate();
+        let nesting = placements
             .with_min_len(1 << 10)
-            .enumerate()
             .map(|(number, placement)| {
                 let of = placement.of.0 as usize;
                 let child = known[of].expect("what is placed was visited");
                 let errors = placement_errors(scene, prototype, number, placement)?;
-                Ok::<_, TracerError>(Total {
-                    nesting: child.placed(&errors, &scene.prototypes[of].name)?,
-                    cylinders: self.instanced_cylinders[of],
-                    others: self.instanced_others[of],
-                    instances: self.instances[of].saturating_add(1),
-                })
+                child.placed(&errors, &scene.prototypes[of].name)
             })
-            .try_reduce(Total::default, |one, other| Ok(one.with(&other)))?;
-        let nesting = total.nesting;
+            .try_reduce(Nesting::default, |one, other| Ok(one.with(&other)))?;
         if nesting.depth > GREATEST_DEPTH {
             return Err(TracerError::Depth {
                 depth: nesting.depth,
             });
         }
-        let cylinders = prototype.cylinders.len() as u128;
-        self.instanced_cylinders[index.0 as usize] = total.cylinders.saturating_add(cylinders);
-        let others = prototype.solids.len() as u128;
-        self.instanced_others[index.0 as usize] = total.others.saturating_add(others);
-        self.instances[index.0 as usize] = total.instances;
+        self.instanced[index.0 as usize] = solids;
+        self.instances[index.0 as usize] = instances;
         self.order.push(index);
         known[index.0 as usize] = Some(nesting);
         Ok(nesting)
@@ -165,7 +155,26 @@ fn placement_errors(
     })
 }
 
+impl Default for Nesting {
+    fn default() -> Self {
+        Self {
+            depth: 0,
+            least: 1.0,
+            greatest: 1.0,
+        }
+    }
+}
+
 impl Nesting {
+    /// That of two placements side by side.
+    fn with(&self, other: &Self) -> Self {
+        Self {
+            depth: self.depth.max(other.depth),
+            least: self.least.min(other.least),
+            greatest: self.greatest.max(other.greatest),
+        }
+    }
+
     /// The nesting seen from where the prototype `name` is placed.
     fn placed(&self, errors: &PlacementErrors, name: &str) -> Result<Self, TracerError> {
         let (least, greatest) = (self.least * errors.shrink, self.greatest * errors.stretch);
@@ -182,46 +191,6 @@ impl Nesting {
             least,
             greatest,
         })
-    }
-}
-
-/// What all placements of a prototype come to.
-#[derive(Clone, Copy)]
-struct Total {
-    nesting: Nesting,
-    cylinders: u128,
-    others: u128,
-    instances: u128,
-}
-
-impl Default for Total {
-    fn default() -> Self {
-        Self {
-            nesting: Nesting {
-                depth: 0,
-                least: 1.0,
-                greatest: 1.0,
-            },
-            cylinders: 0,
-            others: 0,
-            instances: 0,
-        }
-    }
-}
-
-impl Total {
-    fn with(&self, other: &Self) -> Self {
-        let (one, two) = (&self.nesting, &other.nesting);
-        Self {
-            nesting: Nesting {
-                depth: one.depth.max(two.depth),
-                least: one.least.min(two.least),
-                greatest: one.greatest.max(two.greatest),
-            },
-            cylinders: self.cylinders.saturating_add(other.cylinders),
-            others: self.others.saturating_add(other.others),
-            instances: self.instances.saturating_add(other.instances),
-        }
     }
 }
 

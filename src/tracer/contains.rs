@@ -82,7 +82,7 @@ impl Tracer {
                 let (kind, record) = (place.member.kind, place.member.record);
                 Containing {
                     instance: place.path.to_vec(),
-                    primitive: prototype.primitive(kind, record as usize),
+                    primitive: prototype.solids.primitive(kind, record as usize),
                     prototype: place.prototype,
                     solid: kind,
                 }

@@ -46,7 +46,8 @@ use super::options::Layout;
 use super::prototype::{MOST_INNER, MOST_INSTANCES, MOST_OUTER, block_bytes};
 use crate::embree::MaxIsa;
 use crate::math::LANES;
-use crate::scene::{ExpectedCounts, Placement, Records};
+use crate::scene::{ExpectedCounts, Placement};
+use crate::solid::SolidKind;
 
 /// Bytes of an instance: Embree 3.13.5's structures and what their allocator adds.
 pub(super) const INSTANCE_BYTES: u64 = 305;
@@ -108,16 +109,20 @@ impl MemoryEstimate {
         let is_wide = is_wide(max_isa);
         let mut sum = Self::default();
         for prototype in contents {
-            let (cylinders, placements) = (prototype.cylinders, prototype.placements());
-            let own = Self::of_records(cylinders, prototype.records, placements);
-            let others = prototype.others;
-            sum.records_bytes = sum.records_bytes.saturating_add(own);
-            sum.records_bytes = sum.records_bytes.saturating_add(others.bytes);
+            let placements = prototype.placements();
+            let records = placements.saturating_mul(size_of::<Placement>() as u64);
+            let records = records.saturating_add(prototype.solids.bytes);
+            sum.records_bytes = sum.records_bytes.saturating_add(records);
             if !prototype.is_used {
                 continue;
             }
-            let mut primitives = others.composed().saturating_add(placements);
-            for solids in others.singles.into_iter().chain([cylinders]) {
+            let mut primitives = placements;
+            for (kind, solids) in prototype.solids.counts.iter() {
+                let solids = u64::try_from(solids).unwrap_or(u64::MAX);
+                if SolidKind::OPERATIONS.contains(&kind) {
+                    primitives = primitives.saturating_add(solids);
+                    continue;
+                }
                 let copies = layout.copies_bytes(solids);
                 sum.copies_bytes = sum.copies_bytes.saturating_add(copies);
                 primitives = primitives.saturating_add(layout.primitives(solids));
@@ -131,13 +136,6 @@ impl MemoryEstimate {
             sum.building_bytes = sum.building_bytes.max(building);
         }
         sum
-    }
-
-    /// The bytes of the records of so many cylinders and placements.
-    #[must_use]
-    pub fn of_records(cylinders: u64, records: Records, placements: u64) -> u64 {
-        let cylinders = cylinders.saturating_mul(records.record_bytes() as u64);
-        cylinders.saturating_add(placements.saturating_mul(size_of::<Placement>() as u64))
     }
 
     /// What is there once the scene is built.
@@ -164,7 +162,7 @@ fn instances(prototype: &ExpectedCounts, all: &[ExpectedCounts]) -> u64 {
     }
     let of_one = |child: &ExpectedCounts| {
         let within = child.placements();
-        let is_bare = child.cylinders == 0 && child.others.count == 0;
+        let is_bare = child.solids.counts.total() == 0;
         let may_be_opened = placements <= MOST_OUTER as u64 && within <= MOST_INNER as u64;
         match within {
             0 => 1,
@@ -216,7 +214,7 @@ mod tests {
         SceneBuilder, UserGeometry,
     };
     use crate::math::Random;
-    use crate::scene::{OtherSolids, PrototypeIndex};
+    use crate::scene::{ExpectedSolids, PrototypeIndex, Records};
 
     /// Boxes that nothing meets.
     struct Boxes(Vec<Box32>);
@@ -291,11 +289,11 @@ mod tests {
     }
 
     fn root(cylinders: u64, records: Records) -> [ExpectedCounts; 1] {
+        let mut solids = ExpectedSolids::default();
+        solids.add(SolidKind::Cylinder, cylinders, records);
         [ExpectedCounts {
             name: String::new(),
-            cylinders,
-            records,
-            others: OtherSolids::default(),
+            solids,
             placed: Vec::new(),
             is_used: true,
         }]

@@ -30,7 +30,7 @@ impl FirstHit {
     pub fn primitive(&self, scene: &Scene) -> u32 {
         let SolidSlot { kind, record } = self.nearest.place.member;
         let prototype = &scene.prototypes[self.prototype().0 as usize];
-        prototype.primitive(kind, record as usize)
+        prototype.solids.primitive(kind, record as usize)
     }
 
     /// The kind of solid.

@@ -19,6 +19,7 @@ mod filter;
 mod first_hit;
 mod frame;
 mod hit;
+mod kinds;
 mod options;
 mod outliers;
 mod partial_hit;
@@ -223,10 +224,8 @@ impl Tracer {
         let prototypes = self.prototypes.iter().flatten();
         let kept: usize = prototypes.map(|prototype| prototype.kept_bytes()).sum();
         Statistics {
-            cylinders_unique: self.counted.cylinders_unique,
-            cylinders_instanced: self.counted.cylinders_instanced,
-            other_solids_unique: self.counted.other_solids_unique,
-            other_solids_instanced: self.counted.other_solids_instanced,
+            unique: self.counted.unique,
+            instanced: self.counted.instanced,
             instances: self.counted.instances,
             embree_instances: self.embree_instances(),
             embree_bytes: self.device.memory_bytes() + self.uncounted_bytes(),

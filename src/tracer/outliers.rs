@@ -58,9 +58,10 @@ pub fn outliers(scene: &Scene) -> Vec<Outlier> {
                             let record = &prototype.solids.compositions[position as usize];
                             (Some(record.solid.kind()), record.primitive)
                         }
-                        List::Solids(kind) => {
-                            (Some(kind), prototype.primitive(kind, position as usize))
-                        }
+                        List::Solids(kind) => (
+                            Some(kind),
+                            prototype.solids.primitive(kind, position as usize),
+                        ),
                         List::Placements { group: 0 } => (None, position),
                         // An outlier of the placed prototype, which is named there.
                         List::Placements { .. } => return None,

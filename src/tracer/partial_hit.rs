@@ -41,13 +41,13 @@ bitflags! {
 /// ```
 /// # use std::sync::Arc;
 /// # use cyltrace::math::Ray;
-/// # use cyltrace::scene::{CylinderRecord, MaterialIndex, Prototype, Scene};
+/// # use cyltrace::scene::{CylinderRecord, MaterialIndex, Prototype, Scene, Solids};
 /// # use cyltrace::solid::{Caps, Cylinder};
 /// # use cyltrace::tracer::{HitFields, Options, Tracer};
 /// # use glam::DVec3;
 /// # let cylinder = Cylinder::new(DVec3::ZERO, DVec3::Z, 0.5, Caps::Both).unwrap();
 /// # let record = CylinderRecord::new(&cylinder, 0, MaterialIndex(0));
-/// # let root = Prototype { cylinders: vec![record].into(), ..Prototype::default() };
+/// # let root = Prototype { solids: Solids::of_cylinders([record]), ..Prototype::default() };
 /// # let tracer = Tracer::new(Arc::new(Scene::new(vec![root])), &Options::default()).unwrap();
 /// let ray = Ray::new(DVec3::new(2.0, 0.0, 0.5), DVec3::NEG_X);
 /// let hit = tracer.closest_with(&ray, HitFields::NORMAL).expect("a hit");
@@ -164,7 +164,7 @@ mod tests {
     use glam::DAffine3;
 
     use super::*;
-    use crate::scene::{CylinderRecord, Placement, Prototype, Scene};
+    use crate::scene::{CylinderRecord, Placement, Prototype, Scene, Solids};
     use crate::solid::{Caps, Cylinder};
     use crate::tracer::{Options, Tracer};
 
@@ -181,7 +181,7 @@ mod tests {
             ..Prototype::default()
         };
         let child = Prototype {
-            cylinders: vec![record].into(),
+            solids: Solids::of_cylinders(vec![record]),
             ..Prototype::default()
         };
         let scene = Arc::new(Scene::new(vec![root, child]));

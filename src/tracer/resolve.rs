@@ -19,22 +19,22 @@
 //!   direction;
 //! - for the normal, its angle times the condition of the placement.
 
+use std::borrow::Borrow;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 use smallvec::SmallVec;
 
-use super::decisions::{Decisions, exact_first};
+use super::decisions::Decisions;
 use super::frame::LocalRay;
 use super::prototype::Prototype;
 use super::query::SolidRef;
 use super::traced::{SurfaceHit, TracedSolid};
 use super::{Hit, HitFields};
 use crate::math::{ChildFromParent, PlacementErrors, Ray, UNIT_ROUNDOFF};
-use crate::scene::{CylinderRecord, MaterialIndex, Scene, SolidRecord};
-use crate::solid::{
-    Intersection, SolidKind, SpawnMargin, SurfacePoint, surface_point, triple_product,
-};
+use crate::scene::{Listed, MaterialIndex, Scene, SolidList};
+use crate::solid::{Intersection, SpawnMargin, SurfacePoint};
+use crate::with_solid_kind;
 
 /// What a query is to work out of a hit.
 #[derive(Clone, Copy)]
@@ -74,37 +74,17 @@ impl Search<'_> {
         }
     }
 
-    fn on_cylinder(&self, record: &CylinderRecord) -> LocalHit {
-        let (cylinder, ray) = (record.cylinder(), self.ray);
-        let from_p0 = ray.origin_from(cylinder.p0());
-        let SurfaceHit { meeting, .. } = self.met(|t| {
-            if self.decisions == Decisions::Exact {
-                return exact_first(&cylinder, ray, self.t_min, t).map(SurfaceHit::whole);
-            }
-            let (direction, shift) = (ray.direction, ray.shift);
-            let first = triple_product::first(&cylinder, from_p0, direction, shift, self.t_min, t);
-            first.map(SurfaceHit::whole)
-        });
-        let on_ray = from_p0 + ray.direction * meeting.t_local;
-        let surface = surface_point(&cylinder, meeting.part, on_ray);
-        LocalHit {
-            meeting,
-            surface,
-            margin: self.margin(|| SpawnMargin::new(&cylinder, &surface)),
-            primitive: record.primitive(),
-            material: record.material(),
-        }
-    }
-
-    fn on_solid<S: TracedSolid>(&self, record: &SolidRecord<S>) -> LocalHit {
-        let met = self.met(|t| (record.solid).first(self.ray, self.decisions, self.t_min, t));
-        let surface = record.solid.surface(self.ray, &met);
+    fn on_solid<L: SolidList<Solid: TracedSolid>>(&self, list: &L, position: usize) -> LocalHit {
+        let solid = list.solid(position);
+        let solid = solid.borrow();
+        let met = self.met(|t| solid.first(self.ray, self.decisions, self.t_min, t));
+        let surface = solid.surface(self.ray, &met);
         LocalHit {
             meeting: met.meeting,
             surface,
-            margin: self.margin(|| record.solid.spawn_margin(&met, &surface)),
-            primitive: record.primitive,
-            material: record.material,
+            margin: self.margin(|| solid.spawn_margin(&met, &surface)),
+            primitive: list.primitive(position),
+            material: list.material(position),
         }
     }
 
@@ -201,17 +181,9 @@ pub(crate) fn resolve(
         fields,
     };
     let (solids, position) = (&description.solids, place.member.record as usize);
-    let local = match place.member.kind {
-        SolidKind::Cylinder => search.on_cylinder(&description.cylinders.get(position)),
-        SolidKind::Sphere => search.on_solid(&solids.spheres[position]),
-        SolidKind::Cuboid => search.on_solid(&solids.cuboids[position]),
-        SolidKind::Cone => search.on_solid(&solids.cones[position]),
-        SolidKind::RoundedCone => search.on_solid(&solids.rounded_cones[position]),
-        SolidKind::Disk => search.on_solid(&solids.disks[position]),
-        SolidKind::Union | SolidKind::Intersection | SolidKind::Difference => {
-            search.on_solid(&solids.compositions[position])
-        }
-    };
+    let local = with_solid_kind!(place.member.kind, S => {
+        search.on_solid(S::list(solids), position)
+    });
     let LocalHit {
         meeting,
         surface,

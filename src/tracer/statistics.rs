@@ -8,18 +8,15 @@ use super::estimate::MemoryEstimate;
 use super::options::Options;
 use super::prototype::Prototype;
 use crate::scene::{Placement, PrototypeIndex, Scene};
+use crate::solid::SolidCounts;
 
 /// What was built, and what was not.
 #[derive(Clone, Debug)]
 pub struct Statistics {
-    /// Cylinders in the prototypes that the root places.
-    pub cylinders_unique: u64,
-    /// Cylinders in the scene with every placement counted.
-    pub cylinders_instanced: u128,
-    /// Solids of other kinds in the prototypes that the root places.
-    pub other_solids_unique: u64,
-    /// Solids of other kinds with every placement counted.
-    pub other_solids_instanced: u128,
+    /// Solids in the prototypes that the root places.
+    pub unique: SolidCounts,
+    /// Solids in the scene with every placement counted.
+    pub instanced: SolidCounts,
     /// Placements in the scene, those within placed prototypes counted each
     /// time.
     pub instances: u128,
@@ -39,10 +36,8 @@ pub struct Statistics {
 
 /// What stays the same of a tracer's statistics.
 pub(super) struct Counted {
-    pub cylinders_unique: u64,
-    pub cylinders_instanced: u128,
-    pub other_solids_unique: u64,
-    pub other_solids_instanced: u128,
+    pub unique: SolidCounts,
+    pub instanced: SolidCounts,
     pub instances: u128,
     pub described_bytes: usize,
     /// The prototypes that the root needs.
@@ -56,10 +51,10 @@ impl Counted {
             needed.map(|index| &scene.prototypes[index.0 as usize])
         };
         Self {
-            cylinders_unique: needed().map(|one| one.cylinders.len() as u64).sum(),
-            cylinders_instanced: plan.instanced_cylinders[0],
-            other_solids_unique: needed().map(|one| one.solids.len() as u64).sum(),
-            other_solids_instanced: plan.instanced_others[0],
+            unique: needed().fold(SolidCounts::default(), |sum, prototype| {
+                sum.plus(&prototype.solids.counts())
+            }),
+            instanced: plan.instanced[0],
             instances: plan.instances[0],
             described_bytes: described_bytes(scene),
             needed: plan.order.clone(),
@@ -89,13 +84,9 @@ impl Counted {
             (!made.is_touched()).then(|| {
                 let estimate =
                     MemoryEstimate::of(slice::from_ref(contents), options.layout, options.max_isa);
-                let others = match contents.others.count {
-                    0 => String::new(),
-                    count => format!(", {count} solids of other kinds"),
-                };
                 format!(
-                    "{name} was reached by no ray: not built ({} cylinders{others} and {} placements), which saves about {:.1} MB",
-                    contents.cylinders,
+                    "{name} was reached by no ray: not built ({} and {} placements), which saves about {:.1} MB",
+                    contents.solids.counts,
                     contents.placements(),
                     (estimate.embree_bytes + estimate.copies_bytes) as f64 / 1e6
                 )
@@ -116,9 +107,7 @@ fn described_bytes(scene: &Scene) -> usize {
     let prototypes = scene.prototypes.iter();
     prototypes
         .map(|prototype| {
-            prototype.cylinders.records_bytes()
-                + prototype.solids.records_bytes()
-                + prototype.placements.len() * size_of::<Placement>()
+            prototype.solids.records_bytes() + prototype.placements.len() * size_of::<Placement>()
         })
         .sum()
 }

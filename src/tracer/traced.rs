@@ -1,20 +1,17 @@
-//! What a query asks of a solid of any kind.
+//! What a query needs of a solid of any kind.
 //!
 //! A convex solid answers from the one interval in which a line is inside it. A
-//! solid that is not convex is met in several; it answers for itself, and says by
-//! a *leaf* which of the solids it is made of has the surface that is met.
-//!
-//! Cylinders are left out: the queries know them and their rows of eight.
+//! solid that is not convex may intersect a line in several; it answers for itself, and its
+//! hits name the operand with the surface that is hit by a *leaf*.
 
 use glam::DVec3;
 
-use super::decisions::Decisions;
+use super::decisions::{Decisions, exact_first};
 use super::frame::{LocalRay, PacketRays};
-use super::prototype::List;
 use crate::math::{Bounds, LANES, LaneMask, LaneVectors, Lanes};
 use crate::scene::Listed;
 use crate::solid::lanes::RayLanes;
-use crate::solid::quick::{self, QuickLanes};
+use crate::solid::quick::QuickLanes;
 use crate::solid::{
     ComposedIntersection, Composition, ConvexSolid, Intersection, SolidKind, SpawnMargin,
     SurfacePoint,
@@ -77,19 +74,22 @@ impl RowOfPacket<'_> {
 
 /// A solid as queries know it.
 pub(crate) trait TracedSolid: Listed + Send + Sync {
-    /// The list of a prototype that it is in.
-    const LIST: List;
-
     /// What it is called, which says in which list it is.
     fn kind(&self) -> SolidKind;
 
-    /// A box that holds it.
+    /// A box that contains it.
     fn bounds(&self) -> Bounds;
 
     /// The first meetings of the `active` rays of a row, without those that
     /// [`TracedSolid::first`] has to find.
     #[inline(always)]
-    fn quick_first(&self, _: &RowOfPacket, active: LaneMask, _: Decisions) -> QuickLanes {
+    fn first_in_row(&self, _: &RowOfPacket, active: LaneMask) -> QuickLanes {
+        QuickLanes::all_open(active)
+    }
+
+    /// The same decided exactly.
+    #[inline(always)]
+    fn exact_first_in_row(&self, _: &RowOfPacket, active: LaneMask) -> QuickLanes {
         QuickLanes::all_open(active)
     }
 
@@ -119,13 +119,11 @@ pub(crate) trait TracedSolid: Listed + Send + Sync {
     /// By how much a query that starts at that point may be displaced.
     fn spawn_margin(&self, met: &SurfaceHit, surface: &SurfacePoint) -> SpawnMargin;
 
-    /// Whether the closed solid holds a point.
+    /// Whether the closed solid contains a point.
     fn contains(&self, point: DVec3) -> bool;
 }
 
 impl<S: ConvexSolid + Listed> TracedSolid for S {
-    const LIST: List = List::Solids(S::KIND);
-
     #[inline(always)]
     fn kind(&self) -> SolidKind {
         S::KIND
@@ -136,18 +134,20 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
     }
 
     #[inline(always)]
-    fn quick_first(&self, row: &RowOfPacket, active: LaneMask, decisions: Decisions) -> QuickLanes {
-        if decisions == Decisions::Exact && !row.is_plain() {
-            return QuickLanes::all_open(active);
-        }
-        let rays = row.seen_from(self.anchor());
-        if decisions == Decisions::Exact && !S::QUICK_IS_EXACT {
-            return QuickLanes::all_open(quick::near(self, &rays, &active));
-        }
-        quick::first(self, &rays, &active)
+    fn first_in_row(&self, row: &RowOfPacket, active: LaneMask) -> QuickLanes {
+        self.first_in_lanes(&row.seen_from(self.anchor()), &active)
     }
 
-    #[inline]
+    #[inline(always)]
+    fn exact_first_in_row(&self, row: &RowOfPacket, active: LaneMask) -> QuickLanes {
+        if row.is_plain() {
+            self.exact_first_in_lanes(&row.seen_from(self.anchor()), &active)
+        } else {
+            QuickLanes::all_open(active)
+        }
+    }
+
+    #[inline(always)]
     fn first(
         &self,
         ray: &LocalRay,
@@ -155,10 +155,14 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
         t_min: f64,
         t_max: f64,
     ) -> Option<SurfaceHit> {
-        decisions
-            .chord(self, ray)?
-            .first(self.caps(), ray.shift, t_min, t_max)
-            .map(SurfaceHit::whole)
+        let meeting = match decisions {
+            Decisions::Rounded => {
+                let from_anchor = ray.origin_from(self.anchor());
+                self.first(from_anchor, ray.direction, ray.shift, t_min, t_max)
+            }
+            Decisions::Exact => exact_first(self, ray, t_min, t_max),
+        };
+        meeting.map(SurfaceHit::whole)
     }
 
     fn for_each_hit(
@@ -182,7 +186,7 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
     }
 
     fn spawn_margin(&self, _: &SurfaceHit, surface: &SurfacePoint) -> SpawnMargin {
-        SpawnMargin::of_solid(self, surface)
+        ConvexSolid::spawn_margin(self, surface)
     }
 
     fn contains(&self, point: DVec3) -> bool {
@@ -213,8 +217,6 @@ impl From<&SurfaceHit> for ComposedIntersection {
 }
 
 impl TracedSolid for Composition {
-    const LIST: List = List::Solids(SolidKind::Union);
-
     fn kind(&self) -> SolidKind {
         self.kind()
     }

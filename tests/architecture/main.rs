@@ -4,12 +4,14 @@
 //! Every rule is a function from a file's name and text to complaints. It is
 //! run over the whole repository, and over a planted sample that breaks it.
 
+mod circles;
 mod layers;
 mod tokens;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use circles::{Folder, circle};
 use layers::layers;
 use tokens::tokens;
 
@@ -128,6 +130,43 @@ fn layers_planted_uses_are_found() {
         layers,
         "src/scene/load.rs",
         "use super::tracer_names;\nuse super::math;",
+    );
+}
+
+#[test]
+fn files_of_embree_import_each_other_in_no_circle() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/embree");
+    let entries = fs::read_dir(folder).expect("a folder of the repository can be read");
+    let paths = entries.map(|entry| entry.expect("its entries too").path());
+    let sources = paths.filter(|path| path.extension().is_some_and(|ext| ext == "rs"));
+    let files: Folder = sources
+        .map(|path| {
+            let name = path.file_stem().expect("a file has a name");
+            let text = fs::read_to_string(&path).expect("a Rust file is UTF-8");
+            (name.to_string_lossy().into_owned(), text)
+        })
+        .collect();
+    assert!(files.len() > 10);
+    assert_eq!(circle(&files), None);
+}
+
+#[test]
+fn files_planted_in_a_circle_are_found() {
+    let folder = |texts: &[(&str, &str)]| -> Folder {
+        let texts = texts.iter();
+        texts
+            .map(|&(name, text)| (name.into(), text.into()))
+            .collect()
+    };
+    let a = ("a", "use super::b::B;");
+    let b = ("b", "use super::c::{C, D};\nuse super::other;");
+    let mod_file = ("mod", "mod a;\nmod b;\nmod c;");
+    let chain = folder(&[a, b, ("c", "// super::a\nfn c() {}"), mod_file]);
+    assert_eq!(circle(&chain), None);
+    let closed = folder(&[a, b, ("c", "fn c() { super::a::f() }"), mod_file]);
+    assert_eq!(
+        circle(&closed),
+        Some(vec!["a".into(), "b".into(), "c".into()])
     );
 }
 

@@ -4,6 +4,7 @@
 
 mod balls;
 mod collect;
+mod docs_bindings;
 mod instance;
 mod joint;
 mod lifetime;

@@ -72,7 +72,7 @@ fn cylinders(prototype: &Prototype) -> Vec<(u32, [f64; 3], [f64; 3], f64)> {
             cylinder.radius(),
         )
     };
-    prototype.cylinders.iter().map(record).collect()
+    prototype.solids.cylinders.iter().map(record).collect()
 }
 
 fn placed(scene: &Scene) -> Vec<DAffine3> {
@@ -100,7 +100,7 @@ fn least_scene_has_the_documented_defaults() {
     assert_eq!(scene.prototypes.len(), 1);
     assert_eq!(scene.prototypes[0].name, "");
     assert_eq!(scene.skipped_rows, 0);
-    let record = scene.prototypes[0].cylinders.get(0);
+    let record = scene.prototypes[0].solids.cylinders.get(0);
     assert_eq!(record.cylinder().caps(), Caps::Both);
     assert_eq!(record.material(), MaterialIndex(0));
 }
@@ -218,6 +218,7 @@ fn materials_and_caps_are_found_by_name() {
     assert_eq!(scene.materials[1].name, "bark");
     assert_eq!(scene.materials[1].color, DVec3::new(0.1, 0.2, 0.3));
     let found: Vec<_> = scene.prototypes[0]
+        .solids
         .cylinders
         .iter()
         .map(|record| (record.cylinder().caps(), record.material().0))
@@ -243,7 +244,7 @@ fn cylinder_table_layouts_give_the_same_cylinder() {
             [(0, [1.0, 2.0, 3.0], [1.0, 2.0, 7.0], 0.5)],
             "{columns}"
         );
-        let record = scene.prototypes[0].cylinders.get(0);
+        let record = scene.prototypes[0].solids.cylinders.get(0);
         assert_eq!(record.cylinder().caps(), Caps::None);
         assert_eq!(record.material(), MaterialIndex(1));
         assert_eq!(scene.skipped_rows, 1);

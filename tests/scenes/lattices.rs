@@ -45,7 +45,7 @@ fn single(lattice: &str, beams: &str) -> String {
 
 /// Number, ends and radius of the cylinders.
 fn cylinders(prototype: &Prototype) -> Vec<(u32, DVec3, DVec3, f64)> {
-    let records = prototype.cylinders.iter();
+    let records = prototype.solids.cylinders.iter();
     records
         .map(|record| {
             let one = record.cylinder();
@@ -88,7 +88,10 @@ fn radii_of_beams_are_their_own_or_the_lattice_s() {
     assert_eq!((cone.solid.p0(), cone.solid.p1()), (DVec3::ZERO, Y8));
     assert_eq!((cone.solid.radius0(), cone.solid.radius1()), (1.0, 0.125));
     assert_eq!(cone.solid.caps(), Caps::Both);
-    assert_eq!(found.solids.len(), 1);
+    assert_eq!(
+        found.solids.counts().total(),
+        found.solids.cylinders.len() as u128 + 1
+    );
 }
 
 #[test]
@@ -271,6 +274,7 @@ fn lattices_of_prototypes_and_their_materials_are_read() {
     let scene = load(&path).expect("the scene");
     let cell = &scene.prototypes[1];
     let numbers: Vec<_> = cell
+        .solids
         .cylinders
         .iter()
         .map(|one| (one.primitive(), one.material().0))

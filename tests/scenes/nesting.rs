@@ -7,7 +7,7 @@ use std::thread;
 
 use cyltrace::math::{Random, Ray};
 use cyltrace::scene::{CylinderRecord, GREATEST_DEPTH, MaterialIndex, Scene, load};
-use cyltrace::solid::{Caps, Cylinder};
+use cyltrace::solid::{Caps, Cylinder, SolidKind};
 use cyltrace::tracer::{Options, Tracer, workers};
 use glam::DVec3;
 
@@ -38,7 +38,10 @@ fn deepest() -> Arc<Scene> {
     fs::write(file.path(), nested(GREATEST_DEPTH)).expect("writing the scene");
     let mut scene = load(file.path()).unwrap_or_else(|error| panic!("{error}"));
     let innermost = scene.prototypes.iter_mut().find(|one| one.name == "0");
-    let cylinders = &mut innermost.expect("a prototype of that name").cylinders;
+    let cylinders = &mut innermost
+        .expect("a prototype of that name")
+        .solids
+        .cylinders;
     let mut random = Random::new(61, 0);
     for primitive in 1..5_000 {
         let p0 = DVec3::new(2.0, 0.0, 0.5) + random.direction() * 0.3;
@@ -110,9 +113,9 @@ fn counts_beyond_u128_stay_at_its_greatest_number() {
     fs::write(file.path(), text).expect("writing the scene");
     let scene = load(file.path()).unwrap_or_else(|error| panic!("{error}"));
     let scene_stats = scene.scene_stats();
-    assert_eq!(scene_stats.cylinders_instanced, u128::MAX);
+    assert_eq!(scene_stats.instanced[SolidKind::Cylinder], u128::MAX);
     let tracer = Tracer::new(Arc::new(scene), &Options::default()).expect("a tracer");
     let built = tracer.statistics();
-    assert_eq!(built.cylinders_instanced, scene_stats.cylinders_instanced);
+    assert_eq!(built.instanced, scene_stats.instanced);
     assert_eq!(built.instances, scene_stats.instances);
 }

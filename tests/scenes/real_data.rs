@@ -45,7 +45,7 @@ fn tree_model_loads_in_three_lines() {
         path.display()
     ))
     .expect("the tree");
-    let cylinders = &scene.prototypes[0].cylinders;
+    let cylinders = &scene.prototypes[0].solids.cylinders;
     assert_eq!(cylinders.len(), 1_149);
     let first = cylinders.get(0).cylinder();
     assert_eq!(first.p0().to_array(), [0.760564, -16.356802, 253.888632]);
@@ -64,7 +64,7 @@ fn neurons_load_with_their_degenerate_segments_counted() {
             continue;
         };
         let scene = neuron(&path, "skip").expect(name);
-        let records = &scene.prototypes[0].cylinders;
+        let records = &scene.prototypes[0].solids.cylinders;
         assert_eq!(records.len(), cylinders, "{name}");
         assert_eq!(scene.skipped_rows, skipped, "{name}");
         let last = records.iter().last().expect("a segment").primitive();
@@ -86,7 +86,7 @@ fn neurons_load_with_their_degenerate_segments_counted() {
 fn neuron_without_degenerate_segments_loads_as_it_is() {
     if let Some(path) = data("neurom_Neuron_zero_radius.swc") {
         let scene = neuron(&path, "error").expect("the neuron");
-        assert_eq!(scene.prototypes[0].cylinders.len(), 8);
+        assert_eq!(scene.prototypes[0].solids.cylinders.len(), 8);
     }
 }
 
@@ -124,7 +124,7 @@ fn neurons_load_with_their_tapers() {
             segments,
             "{name}"
         );
-        assert!(round.prototypes[0].cylinders.is_empty(), "{name}");
+        assert!(round.prototypes[0].solids.cylinders.is_empty(), "{name}");
     }
 }
 
@@ -138,15 +138,15 @@ fn lattice_of_a_pyramid_loads_as_it_is() {
     let root = &scene.prototypes[0];
     // 391 beams, of which 156 state a second radius; all ends are spheres, so that
     // each of the 123 vertices at which one ends has a ball.
-    assert_eq!(root.cylinders.len() + root.solids.cones.len(), 391);
+    assert_eq!(root.solids.cylinders.len() + root.solids.cones.len(), 391);
     assert!(
         root.solids.cones.len() <= 156,
         "{}",
         root.solids.cones.len()
     );
     assert_eq!(root.solids.spheres.len(), 123);
-    assert_eq!(root.solids.len(), root.solids.cones.len() + 123);
-    let first = root.cylinders.get(0).cylinder();
+    assert_eq!(root.solids.len(), 391 + 123);
+    let first = root.solids.cylinders.get(0).cylinder();
     assert_eq!(first.p0().to_array(), [89.44272, 152.16904, 0.0]);
     assert_eq!(first.radius(), 2.29999);
 }
@@ -171,10 +171,10 @@ fn lattice_that_is_clipped_loads_where_that_is_left_out() {
     let meters = with("meshes = \"skip\"\nunit = \"meter\"").expect("the lattice");
     for scene in [&millimeters, &meters] {
         let root = &scene.prototypes[0];
-        assert_eq!(root.cylinders.len() + root.solids.cones.len(), 1_291);
+        assert_eq!(root.solids.cylinders.len() + root.solids.cones.len(), 1_291);
         assert_eq!(scene.skipped_rows, 0);
     }
-    let first = |scene: &Scene| scene.prototypes[0].cylinders.get(0).cylinder();
+    let first = |scene: &Scene| scene.prototypes[0].solids.cylinders.get(0).cylinder();
     assert_eq!(first(&millimeters).radius(), 0.5);
     assert_eq!(first(&meters).radius(), 0.5 / 1000.0);
     assert_eq!(first(&meters).p0(), first(&millimeters).p0() / 1000.0);

@@ -3,11 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use cyltrace::solid::SolidKind;
 use cyltrace::tracer::{BuildTime, Options, Tracer};
 
 /// Loads and builds a scene; answers with the cylinders stored, those in the
 /// scene, and its placements.
-fn counts(name: &str) -> (u64, u128, u128) {
+fn counts(name: &str) -> (u128, u128, u128) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("scenes")
         .join(name);
@@ -26,8 +27,8 @@ fn counts(name: &str) -> (u64, u128, u128) {
         statistics.skipped
     );
     (
-        statistics.cylinders_unique,
-        statistics.cylinders_instanced,
+        statistics.unique[SolidKind::Cylinder],
+        statistics.instanced[SolidKind::Cylinder],
         statistics.instances,
     )
 }
@@ -42,10 +43,10 @@ fn forest_huge_loaded_holds_ten_thousand_million_cylinders() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/forest_huge.toml");
     let scene = cyltrace::scene::load(&path).unwrap_or_else(|error| panic!("{error}"));
     let scene_stats = scene.scene_stats();
-    assert_eq!(scene.prototypes[1].cylinders.len(), 10_000);
+    assert_eq!(scene.prototypes[1].solids.cylinders.len(), 10_000);
     assert_eq!(scene_stats.placements, 1_000_000);
-    assert_eq!(scene_stats.cylinders_unique, 10_005);
-    assert_eq!(scene_stats.cylinders_instanced, 10_000_000_005);
+    assert_eq!(scene_stats.unique[SolidKind::Cylinder], 10_005);
+    assert_eq!(scene_stats.instanced[SolidKind::Cylinder], 10_000_000_005);
 }
 
 #[test]

@@ -5,7 +5,9 @@ use std::fs;
 
 use cyltrace::math::Orientation;
 use cyltrace::scene::{Composition, Prototype, Scene, load};
-use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
+use cyltrace::solid::{
+    AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, SolidKind, Sphere,
+};
 use glam::{DMat3, DVec3};
 
 const NEURON: &str = "1 1 0 0 0 2 -1\n2 3 0 0 5 0.5 1\n3 3 0 0 5 0.25 2\n4 3 0 4 5 0 2\n";
@@ -61,7 +63,7 @@ fn each_kind_has_its_table_and_its_number() {
     ));
     for prototype in &scene.prototypes {
         let all = &prototype.solids;
-        assert_eq!(prototype.cylinders.primitive(0), 0);
+        assert_eq!(prototype.solids.cylinders.primitive(0), 0);
         let [one] = all.spheres.as_slice() else {
             panic!("{:?}", all.spheres)
         };
@@ -101,8 +103,8 @@ fn each_kind_has_its_table_and_its_number() {
             (9, Composition::Difference(parts())),
         ];
         assert_eq!(compositions, expected);
-        assert_eq!(all.len(), 9);
-        assert_eq!(prototype.cylinders.get(0).material().0, 1);
+        assert_eq!(all.len(), 10);
+        assert_eq!(prototype.solids.cylinders.get(0).material().0, 1);
         assert!(all.cuboids.iter().all(|one| one.material.0 == 1));
         assert!(all.compositions.iter().all(|one| one.material.0 == 1));
     }
@@ -125,7 +127,10 @@ fn poses_apply_x_then_y_then_z_then_the_list_then_the_translation() {
     let ends = "p0 = [1, 2, 3]\np1 = [1, 2, 7]\n";
     let (p0, p1) = (at(11.0, 20.0, 35.0), at(11.0, 24.0, 35.0));
     let turned = root(&format!("[[cylinder]]\n{ends}radius = 1\n{all}"));
-    assert_eq!(turned.cylinders.get(0).cylinder(), cylinder(p0, p1, 1.0));
+    assert_eq!(
+        turned.solids.cylinders.get(0).cylinder(),
+        cylinder(p0, p1, 1.0)
+    );
     let radii = "radius0 = 1\nradius1 = 2\n";
     let turned = root(&format!("[[cone]]\n{ends}{radii}{all}"));
     let cone = Cone::new(p0, p1, 1.0, 2.0, Caps::Both).expect("a cone");
@@ -149,11 +154,11 @@ fn poses_apply_x_then_y_then_z_then_the_list_then_the_translation() {
 fn poses_that_turn_by_nothing_change_no_bit() {
     // (0.1 + 0.7) / 2 is no f64, so a turn about it would round.
     let text = "[[cylinder]]\np0 = [0.1, 0.2, 0.3]\np1 = [0.7, 0.9, 1e10]\nradius = 0.1\n";
-    let stated = root(text).cylinders.get(0).cylinder();
+    let stated = root(text).solids.cylinders.get(0).cylinder();
     let turned = root(&format!(
         "{text}rotate_x = 0\nrotate_z = 360\ntranslate = [0, 0, 0]\n"
     ));
-    assert_eq!(turned.cylinders.get(0).cylinder(), stated);
+    assert_eq!(turned.solids.cylinders.get(0).cylinder(), stated);
     assert_eq!(stated.p1(), at(0.7, 0.9, 1e10));
 }
 
@@ -222,9 +227,14 @@ fn neurons_have_cylinders_or_cones_or_rounded_cones() {
         ))
     };
     let steps = of("degenerate = \"skip\"\ncaps = \"p0\"\n");
-    let numbers: Vec<_> = steps.cylinders.iter().map(|one| one.primitive()).collect();
+    let numbers: Vec<_> = steps
+        .solids
+        .cylinders
+        .iter()
+        .map(|one| one.primitive())
+        .collect();
     assert_eq!(numbers, [0]);
-    assert!(steps.solids.is_empty());
+    assert_eq!(steps.solids.len(), steps.solids.cylinders.len());
 
     let flat = of("degenerate = \"skip\"\njoints = \"flat\"\ncaps = \"p0\"\n");
     let found: Vec<_> = flat
@@ -242,7 +252,7 @@ fn neurons_have_cylinders_or_cones_or_rounded_cones() {
         (2, cone(top, at(0.0, 4.0, 5.0), 0.5, 0.0)),
     ];
     assert_eq!(found, expected);
-    assert!(flat.cylinders.is_empty());
+    assert!(flat.solids.cylinders.is_empty());
 
     let round = of("joints = \"round\"\n");
     let found: Vec<_> = round
@@ -268,13 +278,10 @@ fn census_counts_other_solids_and_their_box_holds_them() {
          [[instance]]\nof = \"a\"\n[[instance]]\nof = \"a\"\ntranslate = [100, 0, 0]\n";
     let scene_stats = scene(text).scene_stats();
     assert_eq!(
-        (
-            scene_stats.other_solids_unique,
-            scene_stats.other_solids_instanced
-        ),
+        (scene_stats.unique.total(), scene_stats.instanced.total()),
         (2, 4)
     );
-    assert_eq!(scene_stats.cylinders_unique, 0);
+    assert_eq!(scene_stats.unique[SolidKind::Cylinder], 0);
     let (lower, upper) = (scene_stats.bounds.lower, scene_stats.bounds.upper);
     // Boxes are rounded outward, by next to nothing.
     assert!(

@@ -5,9 +5,9 @@ use std::collections::HashSet;
 use std::ops::ControlFlow;
 
 use cyltrace::math::{ChildFromParent, PlacementErrors, Random, UNIT_ROUNDOFF};
-use cyltrace::meshes::{self, Format, MeshFileError, Plan};
+use cyltrace::meshes::{Format, MeshFileError, Plan};
 use cyltrace::scene::{
-    CylinderList, CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene,
+    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, Solids,
 };
 use cyltrace::solid::tessellation::{Fit, prism_size};
 use cyltrace::solid::{Caps, Cylinder, Part, surface_point};
@@ -88,11 +88,12 @@ fn read_ply(bytes: &[u8]) -> Mesh {
 fn written(scene: &Scene, plan: &Plan, format: Format) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut items = 0;
-    meshes::write(scene, plan, format, "a scene", &mut bytes, &mut |more| {
-        items += more;
-        ControlFlow::Continue(())
-    })
-    .unwrap();
+    format
+        .write(scene, plan, "a scene", &mut bytes, &mut |more| {
+            items += more;
+            ControlFlow::Continue(())
+        })
+        .unwrap();
     assert_eq!(u128::from(items), plan.vertices() + plan.triangles());
     bytes
 }
@@ -129,7 +130,7 @@ fn random_scene(seed: u64) -> Scene {
     let mut random = Random::new(seed, 0);
     let mut prototype = |name: &str, cylinders, places: &[u32]| Prototype {
         name: name.into(),
-        cylinders: records(&mut random, cylinders).into(),
+        solids: Solids::of_cylinders(records(&mut random, cylinders)),
         placements: places
             .iter()
             .map(|&of| placement(&mut random, of))
@@ -154,7 +155,7 @@ fn placed(scene: &Scene, index: u32, world_from_here: DAffine3, path: &str) -> V
     let here = &scene.prototypes[index as usize];
     let name = here.name.replace([' ', '/'], "_");
     let name = if index == 0 { "scene" } else { &name };
-    let own = here.cylinders.iter().map(|record| Placed {
+    let own = here.solids.cylinders.iter().map(|record| Placed {
         cylinder: record.cylinder(),
         world_from_solid: world_from_here,
         group: format!("{name}{path}"),
@@ -281,10 +282,10 @@ fn meshes_read_back_are_prisms_of_the_placed_solids() {
         let ply = written(&scene, &plan, Format::Ply);
         assert_eq!(
             ply.len() as u128,
-            plan.file_bytes(Format::Ply, "a scene"),
+            Format::Ply.file_bytes(&plan, "a scene"),
             "seed {seed}"
         );
-        let most = plan.file_bytes(Format::Obj, "a scene");
+        let most = Format::Obj.file_bytes(&plan, "a scene");
         assert!((most / 2..=most).contains(&(obj.len() as u128)));
         let (obj, ply) = (read_obj(&obj), read_ply(&ply));
         assert_eq!(
@@ -342,13 +343,13 @@ fn deviation_of_unplaced_solids_is_the_sagitta_and_of_placed_ones_stretched() {
     let record = CylinderRecord::new(&cylinder, 0, MaterialIndex(0));
     let leaf = Prototype {
         name: "leaf".into(),
-        cylinders: vec![record].into(),
+        solids: Solids::of_cylinders(vec![record]),
         placements: Vec::new(),
         ..Prototype::default()
     };
     let root = |of: u32, factors: DVec3| Prototype {
         name: String::new(),
-        cylinders: CylinderList::default(),
+        solids: Solids::default(),
         placements: vec![Placement {
             of: PrototypeIndex(of),
             parent_from_child: DAffine3::from_scale(factors),
@@ -380,14 +381,14 @@ fn meshes_too_large_or_interrupted_are_refused() {
     let scene = random_scene(1);
     let plan = Plan::new(&scene, 64, Fit::Inscribed).unwrap();
     for format in [Format::Obj, Format::Ply] {
-        let bytes = plan.file_bytes(format, "x") as u64;
-        plan.check(format, "x", bytes).unwrap();
-        let refused = plan.check(format, "x", bytes - 1).unwrap_err();
+        let bytes = format.file_bytes(&plan, "x") as u64;
+        format.check(&plan, "x", bytes).unwrap();
+        let refused = format.check(&plan, "x", bytes - 1).unwrap_err();
         assert!(
             matches!(refused, MeshFileError::TooLarge { .. }),
             "{refused}"
         );
-        let stopped = meshes::write(&scene, &plan, format, "x", &mut Vec::new(), &mut |_| {
+        let stopped = format.write(&scene, &plan, "x", &mut Vec::new(), &mut |_| {
             ControlFlow::Break(())
         });
         assert!(matches!(stopped, Err(MeshFileError::Cancelled)));
@@ -405,7 +406,7 @@ fn meshes_too_large_or_interrupted_are_refused() {
     let mut prototypes: Vec<Prototype> = (1..=40)
         .map(|next| Prototype {
             name: format!("level {next}"),
-            cylinders: CylinderList::default(),
+            solids: Solids::default(),
             placements: vec![
                 Placement {
                     of: PrototypeIndex(next),
@@ -418,7 +419,7 @@ fn meshes_too_large_or_interrupted_are_refused() {
         .collect();
     prototypes.push(Prototype {
         name: "leaf".into(),
-        cylinders: records(&mut Random::new(1, 1), 1).into(),
+        solids: Solids::of_cylinders(records(&mut Random::new(1, 1), 1)),
         placements: Vec::new(),
         ..Prototype::default()
     });
@@ -426,7 +427,7 @@ fn meshes_too_large_or_interrupted_are_refused() {
     let plan = Plan::new(&scene, 3, Fit::Inscribed).unwrap();
     // 10^40 solids: more than can be counted.
     assert_eq!(plan.solids(), u128::MAX);
-    let refused = plan.check(Format::Ply, "x", u64::MAX).unwrap_err();
+    let refused = Format::Ply.check(&plan, "x", u64::MAX).unwrap_err();
     assert!(
         matches!(refused, MeshFileError::TooLarge { .. }),
         "{refused}"

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::ops::ControlFlow;
 
 use cyltrace::math::{Random, UNIT_ROUNDOFF};
-use cyltrace::meshes::{self, Format, Plan, read_mesh};
+use cyltrace::meshes::{Format, Plan, read_mesh};
 use cyltrace::scene::{Placement, PrototypeIndex, Scene};
 use cyltrace::solid::tessellation::{Fit, Mesh, deviation_of, mesh_size_of};
 use cyltrace::solid::{AnySolid, Caps, Location, Part};
@@ -163,9 +163,11 @@ fn meshes_of_all_kinds_read_back_and_stay_within_their_deviation() {
                 items += more;
                 ControlFlow::Continue(())
             };
-            meshes::write(&scene, &plan, format, name, &mut bytes, &mut count).unwrap();
+            format
+                .write(&scene, &plan, name, &mut bytes, &mut count)
+                .unwrap();
             assert_eq!(u128::from(items), plan.vertices() + plan.triangles());
-            assert!(bytes.len() as u128 <= plan.file_bytes(format, name));
+            assert!(bytes.len() as u128 <= format.file_bytes(&plan, name));
             let path = folder.path().join(name);
             std::fs::write(&path, bytes).unwrap();
             let file = read_mesh(&path).unwrap();

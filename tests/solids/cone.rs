@@ -1,6 +1,6 @@
 //! Cones and rounded cones against exact truth, on families of hard cases.
 //!
-//! `CYLTRACE_CASES=1000000 cargo test --release --test solids_cone` is the full run.
+//! `CYLTRACE_CASES=1000000 cargo test --release --test solids cone` is the full run.
 
 use std::thread;
 
@@ -10,9 +10,8 @@ use cyltrace::solid::{
 };
 use cyltrace_oracle::cases::{Inputs, TaperCase, TaperFamily, TaperSolid};
 use cyltrace_oracle::{
-    Exact, ExactRay, TrueHit, cone_gap, cone_hits, cone_holds, distance_to_cone,
-    distance_to_rounded_cone, exact, hits_of_any, rounded_cone_gap, rounded_cone_hits,
-    rounded_cone_holds, to_f64,
+    Exact, ExactRay, TrueHit, TrueSolid, distance_to_cone, distance_to_rounded_cone, exact,
+    hits_of_any, to_f64,
 };
 use glam::DVec3;
 
@@ -48,14 +47,18 @@ fn answer(solid: TaperSolid, case: &TaperCase, caps: Caps) -> Answer {
     match solid {
         TaperSolid::Cone => {
             let cone = case.cone(caps);
-            of(cone, &case.ray, cone_hits(&cone, &ExactRay::new(&case.ray)))
+            of(
+                cone,
+                &case.ray,
+                TrueSolid::hits(&cone, &ExactRay::new(&case.ray)),
+            )
         }
         TaperSolid::RoundedCone => {
             let rounded = case.rounded_cone();
             of(
                 rounded,
                 &case.ray,
-                rounded_cone_hits(&rounded, &ExactRay::new(&case.ray)),
+                TrueSolid::hits(&rounded, &ExactRay::new(&case.ray)),
             )
         }
     }
@@ -63,8 +66,8 @@ fn answer(solid: TaperSolid, case: &TaperCase, caps: Caps) -> Answer {
 
 fn gap(solid: TaperSolid, case: &TaperCase, caps: Caps) -> f64 {
     match solid {
-        TaperSolid::Cone => cone_gap(&case.cone(caps), &case.ray),
-        TaperSolid::RoundedCone => rounded_cone_gap(&case.rounded_cone(), &case.ray),
+        TaperSolid::Cone => TrueSolid::gap(&case.cone(caps), &case.ray),
+        TaperSolid::RoundedCone => TrueSolid::gap(&case.rounded_cone(), &case.ray),
     }
 }
 
@@ -236,7 +239,7 @@ fn points_are_held_as_exact_arithmetic_says() {
                 let case = family.case(TaperSolid::Cone, SEED, index, inputs);
                 let cone = case.cone(Caps::Both);
                 for point in points(&case, &answer(TaperSolid::Cone, &case, Caps::Both).found) {
-                    let truth = cone_holds(&cone, point);
+                    let truth = TrueSolid::truly_contains(&cone, point);
                     assert_eq!(cone.contains(point), truth, "{family:?} {index} {point:?}");
                     held[usize::from(truth)] += 1;
                 }
@@ -246,7 +249,7 @@ fn points_are_held_as_exact_arithmetic_says() {
                     &case,
                     &answer(TaperSolid::RoundedCone, &case, Caps::Both).found,
                 ) {
-                    let truth = rounded_cone_holds(&solid, point);
+                    let truth = TrueSolid::truly_contains(&solid, point);
                     assert_eq!(solid.contains(point), truth, "{family:?} {index} {point:?}");
                     held[usize::from(truth)] += 1;
                 }

@@ -3,7 +3,7 @@
 //! parallel ones to hit, and ranges that begin or end where a surface is hit. Smaller margins
 //! do lose hits.
 //!
-//! `CYLTRACE_RAYS=1000000 cargo test --release --test filters` puts so many rays of each family
+//! `CYLTRACE_RAYS=1000000 cargo test --release --test solids filters` puts so many rays of each family
 //! to filters; the default is a two hundredth of it.
 
 use std::array::from_fn;

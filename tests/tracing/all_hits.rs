@@ -5,7 +5,9 @@ use std::cmp::Ordering;
 use std::sync::Arc;
 
 use cyltrace::math::{Random, Ray};
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex};
+use cyltrace::scene::{
+    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Solids,
+};
 use cyltrace::solid::{Caps, Crossing, Cylinder, Part};
 use cyltrace::tracer::{Hit, Options, Tracer};
 use glam::{DAffine3, DMat3, DVec3};
@@ -21,7 +23,7 @@ fn root_of(cylinders: &[Cylinder]) -> Prototype {
     let records = cylinders.iter().enumerate();
     let record = |(i, cylinder)| CylinderRecord::new(cylinder, i as u32, MaterialIndex(0));
     Prototype {
-        cylinders: records.map(record).collect(),
+        solids: Solids::of_cylinders(records.map(record)),
         ..Default::default()
     }
 }
@@ -45,7 +47,7 @@ fn all(tracer: &Tracer, ray: &Ray) -> Vec<Hit> {
 /// All hits, a batch at a time; fails where there are more than two a cylinder,
 /// so that a search that finds a hit again does not go on for ever.
 fn all_by(tracer: &Tracer, ray: &Ray, batch: usize) -> Vec<Hit> {
-    let most = 2 * tracer.statistics().cylinders_instanced as usize;
+    let most = 2 * tracer.statistics().instanced.total() as usize;
     let hits: Vec<Hit> = tracer.all_hits(ray, batch).take(most + 1).collect();
     assert!(
         hits.len() <= most,
@@ -94,7 +96,7 @@ fn true_hits(cylinders: &[CylinderRecord], ray: &Ray) -> Vec<(f64, u32, Part, Cr
 fn hits_are_those_of_exact_arithmetic() {
     let cylinders = crowd(SEED, 60, None);
     let root = Prototype {
-        cylinders: cylinders.clone().into(),
+        solids: Solids::of_cylinders(cylinders.clone()),
         ..Default::default()
     };
     let tracer = tracer_of(vec![root]);
@@ -143,14 +145,14 @@ fn hits_are_ordered_and_the_same_for_every_batch() {
         ),
     };
     let leaf = Prototype {
-        cylinders: crowd(SEED, 100, None).into(),
+        solids: Solids::of_cylinders(crowd(SEED, 100, None)),
         ..Default::default()
     };
     let same = place(1);
     let root = Prototype {
         // The last two are the same placement: every hit of theirs is a tie.
         placements: vec![place(1), place(1), same, same],
-        cylinders: crowd(SEED + 1, 100, None).into(),
+        solids: Solids::of_cylinders(crowd(SEED + 1, 100, None)),
         ..Default::default()
     };
     let tracer = tracer_of(vec![root, leaf]);
@@ -182,7 +184,7 @@ fn capped_solids_are_entered_and_left_in_turn() {
     let cylinders = crowd(SEED, 200, Some(Caps::Both));
     let count = cylinders.len();
     let tracer = tracer_of(vec![Prototype {
-        cylinders: cylinders.into(),
+        solids: Solids::of_cylinders(cylinders),
         ..Default::default()
     }]);
     for number in 0..5_000 {

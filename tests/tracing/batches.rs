@@ -2,13 +2,13 @@
 //! for bit: for every instruction set, layout and time of building, and as
 //! trying every placement and every cylinder answers.
 //!
-//! `CYLTRACE_RAYS=1000000 cargo test --release --test batches` is the full run;
+//! `CYLTRACE_RAYS=1000000 cargo test --release --test tracing batches` is the full run;
 //! the default is a tenth of it.
 
 use std::sync::Arc;
 
 use cyltrace::math::{Random, Ray};
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Prototype, Scene};
+use cyltrace::scene::{CylinderRecord, MaterialIndex, Prototype, Scene, Solids};
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{DEFAULT_BATCH, Hit, Layout, Options, Tracer};
 use glam::{DAffine3, DVec3};
@@ -196,7 +196,7 @@ fn assert_same_answers_of(
 /// A scene of these cylinders and nothing else.
 fn scene_of_cylinders(cylinders: Vec<CylinderRecord>) -> Arc<Scene> {
     scene_of(vec![Prototype {
-        cylinders: cylinders.into(),
+        solids: Solids::of_cylinders(cylinders),
         ..Default::default()
     }])
 }
@@ -310,7 +310,7 @@ fn copies() -> Vec<CylinderRecord> {
 fn bundles_at_coinciding_solids() {
     let records = copies();
     let leaf = Prototype {
-        cylinders: records.clone().into(),
+        solids: Solids::of_cylinders(records.clone()),
         ..Default::default()
     };
     let (root, between, in_leaf) = (0, 1, 2);
@@ -362,7 +362,7 @@ fn all_hits_of_blocks_are_those_of_single_cylinders() {
             };
             Tracer::new(Arc::clone(&scene), &options).unwrap()
         });
-        let cylinders: Vec<_> = scene.prototypes[0].cylinders.iter().collect();
+        let cylinders: Vec<_> = scene.prototypes[0].solids.cylinders.iter().collect();
         let hits = (0..bundle_count()).into_par_iter().map(|number| {
             let rays = bundle(&mut Random::new(SEED, number), &cylinders, 1e2);
             let mut found = 0;

@@ -3,7 +3,9 @@
 //! is not supported is a miss.
 
 use cyltrace::math::{DIRECTION_SIZES, GREATEST_ORIGIN, Random, Ray, RaySizeError, power_of_two};
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex};
+use cyltrace::scene::{
+    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Solids,
+};
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{Options, Tracer};
 use glam::{DAffine3, DVec3};
@@ -24,9 +26,9 @@ fn cylinders(scale: f64) -> Prototype {
     ];
     let records = (0..).zip(&solids);
     Prototype {
-        cylinders: records
-            .map(|(number, solid)| CylinderRecord::new(solid, number, MaterialIndex(0)))
-            .collect(),
+        solids: Solids::of_cylinders(
+            records.map(|(number, solid)| CylinderRecord::new(solid, number, MaterialIndex(0))),
+        ),
         ..Default::default()
     }
 }
@@ -176,7 +178,7 @@ fn a_line_almost_in_the_plane_of_a_disk_ends_at_the_wall() {
     );
     let record = CylinderRecord::new(&solid.expect("in range"), 0, MaterialIndex(0));
     let root = Prototype {
-        cylinders: vec![record].into(),
+        solids: Solids::of_cylinders(vec![record]),
         ..Default::default()
     };
     let tracer = Tracer::new(test_support::scene_of(vec![root]), &Options::default());

@@ -2,7 +2,9 @@
 //! and nothing that makes Embree abort.
 
 use cyltrace::math::Ray;
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex};
+use cyltrace::scene::{
+    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Solids,
+};
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{Options, Tracer, TracerError};
 use glam::{DAffine3, DVec3};
@@ -13,7 +15,7 @@ fn tracer_of(cylinders: &[Cylinder]) -> Tracer {
         .enumerate()
         .map(|(i, cylinder)| CylinderRecord::new(cylinder, i as u32, MaterialIndex(0)));
     let root = Prototype {
-        cylinders: records.collect(),
+        solids: Solids::of_cylinders(records),
         ..Default::default()
     };
     Tracer::new(test_support::scene_of(vec![root]), &Options::default()).unwrap()
@@ -210,12 +212,11 @@ fn empty_scene_misses() {
 #[test]
 fn placements_that_flatten_or_pile_up_scales_are_refused() {
     let leaf = Prototype {
-        cylinders: vec![CylinderRecord::new(
+        solids: Solids::of_cylinders(vec![CylinderRecord::new(
             &unit_cylinder(1.0),
             0,
             MaterialIndex(0),
-        )]
-        .into(),
+        )]),
         ..Default::default()
     };
     let placed = |of: u32, scale: DVec3| Prototype {
@@ -248,12 +249,11 @@ fn placements_that_flatten_or_pile_up_scales_are_refused() {
 #[test]
 fn deepest_nesting_is_traced() {
     let leaf = Prototype {
-        cylinders: vec![CylinderRecord::new(
+        solids: Solids::of_cylinders(vec![CylinderRecord::new(
             &unit_cylinder(1.0),
             0,
             MaterialIndex(0),
-        )]
-        .into(),
+        )]),
         ..Default::default()
     };
     let levels = (1..=64).map(|of| Prototype {

@@ -2,7 +2,7 @@
 //! every kind of solid, placed or not, and every way to ask; the other fields are not
 //! there.
 //!
-//! `CYLTRACE_RAYS=1000000 cargo test --release --test hit_fields` is the full run; the
+//! `CYLTRACE_RAYS=1000000 cargo test --release --test tracing hit_fields` is the full run; the
 //! default is a tenth of it.
 
 use std::collections::HashSet;

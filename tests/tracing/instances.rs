@@ -3,13 +3,13 @@
 //! trying everything and against the same scene without instances. So do prototypes that are
 //! opened into their parents, since they contain nothing but a few placements.
 //!
-//! `CYLTRACE_RAYS=1000000 cargo test --release --test instances` is the full run; the
+//! `CYLTRACE_RAYS=1000000 cargo test --release --test tracing instances` is the full run; the
 //! default is a tenth of it.
 
 use std::sync::Arc;
 
 use cyltrace::math::{Random, Ray};
-use cyltrace::scene::{CylinderRecord, Placement, Prototype, Scene};
+use cyltrace::scene::{CylinderRecord, Placement, Prototype, Scene, Solids};
 use cyltrace::tracer::{Hit, Layout, Options, Tracer};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
@@ -118,12 +118,12 @@ impl Nest {
             let own = if is_bare && level > 0 { 0 } else { 3 };
             let own = cylinders_in_a_box(SEED + 1 + level as u64, own);
             prototypes.push(Prototype {
-                cylinders: own.into(),
+                solids: Solids::of_cylinders(own),
                 ..placing(placements)
             });
         }
         prototypes.push(Prototype {
-            cylinders: cylinders.clone().into(),
+            solids: Solids::of_cylinders(cylinders.clone()),
             ..Prototype::default()
         });
         let nothing = prototypes.len() as u32;
@@ -310,7 +310,7 @@ fn assemblies(parts: u32) -> Arc<Scene> {
         placing(each.collect())
     };
     let part = Prototype {
-        cylinders: cylinders_in_a_box(SEED, 20).into(),
+        solids: Solids::of_cylinders(cylinders_in_a_box(SEED, 20)),
         ..Prototype::default()
     };
     scene_of(vec![along(DVec3::X, 3, 1), along(DVec3::Y, parts, 2), part])
@@ -323,7 +323,7 @@ fn few_placements_are_opened_into_their_parent() {
     for (parts, instances) in [(1, 3), (8, 24), (9, 9)] {
         let scene = assemblies(parts);
         let tracer = tracer(&scene, &Options::default());
-        let cylinder = scene.prototypes[2].cylinders.get(0).cylinder();
+        let cylinder = scene.prototypes[2].solids.cylinders.get(0).cylinder();
         let middle = cylinder.p0().lerp(cylinder.p1(), 0.5) + DVec3::X * 6.0;
         let ray = Ray::new(middle + DVec3::Z * 10.0, DVec3::NEG_Z);
         let hit = tracer.closest(&ray).expect("a hit");

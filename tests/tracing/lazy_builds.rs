@@ -7,7 +7,7 @@ use std::thread;
 
 use cyltrace::embree::with_flushed_denormals;
 use cyltrace::math::{Random, Ray};
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Prototype, Scene};
+use cyltrace::scene::{CylinderRecord, MaterialIndex, Prototype, Scene, Solids};
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{BuildTime, Layout, Options, Tracer};
 use glam::{DAffine3, DVec3};
@@ -32,7 +32,7 @@ fn two_boxes() -> Arc<Scene> {
     let here = |of| placed(of, DAffine3::IDENTITY);
     let aside = DAffine3::from_translation(DVec3::X * ASIDE);
     let leaf = |seed| Prototype {
-        cylinders: cylinders_in_a_box(seed, COUNT).into(),
+        solids: Solids::of_cylinders(cylinders_in_a_box(seed, COUNT)),
         ..Default::default()
     };
     scene_of(vec![
@@ -71,7 +71,7 @@ fn unbuilt(tracer: &Tracer) -> Vec<String> {
 /// A ray that meets a box, placed `offset` along x.
 fn ray_at_box(scene: &Scene, offset: f64) -> Ray {
     let index = if offset == 0.0 { 3 } else { 4 };
-    let cylinder = scene.prototypes[index].cylinders.get(0).cylinder();
+    let cylinder = scene.prototypes[index].solids.cylinders.get(0).cylinder();
     let middle = cylinder.p0().lerp(cylinder.p1(), 0.5) + DVec3::X * offset;
     Ray::new(middle + DVec3::Z * 10.0, DVec3::NEG_Z)
 }
@@ -202,7 +202,7 @@ fn threads_that_reach_a_prototype_together_get_the_right_answers() {
         let image = nested.any_image(random);
         carried(&image, &ray_at(random, &in_nested, 1e3))
     };
-    let near: Vec<_> = boxes.prototypes[3].cylinders.iter().collect();
+    let near: Vec<_> = boxes.prototypes[3].solids.cylinders.iter().collect();
     for round in 0..ROUNDS {
         let layout = [Layout::Single, Layout::Block][(round % 2) as usize];
         let (scene, rays): (_, Vec<Ray>) = if round % 4 < 2 {
@@ -284,7 +284,7 @@ fn build_on_the_way_of_a_ray_leaves_the_float_mode() {
 fn empty_prototype_is_neither_built_nor_told() {
     let cylinder = Cylinder::new(DVec3::ZERO, DVec3::X, 0.5, Caps::Both).unwrap();
     let root = Prototype {
-        cylinders: vec![CylinderRecord::new(&cylinder, 0, MaterialIndex(0))].into(),
+        solids: Solids::of_cylinders(vec![CylinderRecord::new(&cylinder, 0, MaterialIndex(0))]),
         ..placing(vec![placed(1, DAffine3::IDENTITY)])
     };
     let scene = scene_of(vec![root, Prototype::default()]);

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use cyltrace::math::Random;
 use cyltrace::scene::{
-    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Records, Scene, SceneFile,
+    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, SceneFile, Solids,
 };
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{BuildTime, Layout, MemoryEstimate, Options, Tracer};
@@ -35,7 +35,7 @@ fn scene(cylinders: u32, placements: u32) -> Scene {
         CylinderRecord::new(&cylinder, primitive, MaterialIndex(0))
     };
     let prototype = Prototype {
-        cylinders: (0..cylinders).map(record).collect(),
+        solids: Solids::of_cylinders((0..cylinders).map(record)),
         ..Prototype::default()
     };
     let root = Prototype {
@@ -58,11 +58,8 @@ fn census_and_estimate_of_a_nested_scene_agree_with_the_tracer() {
     for layout in [Layout::Single, Layout::Block] {
         let tracer = built(&scene, layout);
         let statistics = tracer.statistics();
-        assert_eq!(scene_stats.cylinders_unique, statistics.cylinders_unique);
-        assert_eq!(
-            scene_stats.cylinders_instanced,
-            statistics.cylinders_instanced
-        );
+        assert_eq!(scene_stats.unique, statistics.unique);
+        assert_eq!(scene_stats.instanced, statistics.instanced);
         assert_eq!(scene_stats.instances, statistics.instances);
 
         let estimate = MemoryEstimate::of(&scene.contents(), layout, None);
@@ -93,9 +90,9 @@ fn sample_scenes_counted_before_loading_hold_no_less_and_are_estimated_well() {
         assert_eq!(before.len(), after.len());
         for (before, after) in before.iter().zip(&after) {
             assert_eq!((&before.name, before.is_used), (&after.name, after.is_used));
-            assert_eq!(after.records, Records::F64);
             // Each table may end in a line end and hold a few comments.
-            let spare = before.cylinders - after.cylinders;
+            let [before_all, after_all] = [before, after].map(|one| one.solids.counts.total());
+            let spare = before_all - after_all;
             assert!(spare <= 20, "{name}: {before:?} {after:?}");
             let spare = before.placements() - after.placements();
             assert!(spare <= 20, "{name}: {before:?} {after:?}");
@@ -215,7 +212,7 @@ fn neurons_lattices_and_compositions_are_counted_before_loading_as_they_are() {
         panic!("one prototype");
     };
     let solids = &prototype.solids;
-    assert_eq!(prototype.cylinders.len(), 2 + 3 * 2 + 2);
+    assert_eq!(prototype.solids.cylinders.len(), 2 + 3 * 2 + 2);
     assert_eq!((solids.cones.len(), solids.rounded_cones.len()), (2 + 3, 2));
     assert_eq!(
         (solids.spheres.len(), solids.compositions.len()),

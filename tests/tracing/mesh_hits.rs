@@ -24,12 +24,12 @@ const RAYS: u64 = 100_000;
 /// The same scene with every radius times `factor`.
 fn with_radii(scene: &Scene, factor: f64) -> Tracer {
     let mut scene = scene.clone();
-    let thinner = scene.prototypes[0].cylinders.iter().map(|record| {
+    let thinner = scene.prototypes[0].solids.cylinders.iter().map(|record| {
         let one = record.cylinder();
         let thinner = Cylinder::new(one.p0(), one.p1(), one.radius() * factor, one.caps()).unwrap();
         CylinderRecord::new(&thinner, record.primitive(), record.material())
     });
-    scene.prototypes[0].cylinders = thinner.collect();
+    scene.prototypes[0].solids.cylinders = thinner.collect();
     Tracer::new(Arc::new(scene), &Options::default()).unwrap()
 }
 
@@ -47,6 +47,7 @@ fn hits_of_the_minimal_scene_lie_between_the_mesh_s_cylinders() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/minimal.toml");
     let scene = cyltrace::scene::load(&path).unwrap();
     let cylinders: Vec<Cylinder> = scene.prototypes[0]
+        .solids
         .cylinders
         .iter()
         .map(|record| record.cylinder())

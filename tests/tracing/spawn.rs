@@ -1,6 +1,6 @@
 //! Rays spawned from hits do not meet again the surface they left.
 //!
-//! `CYLTRACE_RAYS=1000000 cargo test --release --test spawn` is the full run;
+//! `CYLTRACE_RAYS=1000000 cargo test --release --test tracing spawn` is the full run;
 //! the default is a tenth of it.
 //!
 //! The judge is exact arithmetic on the spawned ray as it is, an f64 ray like
@@ -11,7 +11,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use cyltrace::math::{Random, Ray};
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene};
+use cyltrace::scene::{
+    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, Solids,
+};
 use cyltrace::solid::{Caps, Crossing, Cylinder, Part};
 use cyltrace::tracer::{Hit, Options, Tracer};
 use cyltrace_oracle::{ExactAffine, placed_first_hit};
@@ -35,7 +37,11 @@ fn hit_solid(scene: &Scene, hit: &Hit) -> (Cylinder, ExactAffine) {
         prototype = &scene.prototypes[placement.of.0 as usize];
     }
     (
-        prototype.cylinders.get(hit.primitive as usize).cylinder(),
+        prototype
+            .solids
+            .cylinders
+            .get(hit.primitive as usize)
+            .cylinder(),
         world_from_object,
     )
 }
@@ -151,7 +157,7 @@ impl Retarget for Ray {
 fn box_of_cylinders_has_no_self_hit() {
     let cylinders = test_support::cylinders_in_a_box(SEED, 1000);
     let root = Prototype {
-        cylinders: cylinders.into(),
+        solids: Solids::of_cylinders(cylinders),
         ..Default::default()
     };
     let tracer = Tracer::new(test_support::scene_of(vec![root]), &Options::default()).unwrap();
@@ -171,7 +177,7 @@ fn offset_box_has_no_self_hit() {
             CylinderRecord::new(&cylinder.unwrap(), record.primitive(), MaterialIndex(0))
         });
     let root = Prototype {
-        cylinders: moved.collect(),
+        solids: Solids::of_cylinders(moved),
         ..Default::default()
     };
     let tracer = Tracer::new(test_support::scene_of(vec![root]), &Options::default()).unwrap();
@@ -196,7 +202,11 @@ fn long_cylinder_has_no_self_hit_along_its_axis() {
             let p1 = p0 + random.direction() * random.log_uniform(1.0, 1e4);
             let cylinder = Cylinder::new(p0, p1, 1.0, Caps::Both).unwrap();
             let root = Prototype {
-                cylinders: vec![CylinderRecord::new(&cylinder, 0, MaterialIndex(0))].into(),
+                solids: Solids::of_cylinders(vec![CylinderRecord::new(
+                    &cylinder,
+                    0,
+                    MaterialIndex(0),
+                )]),
                 ..Default::default()
             };
             let tracer =
@@ -250,7 +260,7 @@ fn nested_placements_have_no_self_hit() {
         ..Default::default()
     };
     let leaf = Prototype {
-        cylinders: cylinders.into(),
+        solids: Solids::of_cylinders(cylinders),
         ..Default::default()
     };
     let world_from_leaf =
@@ -300,13 +310,13 @@ fn spawned_rays_do_not_pass_through_touching_neighbours() {
                 CylinderRecord::new(&cylinder.unwrap(), i as u32, MaterialIndex(0))
             });
         let root = Prototype {
-            cylinders: records.collect(),
+            solids: Solids::of_cylinders(records),
             ..Default::default()
         };
         let scene: Arc<Scene> = test_support::scene_of(vec![root.clone()]);
         let tracer = Tracer::new(scene, &Options::default()).unwrap();
         let alone = Prototype {
-            cylinders: vec![root.cylinders.get(0)].into(),
+            solids: Solids::of_cylinders(vec![root.solids.cylinders.get(0)]),
             ..Default::default()
         };
         let alone = Tracer::new(test_support::scene_of(vec![alone]), &Options::default()).unwrap();

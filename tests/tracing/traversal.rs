@@ -1,14 +1,16 @@
 //! Traversal loses nothing: through Embree, every ray gets the hit that trying
 //! every placement and every cylinder gets, bit for bit.
 //!
-//! `CYLTRACE_RAYS=1000000 cargo test --release --test traversal` is the full
+//! `CYLTRACE_RAYS=1000000 cargo test --release --test tracing traversal` is the full
 //! run; the default is a tenth of it.
 
 use std::sync::Arc;
 
 use cyltrace::embree::MaxIsa;
 use cyltrace::math::{Random, Ray};
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene};
+use cyltrace::scene::{
+    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, Solids,
+};
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{Options, Tracer};
 use glam::{DAffine3, DQuat, DVec3};
@@ -73,7 +75,7 @@ fn tracers(scene: &Arc<Scene>) -> Vec<(String, u64, Tracer)> {
 fn box_of_cylinders_loses_no_hit() {
     let cylinders = test_support::cylinders_in_a_box(SEED, 1000);
     let root = Prototype {
-        cylinders: cylinders.clone().into(),
+        solids: Solids::of_cylinders(cylinders.clone()),
         ..Default::default()
     };
     for (isa, rays, tracer) in tracers(&test_support::scene_of(vec![root])) {
@@ -136,7 +138,7 @@ fn box_of_cylinders_loses_no_hit_in_its_outermost_layer() {
     let records = test_support::cylinders_in_a_box(SEED, 1000);
     let cylinders: Vec<Cylinder> = records.iter().map(CylinderRecord::cylinder).collect();
     let root = Prototype {
-        cylinders: records.into(),
+        solids: Solids::of_cylinders(records),
         ..Default::default()
     };
     for (isa, rays, tracer) in tracers(&test_support::scene_of(vec![root])) {
@@ -166,7 +168,7 @@ fn boxes_in_corners_of_boxes_lose_no_hit_in_their_outermost_layer() {
     let small: Vec<Cylinder> = corners.clone().map(in_corner).collect();
     let record = |(i, one)| CylinderRecord::new(one, i, MaterialIndex(0));
     let leaf = Prototype {
-        cylinders: (0..).zip(&small).map(record).collect(),
+        solids: Solids::of_cylinders((0..).zip(&small).map(record)),
         ..Default::default()
     };
     let offsets: Vec<DVec3> = corners.map(|corner| corner * (SIDE - SCALE)).collect();

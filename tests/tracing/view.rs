@@ -5,6 +5,7 @@ use std::sync::Arc;
 use cyltrace::math::{Random, Ray};
 use cyltrace::scene::{
     AimedCamera, Camera, CylinderRecord, Film, Frame, MaterialIndex, Projection, Prototype, Scene,
+    Solids,
 };
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{Options, Tracer};
@@ -63,7 +64,7 @@ fn at_edges(random: &mut Random, camera: &AimedCamera, size: DVec2) -> (Vec<Ray>
     let cylinder = Cylinder::new(-DVec3::Z, DVec3::Z, 1.0, Caps::Both).unwrap();
     let record = CylinderRecord::new(&cylinder, 0, MaterialIndex(0));
     let solid = Prototype {
-        cylinders: vec![record].into(),
+        solids: Solids::of_cylinders(vec![record]),
         ..Default::default()
     };
     (rays, scene_of(vec![root, solid]))

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use cyltrace::math::Ray;
 use cyltrace::scene::GREATEST_DEPTH;
-use cyltrace::solid::{Crossing, Part, SolidKind};
+use cyltrace::solid::{Crossing, Part};
 use cyltrace::tracer::{HitFields, PartialHit};
 use cyltrace_check::{Place, ReportedHit};
 
@@ -16,10 +16,10 @@ pub const CYLTRACE_GREATEST_DEPTH: usize = 64;
 
 const _: () = assert!(CYLTRACE_GREATEST_DEPTH == GREATEST_DEPTH);
 
-/// [`CyltraceHit::tells`]: `normal` is told.
-pub const CYLTRACE_TELLS_NORMAL: u32 = 1;
-/// [`CyltraceHit::tells`]: `primitive`, `part` and `instance` are told.
-pub const CYLTRACE_TELLS_PLACE: u32 = 2;
+/// [`CyltraceHit::valid_fields`]: `normal`.
+pub const CYLTRACE_VALID_NORMAL: u32 = 1;
+/// [`CyltraceHit::valid_fields`]: `primitive`, `part` and `instance`.
+pub const CYLTRACE_VALID_PLACE: u32 = 2;
 
 /// [`cyltrace_closest_with`](super::cyltrace_closest_with): `point`.
 pub const CYLTRACE_FIELD_POINT: u32 = 1;
@@ -42,9 +42,6 @@ const FIELDS: [(HitFields, u32); 5] = [
     (HitFields::ERROR, CYLTRACE_FIELD_ERROR),
     (HitFields::PATH, CYLTRACE_FIELD_PATH),
 ];
-
-/// The fields of `CYLTRACE_FIELD_ALL`: all that `struct cyltrace_hit` has.
-pub(super) const ALL_FIELDS: HitFields = HitFields::all().difference(HitFields::SPAWN);
 
 /// The fields of a sum of their codes. The error is a message: another number is in it.
 pub(super) fn fields_of(codes: u32) -> Result<HitFields, String> {
@@ -90,25 +87,6 @@ const PARTS: [(Part, u32); 9] = [
     (Part::ZMax, CYLTRACE_Z_MAX),
 ];
 
-/// [`CyltraceHit::solid`]: a cylinder.
-pub const CYLTRACE_SOLID_CYLINDER: u32 = 0;
-/// [`CyltraceHit::solid`]: a cone.
-pub const CYLTRACE_SOLID_CONE: u32 = 1;
-/// [`CyltraceHit::solid`]: a rounded cone.
-pub const CYLTRACE_SOLID_ROUNDED_CONE: u32 = 2;
-/// [`CyltraceHit::solid`]: a sphere.
-pub const CYLTRACE_SOLID_SPHERE: u32 = 3;
-/// [`CyltraceHit::solid`]: a cuboid.
-pub const CYLTRACE_SOLID_CUBOID: u32 = 4;
-/// [`CyltraceHit::solid`]: a disk.
-pub const CYLTRACE_SOLID_DISK: u32 = 5;
-/// [`CyltraceHit::solid`]: a union of solids; the part is that of the one met.
-pub const CYLTRACE_SOLID_UNION: u32 = 6;
-/// [`CyltraceHit::solid`]: an intersection of solids.
-pub const CYLTRACE_SOLID_INTERSECTION: u32 = 7;
-/// [`CyltraceHit::solid`]: a solid without others.
-pub const CYLTRACE_SOLID_DIFFERENCE: u32 = 8;
-
 /// [`CyltraceHit::crossing`]: the ray goes into the solid.
 pub const CYLTRACE_ENTER: u32 = 0;
 /// [`CyltraceHit::crossing`]: the ray goes out of it.
@@ -150,7 +128,7 @@ impl From<&CyltraceRay> for Ray {
     }
 }
 
-/// `struct cyltrace_hit`: see [`Hit`](cyltrace::tracer::Hit); all zeros is a miss.
+/// `struct cyltrace_hit`: see [`Hit`](cyltrace::tracer::Hit); a miss is all zeros.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CyltraceHit {
@@ -166,10 +144,10 @@ pub struct CyltraceHit {
     pub u: f64,
     /// Position along the axis.
     pub v: f64,
-    /// 1 for a hit, 0 for a miss; then nothing else counts.
+    /// 1 for a hit, 0 for a miss, whose other fields have no meaning.
     pub is_hit: u32,
-    /// Which fields beyond `t` are told, where a caller answers.
-    pub tells: u32,
+    /// Which fields beyond `t` are valid: a sum of `CYLTRACE_VALID_...`.
+    pub valid_fields: u32,
     /// The prototype that holds the solid; 0 is the scene itself.
     pub prototype: u32,
     /// The solid's number in its prototype.
@@ -180,11 +158,11 @@ pub struct CyltraceHit {
     pub crossing: u32,
     /// The material's number.
     pub material: u32,
-    /// How many of `instance` count.
+    /// How many of `instance` are valid.
     pub instance_count: u32,
     /// The placements from the scene inward.
     pub instance: [u32; CYLTRACE_GREATEST_DEPTH],
-    /// The kind of solid.
+    /// The kind of solid: [`SolidKind::code`](cyltrace::solid::SolidKind::code).
     pub solid: u32,
 }
 
@@ -198,7 +176,7 @@ impl CyltraceHit {
         u: 0.0,
         v: 0.0,
         is_hit: 0,
-        tells: 0,
+        valid_fields: 0,
         prototype: 0,
         primitive: 0,
         part: 0,
@@ -206,20 +184,20 @@ impl CyltraceHit {
         material: 0,
         instance_count: 0,
         instance: [0; CYLTRACE_GREATEST_DEPTH],
-        solid: CYLTRACE_SOLID_CYLINDER,
+        solid: 0,
     };
 
-    /// What a caller's intersector tells; `None` for a miss. The error is a
-    /// message: a place is told that cannot be.
+    /// The hit of a caller's intersector; `None` for a miss. The error is a message: the
+    /// hit is in an impossible place.
     pub(super) fn finding(&self) -> Result<Option<ReportedHit>, String> {
         if self.is_hit == 0 {
             return Ok(None);
         }
-        let tells = |what| self.tells & what != 0;
-        let place = tells(CYLTRACE_TELLS_PLACE).then(|| self.place());
+        let is_valid = |fields| self.valid_fields & fields != 0;
+        let place = is_valid(CYLTRACE_VALID_PLACE).then(|| self.place());
         Ok(Some(ReportedHit {
             t: self.t,
-            normal: tells(CYLTRACE_TELLS_NORMAL).then(|| DVec3::from(self.normal)),
+            normal: is_valid(CYLTRACE_VALID_NORMAL).then(|| DVec3::from(self.normal)),
             place: place.transpose()?,
         }))
     }
@@ -247,15 +225,16 @@ fn part_code(part: Part) -> u32 {
     known.expect("every part has a code").1
 }
 
-/// Fields that were not requested are NaN; without its path, a hit has no instances.
-impl From<&PartialHit> for CyltraceHit {
-    fn from(hit: &PartialHit) -> Self {
+impl CyltraceHit {
+    /// A hit and its path. Fields that were not requested are NaN; without a path, the hit
+    /// has no instances.
+    pub(super) fn new(hit: &PartialHit, requested_path: Option<&[u32]>) -> Self {
         let (u, v) = hit.uv().unwrap_or((f64::NAN, f64::NAN));
-        let path = hit.instance().unwrap_or_default();
+        let path = requested_path.unwrap_or_default();
         let mut instance = [0; CYLTRACE_GREATEST_DEPTH];
         instance[..path.len()].copy_from_slice(path);
-        let tells_normal = hit.normal().map_or(0, |_| CYLTRACE_TELLS_NORMAL);
-        let tells_place = hit.instance().map_or(0, |_| CYLTRACE_TELLS_PLACE);
+        let has_normal = hit.normal().map_or(0, |_| CYLTRACE_VALID_NORMAL);
+        let has_place = requested_path.map_or(0, |_| CYLTRACE_VALID_PLACE);
         Self {
             t: hit.t(),
             point: hit.point().unwrap_or(DVec3::NAN).to_array(),
@@ -264,7 +243,7 @@ impl From<&PartialHit> for CyltraceHit {
             u,
             v,
             is_hit: 1,
-            tells: tells_normal | tells_place,
+            valid_fields: has_normal | has_place,
             prototype: hit.prototype().0,
             primitive: hit.primitive(),
             part: part_code(hit.part()),
@@ -275,17 +254,7 @@ impl From<&PartialHit> for CyltraceHit {
             material: hit.material().0.into(),
             instance_count: path.len() as u32,
             instance,
-            solid: match hit.solid() {
-                SolidKind::Cylinder => CYLTRACE_SOLID_CYLINDER,
-                SolidKind::Cone => CYLTRACE_SOLID_CONE,
-                SolidKind::RoundedCone => CYLTRACE_SOLID_ROUNDED_CONE,
-                SolidKind::Sphere => CYLTRACE_SOLID_SPHERE,
-                SolidKind::Cuboid => CYLTRACE_SOLID_CUBOID,
-                SolidKind::Disk => CYLTRACE_SOLID_DISK,
-                SolidKind::Union => CYLTRACE_SOLID_UNION,
-                SolidKind::Intersection => CYLTRACE_SOLID_INTERSECTION,
-                SolidKind::Difference => CYLTRACE_SOLID_DIFFERENCE,
-            },
+            solid: hit.solid().code(),
         }
     }
 }
@@ -331,7 +300,7 @@ pub struct CyltraceCheckOutcome {
     pub rays: u64,
     /// Wrong answers.
     pub violations: u64,
-    /// Rows of which more than half of the rays had no witness.
+    /// Rows in which more than half of the rays had no witness.
     pub unwitnessed_rows: u64,
     /// The outcome for people.
     pub text: *mut c_char,

@@ -21,6 +21,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     // The check, in three lines.
     let scene = scene::load(&path.unwrap_or_else(minimal))?;
     let own = Own(scene.prototypes[0]
+        .solids
         .cylinders
         .iter()
         .map(|record| record.cylinder())

@@ -42,6 +42,10 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
             })
         })
         .collect();
+    let solids = json::Solids {
+        unique: &scene_stats.unique,
+        instanced: &scene_stats.instanced,
+    };
     json::write(
         &arguments.common,
         &json!({
@@ -51,14 +55,9 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
             "placements": scene_stats.placements,
             "instances": json::count(scene_stats.instances),
             "depth": scene_stats.depth,
-            "cylinders": {
-                "unique": scene_stats.cylinders_unique,
-                "instanced": json::count(scene_stats.cylinders_instanced),
-            },
-            "other_solids": {
-                "unique": scene_stats.other_solids_unique,
-                "instanced": json::count(scene_stats.other_solids_instanced),
-            },
+            "solids": solids.by_kind(),
+            "cylinders": solids.cylinders(),
+            "other_solids": solids.others(),
             "skipped_rows": scene.skipped_rows,
             "notes": scene.notes,
             "bounds": { "lower": lower.to_array(), "upper": upper.to_array() },
@@ -88,16 +87,11 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
         text::count(scene_stats.instances),
         scene_stats.depth
     );
-    text += &format!(
-        "cylinders: {} unique, {} instanced\n",
-        scene_stats.cylinders_unique,
-        text::count(scene_stats.cylinders_instanced)
-    );
-    if scene_stats.other_solids_unique > 0 {
+    for (kind, unique) in scene_stats.unique.iter() {
         text += &format!(
-            "other solids: {} unique, {} instanced\n",
-            scene_stats.other_solids_unique,
-            text::count(scene_stats.other_solids_instanced)
+            "{}: {unique} unique, {} instanced\n",
+            text::plural(kind),
+            text::count(scene_stats.instanced[kind])
         );
     }
     text += &text::skipped_rows(scene.skipped_rows);

@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use cyltrace::scene::Scene;
+use cyltrace::solid::{SolidCounts, SolidKind};
 use cyltrace::tracer::Statistics;
 use serde_json::{Value, json};
 
@@ -53,18 +54,44 @@ pub fn records(scene: &Scene) -> Value {
     json!({ "numbers": scene.records().name(), "rounding": scene.rounding() })
 }
 
-/// The cylinders of a traced scene.
-pub fn cylinders(statistics: &Statistics) -> Value {
-    json!({
-        "unique": statistics.cylinders_unique,
-        "instanced": count(statistics.cylinders_instanced),
-    })
+/// How many solids of each kind a scene stores and, with every placement counted, has.
+#[derive(Clone, Copy)]
+pub struct Solids<'a> {
+    pub unique: &'a SolidCounts,
+    pub instanced: &'a SolidCounts,
 }
 
-/// The solids of other kinds of a traced scene.
-pub fn other_solids(statistics: &Statistics) -> Value {
-    json!({
-        "unique": statistics.other_solids_unique,
-        "instanced": count(statistics.other_solids_instanced),
-    })
+impl<'a> Solids<'a> {
+    /// Those of a traced scene.
+    pub fn of(statistics: &'a Statistics) -> Self {
+        Self {
+            unique: &statistics.unique,
+            instanced: &statistics.instanced,
+        }
+    }
+
+    /// The counts of each kind that the scene has.
+    pub fn by_kind(&self) -> Value {
+        let kinds = self.unique.iter().map(|(kind, _)| kind);
+        let counts = kinds.map(|kind| (kind.name().to_owned(), self.counts(|counts| counts[kind])));
+        Value::Object(counts.collect())
+    }
+
+    /// The counts of cylinders, which have a key of their own.
+    pub fn cylinders(&self) -> Value {
+        self.counts(|counts| counts[SolidKind::Cylinder])
+    }
+
+    /// The counts of all other kinds together, likewise.
+    pub fn others(&self) -> Value {
+        self.counts(|counts| {
+            let others = counts.iter();
+            let others = others.filter(|(kind, _)| *kind != SolidKind::Cylinder);
+            others.fold(0, |sum, (_, count)| u128::saturating_add(sum, count))
+        })
+    }
+
+    fn counts(&self, of: impl Fn(&SolidCounts) -> u128) -> Value {
+        json!({ "unique": count(of(self.unique)), "instanced": count(of(self.instanced)) })
+    }
 }

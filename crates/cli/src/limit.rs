@@ -9,7 +9,7 @@ use std::path::Path;
 use anyhow::anyhow;
 use clap::{Args, ValueEnum};
 use cyltrace::embree::MaxIsa;
-use cyltrace::scene::{ExpectedCounts, OtherSolids, PlacedCount};
+use cyltrace::scene::{ExpectedCounts, ExpectedSolids, PlacedCount, Placement};
 use cyltrace::tracer::{Layout, MemoryEstimate};
 
 use super::allocator::AllocationLimit;
@@ -172,13 +172,11 @@ fn takers(
     };
     let mut lines: Vec<(u64, String)> = Vec::new();
     for prototype in contents {
-        let (cylinders, name) = (prototype.cylinders, quoted(&prototype.name));
-        let bytes = MemoryEstimate::of_records(cylinders, prototype.records, 0);
-        lines.push((bytes, format!("{cylinders} cylinders in {name}")));
-        let OtherSolids { count, bytes, .. } = prototype.others;
-        lines.push((bytes, format!("{count} solids of other kinds in {name}")));
+        let name = quoted(&prototype.name);
+        let ExpectedSolids { counts, bytes } = &prototype.solids;
+        lines.push((*bytes, format!("{counts} in {name}")));
         for &PlacedCount { of, count } in &prototype.placed {
-            let bytes = MemoryEstimate::of_records(0, prototype.records, count);
+            let bytes = count.saturating_mul(size_of::<Placement>() as u64);
             let of = quoted(&contents[of.0 as usize].name);
             lines.push((bytes, format!("{count} placements of {of} in {name}")));
         }

@@ -121,7 +121,8 @@ fn report(
             "render_s": times.render,
             "rays": { "camera": rays.camera, "shadow": rays.shadow, "ao": rays.ao },
             "rays_per_s": rays_per_s,
-            "cylinders": json::cylinders(statistics),
+            "solids": json::Solids::of(statistics).by_kind(),
+            "cylinders": json::Solids::of(statistics).cylinders(),
             "instances": json::count(statistics.instances),
             "memory": json::memory(statistics),
             "skipped": skipped,
@@ -137,13 +138,13 @@ fn report(
         return Ok(());
     }
     let mut text = format!(
-        "{}: {}x{}, {} samples a pixel, {}\n{}\n",
+        "{}: {}x{}, {} samples a pixel, {}\n{}",
         arguments.output.display(),
         settings.film.width,
         settings.film.height,
         settings.spp,
         integrator_name(settings.integrator),
-        text::cylinders(statistics),
+        text::solids(statistics),
     );
     text += &format!(
         "memory: {} of records, {} in Embree {} ({})\n",

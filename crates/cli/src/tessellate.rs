@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use anyhow::anyhow;
-use cyltrace::meshes::{self, Format, MeshFileError, Plan};
+use cyltrace::meshes::{Format, MeshFileError, Plan};
 use cyltrace::solid::tessellation::Fit;
 use serde_json::json;
 
@@ -21,7 +21,7 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
     let files =
         Files::new(&arguments.scene, common.json.as_deref()).output("-o", &arguments.output);
     files.check()?;
-    let format = Format::of(&arguments.output)?;
+    let format = Format::to_write(&arguments.output)?;
     OutputSink::check(&arguments.output)?;
     json::check(common)?;
 
@@ -38,8 +38,9 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
     };
     let plan = Plan::new(&scene, arguments.segments, fit)?;
     let name = arguments.scene.to_string_lossy();
-    let bytes = plan.file_bytes(format, &name);
-    plan.check(format, &name, arguments.max_memory)
+    let bytes = format.file_bytes(&plan, &name);
+    format
+        .check(&plan, &name, arguments.max_memory)
         .map_err(refusal)?;
     if common.prints() {
         print(&stated(arguments, &plan, format, bytes))?;
@@ -54,7 +55,7 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
         "vertices and triangles",
     );
     let start = Instant::now();
-    let written = meshes::write(&scene, &plan, format, &name, &mut target, &mut |items| {
+    let written = format.write(&scene, &plan, &name, &mut target, &mut |items| {
         bar.inc(items);
         match interrupt::check() {
             Ok(()) => ControlFlow::Continue(()),
@@ -117,9 +118,10 @@ fn readable(bytes: u128) -> String {
 
 /// What will be written, in lines for people.
 fn stated(arguments: &TessellateArguments, plan: &Plan, format: Format, bytes: u128) -> String {
-    let most = match format {
-        Format::Obj => "at most ",
-        Format::Ply => "",
+    let most = if format.is_size_exact() {
+        ""
+    } else {
+        "at most "
     };
     let mut text = format!(
         "{}: {} {} {} of {} sides, {} vertices, {} triangles, {most}{}\n",

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use cyltrace::scene::{Records, Scene};
+use cyltrace::solid::SolidKind;
 use cyltrace::tracer::Statistics;
 use glam::DVec3;
 
@@ -34,22 +35,29 @@ pub fn rounded(factor: f64) -> String {
     }
 }
 
-/// The cylinders of a traced scene.
-pub fn cylinders(statistics: &Statistics) -> String {
-    let (unique, instances) = (statistics.cylinders_unique, statistics.instances);
-    if instances == 0 {
-        return format!("cylinders: {unique}, no instances");
-    }
-    if instances == u128::MAX {
-        return format!(
-            "cylinders: {unique} unique, instances: {}",
-            count(instances)
-        );
-    }
-    format!(
-        "cylinders: {unique} unique, {} with the {instances} instances",
-        count(statistics.cylinders_instanced)
-    )
+/// A kind of solids in words.
+pub fn plural(kind: SolidKind) -> String {
+    kind.plural().replace('_', " ")
+}
+
+/// A line for each kind of solids of a traced scene.
+pub fn solids(statistics: &Statistics) -> String {
+    let instances = statistics.instances;
+    let lines = statistics.unique.iter().map(|(kind, unique)| {
+        let solids = plural(kind);
+        match instances {
+            0 => format!("{solids}: {unique}, no instances\n"),
+            u128::MAX => format!(
+                "{solids}: {unique} unique, instances: {}\n",
+                count(instances)
+            ),
+            _ => format!(
+                "{solids}: {unique} unique, {} with the {instances} instances\n",
+                count(statistics.instanced[kind])
+            ),
+        }
+    });
+    lines.collect()
 }
 
 /// A line about rounded cylinders, or nothing where none is.

@@ -314,6 +314,7 @@ impl Traced {
         let scene = self.tracer.scene();
         let skipped_rows = scene.skipped_rows;
         let notes: Vec<&String> = scene.notes.iter().chain(&self.note).collect();
+        let solids = json::Solids::of(statistics);
         let mut figures = json!({
             "scene": arguments.scene,
             "output": arguments.output,
@@ -321,8 +322,9 @@ impl Traced {
             "load_s": self.load,
             "build_s": self.build,
             "trace_s": self.trace,
-            "cylinders": json::cylinders(statistics),
-            "other_solids": json::other_solids(statistics),
+            "solids": solids.by_kind(),
+            "cylinders": solids.cylinders(),
+            "other_solids": solids.others(),
             "instances": json::count(statistics.instances),
             "memory": json::memory(statistics),
             "skipped": statistics.skipped,

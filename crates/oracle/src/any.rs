@@ -1,46 +1,76 @@
-//! The first hit of a solid of whichever kind, its normal and its gap.
+//! The first hit of a solid of any kind, its normal and its gap.
 //!
-//! The normal of a wall is the gradient of the polynomial that is zero there
-//! (`taper.rs`), of a sphere the way from its center, of a face or a disk that of its
-//! plane.
+//! Each kind implements [`TrueSolid`] in its own file.
 
 use glam::DVec3;
 
 use super::affine::ExactAffine;
-use super::cone::cylinder_hits;
-use super::cylinder::{TrueHit, first_hit};
-use super::normal::{outward_normal, unit};
+use super::cylinder::TrueHit;
 use super::number::{ExactVector, exact};
 use super::ray::ExactRay;
-use super::taper::{Taper, numbers_of};
-use super::{
-    cone_gap, cone_hits, cuboid_chord, cuboid_gap, disk_chord, disk_gap, gap, rounded_cone_gap,
-    rounded_cone_hits, sphere_chord, sphere_gap,
-};
 use cyltrace::math::{Ray, power_of_two};
-use cyltrace::solid::{AnySolid, Part};
+use cyltrace::solid::AnySolid;
+use cyltrace::with_solid;
 
-/// The first point of the surface in the ray's range.
-///
-/// # Panics
-/// When the ray is not valid ([`Ray::is_valid`]).
-#[must_use]
-pub fn first_hit_of_any(solid: &AnySolid, ray: &Ray) -> Option<TrueHit> {
-    match solid {
-        AnySolid::Cylinder(cylinder) => first_hit(cylinder, ray).hit,
-        _ => hits_of_any(solid, ray).into_iter().next(),
+/// A kind of solid whose truth is known.
+pub trait TrueSolid {
+    /// All points in the ray's range in which it meets the surface, in order: an entry
+    /// and an exit at most, and a tangent is both. Of a disk they are at the same
+    /// parameter, unless the ray runs within its plane.
+    fn hits(&self, ray: &ExactRay) -> Vec<TrueHit>;
+
+    /// The first of them.
+    ///
+    /// # Panics
+    /// When the ray is not valid ([`Ray::is_valid`]).
+    fn first_hit(&self, ray: &Ray) -> Option<TrueHit> {
+        self.hits(&ExactRay::new(ray)).into_iter().next()
     }
+
+    /// The least change, the same relative change for every number of the case, after which
+    /// the first hit may be another. Events that are out of the ray's range count too, so that
+    /// it is a lower bound.
+    ///
+    /// # Panics
+    /// When the ray is not valid.
+    fn gap(&self, ray: &Ray) -> f64;
+
+    /// The unit vector out of the solid at a hit of `ray`; `None` at an apex without a
+    /// disk. That of a disk is the one it is stated with.
+    ///
+    /// A hit's `t` is rounded, far beyond f64: what is nearer to the apex than 2^-500 of the
+    /// way there is at it.
+    fn outward_normal(&self, ray: &Ray, hit: &TrueHit) -> Option<DVec3>;
+
+    /// Whether the closed solid contains a point.
+    ///
+    /// # Panics
+    /// When the point is not finite.
+    fn truly_contains(&self, point: DVec3) -> bool;
 }
 
-/// All points in the ray's range in which it meets the surface, in order: an entry
-/// and an exit at most, and a tangent is both. Of a disk they are at the same
-/// parameter, unless the ray runs within its plane.
+/// The truth about a solid of any kind.
+#[must_use]
+pub fn truth(solid: &AnySolid) -> &dyn TrueSolid {
+    with_solid!(solid, solid => solid)
+}
+
+/// As [`TrueSolid::first_hit`].
+///
+/// # Panics
+/// When the ray is not valid.
+#[must_use]
+pub fn first_hit_of_any(solid: &AnySolid, ray: &Ray) -> Option<TrueHit> {
+    truth(solid).first_hit(ray)
+}
+
+/// As [`TrueSolid::hits`].
 ///
 /// # Panics
 /// When the ray is not valid.
 #[must_use]
 pub fn hits_of_any(solid: &AnySolid, ray: &Ray) -> Vec<TrueHit> {
-    hits(solid, &ExactRay::new(ray))
+    truth(solid).hits(&ExactRay::new(ray))
 }
 
 /// The same of a solid that is placed in the ray's space, with the ray's parameters.
@@ -53,104 +83,45 @@ pub fn placed_hits_of_any(
     world_from_object: &ExactAffine,
     ray: &Ray,
 ) -> Vec<TrueHit> {
-    hits(solid, &ExactRay::through(world_from_object, ray))
+    truth(solid).hits(&ExactRay::through(world_from_object, ray))
 }
 
-fn hits(solid: &AnySolid, ray: &ExactRay) -> Vec<TrueHit> {
-    let chord = match solid {
-        AnySolid::Cylinder(cylinder) => return cylinder_hits(cylinder, ray),
-        AnySolid::Cone(cone) => return cone_hits(cone, ray),
-        AnySolid::RoundedCone(cone) => return rounded_cone_hits(cone, ray),
-        AnySolid::Sphere(sphere) => sphere_chord(sphere, ray),
-        AnySolid::Cuboid(cuboid) => cuboid_chord(cuboid, ray),
-        AnySolid::Disk(disk) => disk_chord(disk, ray),
-    };
-    chord.map_or(Vec::new(), |chord| chord.hits(ray))
-}
-
-/// The least relative change of the numbers after which the first hit may be another.
+/// As [`TrueSolid::gap`].
 ///
 /// # Panics
 /// When the ray is not valid.
 #[must_use]
 pub fn gap_of_any(solid: &AnySolid, ray: &Ray) -> f64 {
-    match solid {
-        AnySolid::Cylinder(cylinder) => gap(cylinder, ray, first_hit(cylinder, ray).hit.as_ref()),
-        AnySolid::Cone(cone) => cone_gap(cone, ray),
-        AnySolid::RoundedCone(cone) => rounded_cone_gap(cone, ray),
-        AnySolid::Sphere(sphere) => sphere_gap(sphere, ray),
-        AnySolid::Cuboid(cuboid) => cuboid_gap(cuboid, ray),
-        AnySolid::Disk(disk) => disk_gap(disk, ray),
-    }
+    truth(solid).gap(ray)
 }
 
-/// The unit vector out of the solid at a hit of `ray`; `None` at an apex without a
-/// disk. That of a disk is the one it is stated with.
-///
-/// A hit's `t` is rounded, far beyond f64: what is nearer to the apex than 2^-500 of the
-/// way there is at it.
+/// As [`TrueSolid::outward_normal`].
 #[must_use]
 pub fn outward_normal_of_any(solid: &AnySolid, ray: &Ray, hit: &TrueHit) -> Option<DVec3> {
-    let from = |point: DVec3| {
-        let x = &ExactVector::new(ray.origin) - &ExactVector::new(point);
-        &x + &ExactVector::new(ray.direction).times(&hit.t)
-    };
-    let is_at_apex = |points: [DVec3; 2], radii: [f64; 2]| {
-        points.into_iter().zip(radii).any(|(point, radius)| {
-            let (off, way) = (from(point), ExactVector::new(ray.direction).times(&hit.t));
-            let near = exact(power_of_two(-500));
-            radius == 0.0 && off.dot(&off) <= way.dot(&way) * &near * &near
-        })
-    };
-    let outward = match solid {
-        AnySolid::Cylinder(cylinder) => return Some(outward_normal(cylinder, ray, hit)),
-        AnySolid::Cone(cone) => {
-            let ends = [cone.p0(), cone.p1()];
-            let radii = [cone.radius0(), cone.radius1()];
-            let taper = Taper::new(&numbers_of(ends, radii, &ExactRay::new(ray)), false);
-            match hit.part {
-                Part::Side if is_at_apex(ends, radii) => return None,
-                Part::Cap0 => taper.a.times(&exact(-1.0)),
-                Part::Cap1 => taper.a,
-                _ => taper.gradient(&from(cone.p0())),
-            }
-        }
-        AnySolid::RoundedCone(cone) => {
-            let ends = [cone.p0(), cone.p1()];
-            let radii = [cone.radius0(), cone.radius1()];
-            match hit.part {
-                _ if is_at_apex(ends, radii) => return None,
-                Part::Cap0 => from(cone.p0()),
-                Part::Cap1 => from(cone.p1()),
-                _ => {
-                    let numbers = numbers_of(ends, radii, &ExactRay::new(ray));
-                    Taper::new(&numbers, true).gradient(&from(cone.p0()))
-                }
-            }
-        }
-        AnySolid::Sphere(sphere) => from(sphere.center()),
-        AnySolid::Cuboid(cuboid) => {
-            let axes = cuboid.orientation().world_from_object();
-            let (axis, side) = match hit.part {
-                Part::XMin => (0, -1.0),
-                Part::XMax => (0, 1.0),
-                Part::YMin => (1, -1.0),
-                Part::YMax => (1, 1.0),
-                Part::ZMin => (2, -1.0),
-                _ => (2, 1.0),
-            };
-            ExactVector::new(axes.col(axis) * side)
-        }
-        AnySolid::Disk(disk) => ExactVector::new(disk.normal()),
-    };
-    unit(&outward)
+    truth(solid).outward_normal(ray, hit)
+}
+
+/// The way from a point to a hit.
+pub(super) fn from_point(point: DVec3, ray: &Ray, hit: &TrueHit) -> ExactVector {
+    let x = &ExactVector::new(ray.origin) - &ExactVector::new(point);
+    &x + &ExactVector::new(ray.direction).times(&hit.t)
+}
+
+/// Whether a hit is at an end whose radius is zero.
+pub(super) fn is_at_apex(ends: [DVec3; 2], radii: [f64; 2], ray: &Ray, hit: &TrueHit) -> bool {
+    ends.into_iter().zip(radii).any(|(point, radius)| {
+        let off = from_point(point, ray, hit);
+        let way = ExactVector::new(ray.direction).times(&hit.t);
+        let near = exact(power_of_two(-500));
+        radius == 0.0 && off.dot(&off) <= way.dot(&way) * &near * &near
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use cyltrace::math::Orientation;
-    use cyltrace::solid::{Caps, Cone, Cuboid, Disk, RoundedCone, Sphere};
+    use cyltrace::solid::{Caps, Cone, Cuboid, Disk, Part, RoundedCone, Sphere};
 
     #[test]
     fn first_hits_of_known_solids_have_their_known_normals() {

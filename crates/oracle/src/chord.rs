@@ -36,7 +36,7 @@ impl TrueChord {
 
     /// All points in the ray's range where it meets the surface, in order. A
     /// tangent is two at the same parameter. A ray within the surface touches it
-    /// all the way: the start of its range stands for an entry before it.
+    /// all the way: the start of its range counts as an entry before it.
     #[must_use]
     pub fn hits(&self, ray: &ExactRay) -> Vec<TrueHit> {
         let is_in_range = |end: &TrueEnd| {

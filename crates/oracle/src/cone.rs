@@ -8,29 +8,20 @@
 
 use std::cmp::Ordering;
 
+use glam::DVec3;
+
+use super::any::{TrueSolid, from_point, is_at_apex};
 use super::change::least_change;
+use super::composed::{Leaf, Sheet, TrueOperand};
 use super::cylinder::TrueHit;
 use super::ends::{TrueEnd, hits};
-use super::number::{Exact, Surd, sign, zero};
+use super::normal::unit;
+use super::number::{Exact, ExactVector, Surd, exact, sign, zero};
 use super::ray::ExactRay;
 use super::taper::{Taper, numbers_of};
+use super::taper_points::of;
 use cyltrace::math::Ray;
-use cyltrace::solid::{Caps, Cone, Cylinder, Part};
-
-/// All points in the ray's range in which it meets the surface, in order; a
-/// tangent is an entry and an exit.
-#[must_use]
-pub fn cone_hits(cone: &Cone, ray: &ExactRay) -> Vec<TrueHit> {
-    hits_between_disks(&Taper::new(&numbers(cone, ray), false), cone.caps(), ray)
-}
-
-/// The same of a cylinder, which is the cone of equal radii.
-#[must_use]
-pub(super) fn cylinder_hits(cylinder: &Cylinder, ray: &ExactRay) -> Vec<TrueHit> {
-    let ends = [cylinder.p0(), cylinder.p1()];
-    let numbers = numbers_of(ends, [cylinder.radius(); 2], ray);
-    hits_between_disks(&Taper::new(&numbers, false), cylinder.caps(), ray)
-}
+use cyltrace::solid::{Caps, Cone, Part};
 
 fn hits_between_disks(taper: &Taper, caps: Caps, ray: &ExactRay) -> Vec<TrueHit> {
     let (ax, ad, aa) = (&taper.ax, &taper.ad, &taper.aa);
@@ -69,24 +60,6 @@ fn hits_between_disks(taper: &Taper, caps: Caps, ray: &ExactRay) -> Vec<TrueHit>
     hits(&points, along.then_some(Part::Side), caps, ray)
 }
 
-/// The least change, the same relative change for every number of the case, after
-/// which its answer may be another: to first order, that which makes the line touch
-/// the wall, go through a rim or the apex, or brings the origin to the surface.
-/// Events that are out of the ray's range count too, so that it is a lower bound.
-///
-/// # Panics
-/// When the ray is not valid.
-#[must_use]
-pub fn cone_gap(cone: &Cone, ray: &Ray) -> f64 {
-    least_change(numbers(cone, &ExactRay::new(ray)), |numbers: &[Exact]| {
-        let taper = Taper::new(numbers, false);
-        let wall = taper.wall();
-        let (rim0, rim1) = (taper.wall_at(&zero()), taper.wall_at(&taper.aa));
-        let over_p1 = &taper.ax - &taper.aa;
-        vec![wall.discriminant(), rim0, rim1, wall.c, taper.ax, over_p1]
-    })
-}
-
 /// The numbers of a case, as `Taper::new` takes them.
 fn numbers(cone: &Cone, ray: &ExactRay) -> Vec<Exact> {
     numbers_of(
@@ -94,4 +67,59 @@ fn numbers(cone: &Cone, ray: &ExactRay) -> Vec<Exact> {
         [cone.radius0(), cone.radius1()],
         ray,
     )
+}
+
+impl TrueSolid for Cone {
+    fn hits(&self, ray: &ExactRay) -> Vec<TrueHit> {
+        hits_between_disks(&Taper::new(&numbers(self, ray), false), self.caps(), ray)
+    }
+
+    fn gap(&self, ray: &Ray) -> f64 {
+        // What makes the line touch the wall, go through a rim or the apex, or brings the
+        // origin to the surface.
+        least_change(numbers(self, &ExactRay::new(ray)), |numbers: &[Exact]| {
+            let taper = Taper::new(numbers, false);
+            let wall = taper.wall();
+            let (rim0, rim1) = (taper.wall_at(&zero()), taper.wall_at(&taper.aa));
+            let over_p1 = &taper.ax - &taper.aa;
+            vec![wall.discriminant(), rim0, rim1, wall.c, taper.ax, over_p1]
+        })
+    }
+
+    fn outward_normal(&self, ray: &Ray, hit: &TrueHit) -> Option<DVec3> {
+        let (ends, radii) = ([self.p0(), self.p1()], [self.radius0(), self.radius1()]);
+        let taper = Taper::new(&numbers_of(ends, radii, &ExactRay::new(ray)), false);
+        unit(&match hit.part {
+            Part::Side if is_at_apex(ends, radii, ray, hit) => return None,
+            Part::Cap0 => taper.a.times(&exact(-1.0)),
+            Part::Cap1 => taper.a,
+            _ => taper.gradient(&from_point(self.p0(), ray, hit)),
+        })
+    }
+
+    fn truly_contains(&self, point: DVec3) -> bool {
+        let taper = of(
+            [self.p0(), self.p1()],
+            [self.radius0(), self.radius1()],
+            point,
+            false,
+        );
+        sign(&taper.ax) != Ordering::Less
+            && taper.ax <= taper.aa
+            && sign(&taper.wall().c) != Ordering::Greater
+    }
+}
+
+impl TrueOperand for Cone {
+    fn leaf(&self) -> Leaf {
+        let [p0, p1] = [self.p0(), self.p1()].map(ExactVector::new);
+        let [r0, r1] = [self.radius0(), self.radius1()].map(exact);
+        let (a, delta) = (&p1 - &p0, &r1 - &r0);
+        let back = a.times(&exact(-1.0));
+        Leaf::within(vec![
+            Sheet::wall(&p0, &a, [&r0, &delta, &a.dot(&a)]),
+            Sheet::plane(&back, &back.dot(&p0), Some(Part::Cap0)),
+            Sheet::plane(&a, &a.dot(&p1), Some(Part::Cap1)),
+        ])
+    }
 }

@@ -1,15 +1,21 @@
 //! The points of a cuboid on a ray, exactly.
 //!
-//! Every plane of a face is met on its own, and its point is checked against the
-//! definition of the solid, all three axes of it: those that hold are points of
+//! Every plane of a face is intersected on its own, and its point is checked against the
+//! definition of the solid, all three axes of it: those that pass are points of
 //! the surface, and the first and the last of them are the ends of the chord. A line
 //! within a face meets the planes of the others. A point on several faces is of the
 //! first axis.
 
 use std::cmp::Ordering;
 
+use glam::DVec3;
+
+use super::any::TrueSolid;
 use super::change::least_change;
 use super::chord::{TrueChord, TrueEnd};
+use super::composed::{Leaf, Sheet, TrueOperand};
+use super::cylinder::TrueHit;
+use super::normal::unit;
 use super::number::{Exact, ExactVector, Surd, exact, sign, vector_of, zero};
 use super::ray::ExactRay;
 use cyltrace::math::Ray;
@@ -49,64 +55,6 @@ pub fn cuboid_chord(cuboid: &Cuboid, ray: &ExactRay) -> Option<TrueChord> {
         enter,
         leave,
         lies_on: line.face(),
-    })
-}
-
-/// Whether the closed cuboid holds a point.
-///
-/// # Panics
-/// When the point is not finite.
-#[must_use]
-pub fn cuboid_holds(cuboid: &Cuboid, point: glam::DVec3) -> bool {
-    let half_widths = cuboid.half_widths().to_array().map(exact);
-    let from_center = &ExactVector::new(point) - &ExactVector::new(cuboid.center());
-    along_axes(cuboid, &from_center)
-        .iter()
-        .zip(half_widths)
-        .all(|(own, half_width)| -&half_width <= *own && *own <= half_width)
-}
-
-/// The least change, the same relative change for every number of the case, after
-/// which its answer may be another: to first order, that which makes the line go
-/// through an edge's line or brings the origin to a face's plane. Events that are out
-/// of the ray's range count too, so that it is a lower bound.
-///
-/// # Panics
-/// When the ray is not valid.
-#[must_use]
-pub fn cuboid_gap(cuboid: &Cuboid, ray: &Ray) -> f64 {
-    assert!(ray.is_valid(), "the gap was asked for of {ray:?}");
-    let vectors = [
-        cuboid.half_widths(),
-        cuboid.center(),
-        ray.origin,
-        ray.direction,
-    ];
-    let numbers = vectors.map(|vector| vector.to_array().map(exact)).concat();
-    let is_along =
-        along_axes(cuboid, &ExactVector::new(ray.direction)).map(|slope| slope == zero());
-    least_change(numbers, |numbers: &[Exact]| {
-        let [half_widths, center, origin, d] =
-            [0, 3, 6, 9].map(|first| vector_of(&numbers[first..]));
-        let start = along_axes(cuboid, &(&origin - &center));
-        let slope = along_axes(cuboid, &d);
-        let planes: [[Exact; 2]; 3] = std::array::from_fn(|axis| {
-            let (start, half_width) = (&start[axis], &half_widths.0[axis]);
-            [start + half_width, start - half_width]
-        });
-        let mut conditions = planes.concat();
-        for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-            // A line along both of the planes keeps its distance to their edges.
-            if is_along[i] && is_along[j] {
-                continue;
-            }
-            for one in &planes[i] {
-                for other in &planes[j] {
-                    conditions.push(one * &slope[j] - other * &slope[i]);
-                }
-            }
-        }
-        conditions
     })
 }
 
@@ -154,11 +102,95 @@ impl OwnLine {
     }
 }
 
+impl TrueSolid for Cuboid {
+    fn hits(&self, ray: &ExactRay) -> Vec<TrueHit> {
+        cuboid_chord(self, ray).map_or(Vec::new(), |chord| chord.hits(ray))
+    }
+
+    fn gap(&self, ray: &Ray) -> f64 {
+        // What makes the line go through an edge's line or brings the origin to a face's plane.
+        assert!(
+            ray.is_valid(),
+            "a gap is of a valid ray, and this is {ray:?}"
+        );
+        let vectors = [self.half_widths(), self.center(), ray.origin, ray.direction];
+        let numbers = vectors.map(|vector| vector.to_array().map(exact)).concat();
+        let is_along =
+            along_axes(self, &ExactVector::new(ray.direction)).map(|slope| slope == zero());
+        least_change(numbers, |numbers: &[Exact]| {
+            let [half_widths, center, origin, d] =
+                [0, 3, 6, 9].map(|first| vector_of(&numbers[first..]));
+            let start = along_axes(self, &(&origin - &center));
+            let slope = along_axes(self, &d);
+            let planes: [[Exact; 2]; 3] = std::array::from_fn(|axis| {
+                let (start, half_width) = (&start[axis], &half_widths.0[axis]);
+                [start + half_width, start - half_width]
+            });
+            let mut conditions = planes.concat();
+            for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+                // A line along both of the planes keeps its distance to their edges.
+                if is_along[i] && is_along[j] {
+                    continue;
+                }
+                for one in &planes[i] {
+                    for other in &planes[j] {
+                        conditions.push(one * &slope[j] - other * &slope[i]);
+                    }
+                }
+            }
+            conditions
+        })
+    }
+
+    fn outward_normal(&self, _: &Ray, hit: &TrueHit) -> Option<DVec3> {
+        let axes = self.orientation().world_from_object();
+        let (axis, side) = match hit.part {
+            Part::XMin => (0, -1.0),
+            Part::XMax => (0, 1.0),
+            Part::YMin => (1, -1.0),
+            Part::YMax => (1, 1.0),
+            Part::ZMin => (2, -1.0),
+            _ => (2, 1.0),
+        };
+        unit(&ExactVector::new(axes.col(axis) * side))
+    }
+
+    fn truly_contains(&self, point: DVec3) -> bool {
+        let half_widths = self.half_widths().to_array().map(exact);
+        let from_center = &ExactVector::new(point) - &ExactVector::new(self.center());
+        along_axes(self, &from_center)
+            .iter()
+            .zip(half_widths)
+            .all(|(own, half_width)| -&half_width <= *own && *own <= half_width)
+    }
+}
+
+impl TrueOperand for Cuboid {
+    fn leaf(&self) -> Leaf {
+        let center = ExactVector::new(self.center());
+        let axes = self.orientation().world_from_object();
+        let parts = [
+            [Part::XMin, Part::XMax],
+            [Part::YMin, Part::YMax],
+            [Part::ZMin, Part::ZMax],
+        ];
+        let mut sheets = Vec::new();
+        for (axis, parts) in parts.into_iter().enumerate() {
+            let half_width = exact(self.half_widths()[axis]);
+            for (part, side) in parts.into_iter().zip([-1.0, 1.0]) {
+                let normal = ExactVector::new(axes.col(axis) * side);
+                let offset = normal.dot(&center) + &half_width;
+                sheets.push(Sheet::plane(&normal, &offset, Some(part)));
+            }
+        }
+        Leaf::within(sheets)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use cyltrace::math::Orientation;
-    use glam::DVec3;
 
     /// Both ends, and the face that the line lies in.
     type Answer = ([(f64, Part); 2], Option<Part>);
@@ -218,7 +250,7 @@ mod tests {
         let cuboid = Cuboid::new(DVec3::ONE, DVec3::splat(0.5), Orientation::IDENTITY).unwrap();
         let gap = |x: f64| {
             let ray = Ray::new(DVec3::new(x, 1.25, -7.0), DVec3::new(0.0, 0.0, 1.0));
-            cuboid_gap(&cuboid, &ray)
+            TrueSolid::gap(&cuboid, &ray)
         };
         assert_eq!(gap(1.5), 0.0);
         let near = gap(1.5 + 1e-9);

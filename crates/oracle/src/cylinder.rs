@@ -14,7 +14,7 @@
 //! These are the dot products of the textbook, which lose everything in
 //! floating point and nothing here. A root is on the wall if
 //! `0 <= a·x + t a·d <= a·a`; at equality it is on a rim, and belongs to the
-//! disk if there is one. A disk is met where `a·x + t a·d` is 0 or `a·a`, if
+//! disk if there is one. A disk is hit where `a·x + t a·d` is 0 or `a·a`, if
 //! the point is within `radius` of the disk's middle. A ray within the plane of
 //! a disk, or along the wall, touches the surface over an interval of `t`: its
 //! ends and the start of the range are listed.
@@ -154,7 +154,7 @@ impl Problem {
     }
 
     /// The part of the surface at a point of the closed wall at which
-    /// `a·x + t a·d` compares with 0 and with `a·a` as told.
+    /// `a·x + t a·d` compares with 0 and with `a·a` as given.
     fn part_at(&self, to_p0: Ordering, to_p1: Ordering) -> Option<Part> {
         match (to_p0, to_p1) {
             (Ordering::Less, _) | (_, Ordering::Greater) => None,

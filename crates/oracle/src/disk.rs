@@ -6,8 +6,14 @@
 
 use std::cmp::Ordering;
 
+use glam::DVec3;
+
+use super::any::TrueSolid;
 use super::change::least_change;
 use super::chord::{TrueChord, TrueEnd, in_ball};
+use super::composed::{Leaf, TrueOperand};
+use super::cylinder::TrueHit;
+use super::normal::unit;
 use super::number::{Exact, ExactVector, Surd, exact, sign, vector_of, zero};
 use super::ray::ExactRay;
 use cyltrace::math::Ray;
@@ -47,45 +53,51 @@ pub fn disk_chord(disk: &Disk, ray: &ExactRay) -> Option<TrueChord> {
     })
 }
 
-/// Whether the closed disk holds a point.
-///
-/// # Panics
-/// When the point is not finite.
-#[must_use]
-pub fn disk_holds(disk: &Disk, point: glam::DVec3) -> bool {
-    let x = &ExactVector::new(point) - &ExactVector::new(disk.center());
-    let radius = exact(disk.radius());
-    ExactVector::new(disk.normal()).dot(&x) == zero() && x.dot(&x) <= &radius * &radius
+impl TrueSolid for Disk {
+    fn hits(&self, ray: &ExactRay) -> Vec<TrueHit> {
+        disk_chord(self, ray).map_or(Vec::new(), |chord| chord.hits(ray))
+    }
+
+    fn gap(&self, ray: &Ray) -> f64 {
+        // What makes the line go through the rim or brings the origin to the plane.
+        assert!(
+            ray.is_valid(),
+            "a gap is of a valid ray, and this is {ray:?}"
+        );
+        let mut numbers = vec![exact(self.radius())];
+        for vector in [self.center(), self.normal(), ray.origin, ray.direction] {
+            numbers.extend(vector.to_array().map(exact));
+        }
+        least_change(numbers, |numbers: &[Exact]| {
+            let [center, n, origin, d] = [1, 4, 7, 10].map(|first| vector_of(&numbers[first..]));
+            let x = &origin - &center;
+            let (height, slope) = (n.dot(&x), n.dot(&d));
+            let point = &x.times(&slope) - &d.times(&height);
+            let reach = &numbers[0] * slope;
+            vec![point.dot(&point) - &reach * &reach, height]
+        })
+    }
+
+    fn outward_normal(&self, _: &Ray, _: &TrueHit) -> Option<DVec3> {
+        unit(&ExactVector::new(self.normal()))
+    }
+
+    fn truly_contains(&self, point: DVec3) -> bool {
+        let x = &ExactVector::new(point) - &ExactVector::new(self.center());
+        let radius = exact(self.radius());
+        ExactVector::new(self.normal()).dot(&x) == zero() && x.dot(&x) <= &radius * &radius
+    }
 }
 
-/// The least change, the same relative change for every number of the case, after
-/// which its answer may be another: to first order, that which makes the line go
-/// through the rim or brings the origin to the plane. Events that are out of the ray's range count too, so
-/// that it is a lower bound.
-///
-/// # Panics
-/// When the ray is not valid.
-#[must_use]
-pub fn disk_gap(disk: &Disk, ray: &Ray) -> f64 {
-    assert!(ray.is_valid(), "the gap was asked for of {ray:?}");
-    let mut numbers = vec![exact(disk.radius())];
-    for vector in [disk.center(), disk.normal(), ray.origin, ray.direction] {
-        numbers.extend(vector.to_array().map(exact));
+impl TrueOperand for Disk {
+    fn leaf(&self) -> Leaf {
+        panic!("a disk has no inside and composes nothing")
     }
-    least_change(numbers, |numbers: &[Exact]| {
-        let [center, n, origin, d] = [1, 4, 7, 10].map(|first| vector_of(&numbers[first..]));
-        let x = &origin - &center;
-        let (height, slope) = (n.dot(&x), n.dot(&d));
-        let point = &x.times(&slope) - &d.times(&height);
-        let reach = &numbers[0] * slope;
-        vec![point.dot(&point) - &reach * &reach, height]
-    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
 
     #[test]
     fn textbook_cases_have_their_known_answers() {
@@ -102,14 +114,17 @@ mod tests {
         assert_eq!(ends(rim + DVec3::Z * 1e-15, DVec3::X), None);
         let gap = |y| {
             let ray = Ray::new(DVec3::new(0.5, y, -3.0), DVec3::Z);
-            disk_gap(&Disk::new(DVec3::Z, DVec3::Z, 5.0).unwrap(), &ray)
+            TrueSolid::gap(&Disk::new(DVec3::Z, DVec3::Z, 5.0).unwrap(), &ray)
         };
         assert!(gap(0.5 * 99.0_f64.sqrt()) < 1e-15);
         let near = gap(0.5 * 99.0_f64.sqrt() + 1e-8);
         assert!(2e-10 < near && near < 2e-9, "{near:e}");
         assert!(gap(3.0) > 0.02);
-        assert!(disk_holds(&disk, rim));
-        assert!(!disk_holds(&disk, rim + DVec3::Z * 1e-15));
-        assert!(!disk_holds(&disk, rim.with_x(3.0_f64.next_up())));
+        assert!(TrueSolid::truly_contains(&disk, rim));
+        assert!(!TrueSolid::truly_contains(&disk, rim + DVec3::Z * 1e-15));
+        assert!(!TrueSolid::truly_contains(
+            &disk,
+            rim.with_x(3.0_f64.next_up())
+        ));
     }
 }

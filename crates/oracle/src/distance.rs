@@ -11,7 +11,7 @@ use cyltrace::solid::{Cylinder, Part};
 /// point's space: the distance to some point of the part, exact to f64.
 ///
 /// Two such points are tried: the nearest one as measured in the cylinder's own
-/// space, and the one that is met along the surface's normal in the point's
+/// space, and the one that is reached along the surface's normal in the point's
 /// space. Without a placement the first is the nearest; through one that
 /// stretches, the second is, to first order in the distance, unless it falls
 /// off the end of the part.

@@ -19,7 +19,7 @@
 //! ```
 //!
 //! An event needs all of its conditions at once: its gap is the greatest of
-//! theirs, 0 for one that holds. The gap of the case is the least of its
+//! theirs, 0 for one that is true. The gap of the case is the least of its
 //! events'. F is computed exactly and rounded; the derivatives and the
 //! positions of events along the ray are computed in f64, which a first-order
 //! measure has no need to exceed.
@@ -45,7 +45,10 @@ use cyltrace::solid::Cylinder;
 /// When the ray is not valid ([`Ray::is_valid`]).
 #[must_use]
 pub fn gap(cylinder: &Cylinder, ray: &Ray, hit: Option<&TrueHit>) -> f64 {
-    assert!(ray.is_valid(), "the gap was asked for of {ray:?}");
+    assert!(
+        ray.is_valid(),
+        "a gap is of a valid ray, and this is {ray:?}"
+    );
     let case = Case::new(cylinder, ray, hit.map(TrueHit::t_f64));
     let mut gap = case.tangency().min(case.rim(false)).min(case.rim(true));
     for end in [case.t_min, case.t_max] {

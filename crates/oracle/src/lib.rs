@@ -24,24 +24,21 @@ mod rounded_cone;
 mod sphere;
 mod taper;
 mod taper_points;
+mod true_cylinder;
 
 pub use affine::{ExactAffine, ExactMatrix};
 pub use any::{
-    first_hit_of_any, gap_of_any, hits_of_any, outward_normal_of_any, placed_hits_of_any,
+    TrueSolid, first_hit_of_any, gap_of_any, hits_of_any, outward_normal_of_any,
+    placed_hits_of_any, truth,
 };
 pub use chord::TrueChord;
 pub use composed::{ComposedHit, ComposedTruth, Face};
-pub use cone::{cone_gap, cone_hits};
-pub use cuboid::{cuboid_chord, cuboid_gap, cuboid_holds};
+pub use cuboid::cuboid_chord;
 pub use cylinder::{CylinderTruth, TrueHit, first_hit, placed_first_hit};
-pub use disk::{disk_chord, disk_gap, disk_holds};
+pub use disk::disk_chord;
 pub use distance::distance_to_part;
 pub use gap::gap;
-pub use normal::outward_normal;
 pub use number::{Exact, ExactVector, exact, to_f64};
 pub use ray::ExactRay;
-pub use rounded_cone::{rounded_cone_gap, rounded_cone_hits};
-pub use sphere::{sphere_chord, sphere_gap, sphere_holds};
-pub use taper_points::{
-    cone_holds, distance_to_cone, distance_to_rounded_cone, rounded_cone_holds,
-};
+pub use sphere::sphere_chord;
+pub use taper_points::{distance_to_cone, distance_to_rounded_cone};

@@ -1,4 +1,4 @@
-//! A ray in exact numbers, in the space of the solid that it is asked about.
+//! A ray in exact numbers, in the space of its solid.
 //!
 //! A placement `x -> L x + T` puts the solid into the ray's space. Its inverse is
 //! the adjugate of L over the determinant, so that with `s = ±det L > 0` the point
@@ -39,7 +39,10 @@ impl ExactRay {
     /// When the ray is not valid ([`Ray::is_valid`]).
     #[must_use]
     pub fn new(ray: &Ray) -> Self {
-        assert!(ray.is_valid(), "the oracle was asked about {ray:?}");
+        assert!(
+            ray.is_valid(),
+            "the oracle takes valid rays, and this is {ray:?}"
+        );
         Self {
             origin: ExactVector::new(ray.origin),
             direction: ExactVector::new(ray.direction),

@@ -17,7 +17,7 @@ use glam::DVec3;
 use super::number::{Exact, ExactVector, Surd, exact, sign, zero};
 use super::ray::ExactRay;
 
-/// What of a line is asked for.
+/// What a line is examined for.
 pub(super) struct Taper {
     pub a: ExactVector,
     pub x: ExactVector,

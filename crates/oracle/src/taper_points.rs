@@ -1,4 +1,4 @@
-//! Points and tapered solids: which solid holds a point, and how far it is from a
+//! Points and tapered solids: which solid contains a point, and how far it is from a
 //! part of the surface.
 //!
 //! A point is seen in the half-plane of the axis: its height `y = a·q / |a|` and its
@@ -6,42 +6,13 @@
 //! segment from `(0, r0)` to `(|a|, r1)`. That of a rounded cone is the segment
 //! between the two circles' points that have the same normal `(-Δ, √β) / |a|`.
 
-use std::cmp::Ordering;
-
 use glam::DVec3;
 
-use super::number::{Exact, exact, long, sign, to_f64, zero};
+use super::number::{Exact, exact, long, to_f64, zero};
 use super::ray::ExactRay;
 use super::taper::{Taper, numbers_of};
 use cyltrace::math::Ray;
 use cyltrace::solid::{Cone, Part, RoundedCone};
-
-/// Whether the closed cone holds a point.
-#[must_use]
-pub fn cone_holds(cone: &Cone, point: DVec3) -> bool {
-    let taper = of(
-        [cone.p0(), cone.p1()],
-        [cone.radius0(), cone.radius1()],
-        point,
-        false,
-    );
-    sign(&taper.ax) != Ordering::Less
-        && taper.ax <= taper.aa
-        && sign(&taper.wall().c) != Ordering::Greater
-}
-
-/// Whether the closed rounded cone holds a point.
-#[must_use]
-pub fn rounded_cone_holds(solid: &RoundedCone, point: DVec3) -> bool {
-    let radii = [solid.radius0(), solid.radius1()];
-    let taper = of([solid.p0(), solid.p1()], radii, point, true);
-    let [r0, r1] = radii.map(exact);
-    let above = &taper.ax + &r0 * &taper.delta;
-    let ball = |share, radius| sign(&taper.ball(share, radius).c) != Ordering::Greater;
-    let is_hull = sign(&taper.beta) == Ordering::Greater;
-    let is_between = is_hull && sign(&above) != Ordering::Less && above <= taper.beta;
-    ball(0.0, &r0) || ball(1.0, &r1) || is_between && sign(&taper.wall().c) != Ordering::Greater
-}
 
 /// The distance of a point from a part of a cone.
 #[must_use]
@@ -83,7 +54,7 @@ pub fn distance_to_rounded_cone(solid: &RoundedCone, part: Part, point: DVec3) -
 }
 
 /// The solid and the point, in the place of a ray's origin.
-fn of(ends: [DVec3; 2], radii: [f64; 2], point: DVec3, touches_balls: bool) -> Taper {
+pub(super) fn of(ends: [DVec3; 2], radii: [f64; 2], point: DVec3, touches_balls: bool) -> Taper {
     let ray = ExactRay::new(&Ray::new(point, DVec3::X));
     Taper::new(&numbers_of(ends, radii, &ray), touches_balls)
 }
@@ -125,6 +96,7 @@ impl Flat {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::TrueSolid;
     use cyltrace::solid::Caps;
 
     #[test]
@@ -135,9 +107,12 @@ mod tests {
         assert_eq!(at(Part::Side, 3.0 + 4.0, 3.0), 5.0);
         assert_eq!(at(Part::Side, 0.0, 9.0), 5.0);
         assert_eq!(at(Part::Cap0, 2.0, -7.0), 7.0);
-        assert!(cone_holds(&cone, DVec3::new(1.5, 0.0, 2.0)));
-        assert!(!cone_holds(&cone, DVec3::new(1.5_f64.next_up(), 0.0, 2.0)));
-        assert!(!cone_holds(&cone, DVec3::new(0.0, 0.0, 5.0)));
+        assert!(TrueSolid::truly_contains(&cone, DVec3::new(1.5, 0.0, 2.0)));
+        assert!(!TrueSolid::truly_contains(
+            &cone,
+            DVec3::new(1.5_f64.next_up(), 0.0, 2.0)
+        ));
+        assert!(!TrueSolid::truly_contains(&cone, DVec3::new(0.0, 0.0, 5.0)));
     }
 
     #[test]
@@ -150,9 +125,15 @@ mod tests {
         assert!((at(Part::Side, 3.2 + 8.0, 2.4 + 6.0) - 10.0).abs() < 1e-14);
         assert_eq!(at(Part::Cap0, 0.0, -6.0), 2.0);
         assert_eq!(at(Part::Cap1, 0.0, 7.0), 1.0);
-        assert!(rounded_cone_holds(&solid, DVec3::Z * 6.0));
-        assert!(!rounded_cone_holds(&solid, DVec3::Z * 6.0_f64.next_up()));
-        assert!(rounded_cone_holds(&solid, DVec3::new(3.1, 0.0, 2.4)));
-        assert!(!rounded_cone_holds(&solid, DVec3::new(3.3, 0.0, 2.4)));
+        assert!(TrueSolid::truly_contains(&solid, DVec3::Z * 6.0));
+        assert!(!TrueSolid::truly_contains(
+            &solid,
+            DVec3::Z * 6.0_f64.next_up()
+        ));
+        assert!(TrueSolid::truly_contains(&solid, DVec3::new(3.1, 0.0, 2.4)));
+        assert!(!TrueSolid::truly_contains(
+            &solid,
+            DVec3::new(3.3, 0.0, 2.4)
+        ));
     }
 }

@@ -16,7 +16,7 @@ mod unfinished;
 pub use csv::csv;
 pub use figure::{Figure, Mark, Series, Symbol};
 pub use film::Film;
-pub use html::{Page, escape};
+pub use html::Page;
 pub use new_file::{FileError, NewFile, followed};
 pub use picture::{Format, Output, OutputError, png_bytes};
 pub use srgb::encode as srgb_encode;

@@ -13,6 +13,7 @@ use super::unfinished::UnfinishedFile;
 
 /// Why a file cannot be written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum FileError {
     /// The directory of the file does not exist, or is no directory.
     #[error("cannot write {path:?}: there is no directory {directory:?}")]

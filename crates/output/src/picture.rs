@@ -9,6 +9,7 @@ use super::{FileError, Film, NewFile, srgb};
 
 /// Why a picture cannot be written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum OutputError {
     /// The file name does not say PNG or EXR.
     #[error("cannot tell the picture's format from {path:?}: its name must end in .png or .exr")]
@@ -31,6 +32,7 @@ pub enum OutputError {
 
 /// How a picture is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Format {
     /// 8 bits a channel, sRGB, clamped to [0, 1] without tone mapping.
     Png,

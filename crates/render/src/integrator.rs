@@ -19,7 +19,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Lights, PixelSampler};
+use super::Lights;
+use super::sampler::PixelSampler;
 use cyltrace::math::Ray;
 use cyltrace::scene::{AimedCamera, Integrator, Material};
 use cyltrace::tracer::{HitFields, PartialHit, Tracer};

@@ -1,6 +1,6 @@
 //! From a scene to a picture: camera, samples, light and image files.
 //!
-//! [`render`] makes a [`Film`] of linear colours, [`Output`] writes it. The
+//! [`render()`] makes a [`Film`] of linear colors, [`cyltrace_output::Output`] writes it. The
 //! same scene, settings and seed give the same bytes for any number of
 //! threads.
 
@@ -17,7 +17,6 @@ use rayon::ThreadPool;
 pub use cyltrace::scene::GREATEST_PIXELS;
 pub use integrator::RayCounts;
 pub use lights::{Lights, SunLight};
-pub use sampler::PixelSampler;
 
 use cyltrace::scene::{self, AimedCamera, Integrator, Scene, ViewVolume};
 use cyltrace::tracer::Tracer;
@@ -91,6 +90,7 @@ pub struct Picture {
 
 /// Why there is no picture.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RenderError {
     /// The size is zero or too large.
     #[error(

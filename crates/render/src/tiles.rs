@@ -9,7 +9,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::integrator::{Batch, Sample, View};
-use super::{PixelSampler, RayCounts, RenderError, Settings};
+use super::sampler::PixelSampler;
+use super::{RayCounts, RenderError, Settings};
 use cyltrace_output::Film;
 
 /// Edge of a tile in pixels: near rays share what they read, and even a small

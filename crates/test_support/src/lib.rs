@@ -10,7 +10,9 @@ use std::sync::Arc;
 
 use cyltrace::embree::MaxIsa;
 use cyltrace::math::{Random, Ray};
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene};
+use cyltrace::scene::{
+    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, Solids,
+};
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{BuildTime, Layout, Options};
 use glam::{DAffine3, DMat3, DVec3};
@@ -34,7 +36,7 @@ pub fn bits(ray: &Ray) -> String {
         .join(" ")
 }
 
-/// A scene of prototypes, the first of which is the root, and nothing else.
+/// A scene of prototypes and nothing else; the first is the root.
 pub fn scene_of(prototypes: Vec<Prototype>) -> Arc<Scene> {
     Arc::new(Scene::new(prototypes))
 }
@@ -105,7 +107,7 @@ pub struct Nested {
     pub scene: Arc<Scene>,
     /// How far the outermost is moved, in its own extents.
     pub translation: f64,
-    /// The placements of the last prototype, which holds all cylinders, in the
+    /// The placements of the last prototype, which contains all cylinders, in the
     /// root.
     images: Vec<DAffine3>,
 }
@@ -113,7 +115,7 @@ pub struct Nested {
 impl Nested {
     /// The cylinders that are placed.
     pub fn cylinders(&self) -> Vec<CylinderRecord> {
-        self.scene.prototypes[3].cylinders.iter().collect()
+        self.scene.prototypes[3].solids.cylinders.iter().collect()
     }
 
     /// Where they are placed.
@@ -123,7 +125,7 @@ impl Nested {
 }
 
 /// A scale from 1e-4 to 1e4, every other time a different one for each axis, any
-/// rotations and a translation of so many times the scale.
+/// rotations and a translation of this many times the scale.
 pub fn random_placement(random: &mut Random, translation: f64) -> DAffine3 {
     let scale = random.log_uniform(1e-4, 1e4);
     let stretch = match random.below(2) {
@@ -143,7 +145,7 @@ pub fn nested_placements(seed: u64) -> Vec<Nested> {
     let mut place =
         |of: u32, translation: f64| placed(of, random_placement(&mut random, translation));
     let leaf = Prototype {
-        cylinders: cylinders_in_a_box(seed, 100).into(),
+        solids: Solids::of_cylinders(cylinders_in_a_box(seed, 100)),
         ..Default::default()
     };
     let middle = placing((0..5).map(|_| place(3, 3.0)).collect());

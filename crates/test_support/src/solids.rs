@@ -1,7 +1,7 @@
 //! Solids of all kinds, mixed, and their truth.
 
 use cyltrace::math::{Orientation, Random, Ray};
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Prototype, SolidRecord};
+use cyltrace::scene::{MaterialIndex, Prototype, SolidRecord};
 use cyltrace::solid::{
     AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, SolidKind, Sphere,
 };
@@ -40,26 +40,13 @@ pub fn any_solid(random: &mut Random, kind: u64, caps: Caps, is_turned: bool) ->
     }
 }
 
-/// Solids in their order, as a prototype holds them; their numbers count from 0.
+/// Solids in their order, as a prototype lists them; their numbers count from 0.
 pub fn prototype_of(solids: &[AnySolid]) -> Prototype {
     let mut prototype = Prototype::default();
-    let (mut cylinders, others) = (Vec::new(), &mut prototype.solids);
     for (number, solid) in (0..).zip(solids) {
-        let material = MaterialIndex(0);
-        match *solid {
-            AnySolid::Cylinder(one) => cylinders.push(CylinderRecord::new(&one, number, material)),
-            AnySolid::Cone(one) => others.cones.push(SolidRecord::new(one, number, material)),
-            AnySolid::RoundedCone(one) => {
-                others
-                    .rounded_cones
-                    .push(SolidRecord::new(one, number, material));
-            }
-            AnySolid::Sphere(one) => others.spheres.push(SolidRecord::new(one, number, material)),
-            AnySolid::Cuboid(one) => others.cuboids.push(SolidRecord::new(one, number, material)),
-            AnySolid::Disk(one) => others.disks.push(SolidRecord::new(one, number, material)),
-        }
+        let record = SolidRecord::new(*solid, number, MaterialIndex(0));
+        prototype.solids.push(record).expect("f64 keeps it");
     }
-    prototype.cylinders = cylinders.into();
     prototype
 }
 
@@ -72,31 +59,6 @@ pub fn crowd(seed: u64, count: u64) -> Vec<AnySolid> {
             any_solid(&mut random, number % KINDS, caps, true)
         })
         .collect()
-}
-
-/// A cylinder as the cone with equal radii.
-fn as_cone(cylinder: &Cylinder) -> Cone {
-    let radius = cylinder.radius();
-    Cone::new(
-        cylinder.p0(),
-        cylinder.p1(),
-        radius,
-        radius,
-        cylinder.caps(),
-    )
-    .unwrap()
-}
-
-/// Whether a solid holds a point, in exact arithmetic.
-pub fn truly_holds(solid: &AnySolid, point: DVec3) -> bool {
-    match solid {
-        AnySolid::Cylinder(one) => cyltrace_oracle::cone_holds(&as_cone(one), point),
-        AnySolid::Cone(one) => cyltrace_oracle::cone_holds(one, point),
-        AnySolid::RoundedCone(one) => cyltrace_oracle::rounded_cone_holds(one, point),
-        AnySolid::Sphere(one) => cyltrace_oracle::sphere_holds(one, point),
-        AnySolid::Cuboid(one) => cyltrace_oracle::cuboid_holds(one, point),
-        AnySolid::Disk(one) => cyltrace_oracle::disk_holds(one, point),
-    }
 }
 
 /// A ray through the unit cube, from outside of it.

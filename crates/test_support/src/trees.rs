@@ -2,7 +2,7 @@
 
 use cyltrace::math::{Orientation, Random};
 use cyltrace::solid::{AnySolid, Caps, Composition, Cone, Cuboid, Cylinder, RoundedCone, Sphere};
-use cyltrace_oracle::{cone_holds, cuboid_holds, rounded_cone_holds, sphere_holds};
+use cyltrace_oracle::truth;
 use glam::DVec3;
 
 /// A seeded number that is a multiple of 1/4 if `is_coarse`.
@@ -74,16 +74,7 @@ pub fn draw_tree(
 /// Exact membership of a point that is on no leaf's boundary.
 pub fn holds(composition: &Composition, point: DVec3) -> bool {
     match composition {
-        Composition::Solid(AnySolid::Cylinder(solid)) => {
-            let (ends, radius) = ([solid.p0(), solid.p1()], solid.radius());
-            let cone = Cone::new(ends[0], ends[1], radius, radius, Caps::Both);
-            cone_holds(&cone.expect("a cone"), point)
-        }
-        Composition::Solid(AnySolid::Cone(solid)) => cone_holds(solid, point),
-        Composition::Solid(AnySolid::RoundedCone(solid)) => rounded_cone_holds(solid, point),
-        Composition::Solid(AnySolid::Sphere(solid)) => sphere_holds(solid, point),
-        Composition::Solid(AnySolid::Cuboid(solid)) => cuboid_holds(solid, point),
-        Composition::Solid(AnySolid::Disk(_)) => unreachable!("a disk has no inside"),
+        Composition::Solid(solid) => truth(solid).truly_contains(point),
         Composition::Union(parts) => parts.iter().any(|part| holds(part, point)),
         Composition::Intersection(parts) => parts.iter().all(|part| holds(part, point)),
         Composition::Difference(parts) => {

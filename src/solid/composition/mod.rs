@@ -12,7 +12,8 @@
 //! in none, and otherwise on the *boundary*. All queries follow from that:
 //!
 //! - `neighbourhood.rs`, with `across.rs`, decides what is around a point that is on the
-//!   surfaces of several leaves; `piece.rs` and `bend.rs` say what these are there;
+//!   surfaces of several leaves; `piece.rs` and `bend.rs` describe these there, and `operand/`
+//!   has those of each kind of solid;
 //! - `first_order.rs` is what it takes from normals: `turned.rs` compares them in f64, for
 //!   points of lines, `planes.rs` exactly, for stated points;
 //! - `locate` below uses it for points as stated;
@@ -28,7 +29,7 @@ mod first_order;
 mod leaf;
 mod line;
 mod neighbourhood;
-mod normal;
+mod operand;
 mod piece;
 mod planes;
 mod turned;

@@ -32,7 +32,9 @@ use smallvec::SmallVec;
 
 use super::super::spawn::SOLVER_DISPLACEMENT;
 use super::bend::Bend;
-use crate::solid::{AnySolid, Cuboid, Part, RoundedCone};
+use super::operand::OperandSurface;
+use crate::solid::{AnySolid, Part};
+use crate::with_solid;
 
 /// A piece of a leaf's surface at a point.
 #[derive(Clone, Copy, Debug)]
@@ -78,23 +80,11 @@ pub(super) struct Viewed<'a> {
 impl Viewed<'_> {
     /// Adds the pieces that pass through the point.
     pub fn add_pieces(&self, pieces: &mut Pieces) {
-        match self.solid {
-            AnySolid::Cylinder(one) => {
-                self.add_cone(one.p1() - one.p0(), [one.radius(); 2], pieces);
-            }
-            AnySolid::Cone(one) => {
-                self.add_cone(one.p1() - one.p0(), [one.radius0(), one.radius1()], pieces);
-            }
-            AnySolid::RoundedCone(one) => self.add_rounded_cone(one, pieces),
-            AnySolid::Sphere(one) => self.add_sphere(Part::Side, DVec3::ZERO, one.radius(), pieces),
-            AnySolid::Cuboid(one) => self.add_cuboid(one, pieces),
-            // It has no inside.
-            AnySolid::Disk(_) => {}
-        }
+        with_solid!(self.solid, solid => solid.add_pieces(self, pieces));
     }
 
     /// Whether a part passes through the point that is at this distance from it.
-    fn passes(&self, part: Part, distance: f64) -> bool {
+    pub fn passes(&self, part: Part, distance: f64) -> bool {
         match self.nearness {
             Nearness::Within {
                 distance: least,
@@ -105,11 +95,11 @@ impl Viewed<'_> {
     }
 
     /// δ of the solid alone.
-    fn own_displacement(&self) -> f64 {
+    pub fn own_displacement(&self) -> f64 {
         SOLVER_DISPLACEMENT * (self.solid.anchor().length() + self.solid.size())
     }
 
-    fn flat(&self, part: Part, normal: DVec3, turned: f64) -> Piece {
+    pub fn flat(&self, part: Part, normal: DVec3, turned: f64) -> Piece {
         Piece {
             leaf: self.leaf,
             part,
@@ -121,140 +111,13 @@ impl Viewed<'_> {
         }
     }
 
-    fn add_cuboid(&self, cuboid: &Cuboid, pieces: &mut Pieces) {
-        const FACES: [[Part; 2]; 3] = [
-            [Part::XMin, Part::XMax],
-            [Part::YMin, Part::YMax],
-            [Part::ZMin, Part::ZMax],
-        ];
-        let frame = cuboid.orientation().world_from_object();
-        for (axis, faces) in FACES.into_iter().enumerate() {
-            let (normal, half_width) = (frame.col(axis), cuboid.half_widths()[axis]);
-            let height = self.from_anchor.dot(normal);
-            for (part, side) in faces.into_iter().zip([-1.0, 1.0]) {
-                if self.passes(part, (side * height - half_width).abs()) {
-                    pieces.push(self.flat(part, normal * side, SOLVER_DISPLACEMENT));
-                }
-            }
-        }
-    }
-
-    fn add_sphere(&self, part: Part, center: DVec3, radius: f64, pieces: &mut Pieces) {
-        let normal = (self.from_anchor - center).normalize();
-        let (around, along) = normal.any_orthonormal_pair();
-        let curvature = 1.0 / radius;
-        pieces.push(Piece {
-            bend: Bend::new(around, along, curvature, [curvature; 2]),
-            ..self.flat(part, normal, self.displacement / radius)
-        });
-    }
-
     /// An apex from which the solid reaches along `axis`; the angle between them has the
     /// cosine.
-    fn apex(&self, part: Part, axis: DVec3, cosine: f64, turned: f64) -> Piece {
+    pub fn apex(&self, part: Part, axis: DVec3, cosine: f64, turned: f64) -> Piece {
         Piece {
             cosine: -cosine,
             ..self.flat(part, -axis, turned)
         }
-    }
-
-    fn add_cone(&self, a: DVec3, [r0, r1]: [f64; 2], pieces: &mut Pieces) {
-        let x = self.from_anchor;
-        let length = a.length();
-        let axis = a / length;
-        let turned = 2.0 * self.own_displacement() / length;
-        let slope = (r1 - r0) / length;
-        let cosine = 1.0 / libm::hypot(1.0, slope);
-        let height = x.dot(axis);
-        for (part, radius, from, out) in [
-            (Part::Cap0, r0, height.abs(), -axis),
-            (Part::Cap1, r1, (height - length).abs(), axis),
-        ] {
-            if !self.passes(part, from) {
-                continue;
-            }
-            if radius == 0.0 {
-                pieces.push(self.apex(part, -out, cosine, turned));
-                return;
-            }
-            pieces.push(self.flat(part, out, turned));
-        }
-        let radial = x - axis * height;
-        let (distance, radius) = (radial.length(), r0 + slope * height);
-        if self.passes(Part::Side, (distance - radius).abs() * cosine) {
-            let outward = radial / distance;
-            let curvature = cosine / radius;
-            let along = (axis + outward * slope) * cosine;
-            pieces.push(Piece {
-                bend: Bend::new(axis.cross(outward), along, curvature, [0.0; 2]),
-                ..self.flat(
-                    Part::Side,
-                    (outward - axis * slope) * cosine,
-                    turned + self.displacement * curvature,
-                )
-            });
-        }
-    }
-
-    fn add_rounded_cone(&self, solid: &RoundedCone, pieces: &mut Pieces) {
-        let x = self.from_anchor;
-        let (r0, r1) = (solid.radius0(), solid.radius1());
-        let a = solid.p1() - solid.p0();
-        let Some(taper) = solid.taper() else {
-            // One ball contains the other.
-            return if r0 >= r1 {
-                self.add_sphere(Part::Cap0, DVec3::ZERO, r0, pieces);
-            } else {
-                self.add_sphere(Part::Cap1, a, r1, pieces);
-            };
-        };
-        let (length, delta, beta) = (a.length(), r1 - r0, taper.beta());
-        let axis = a / length;
-        let (cosine, sine) = (beta.sqrt() / length, delta / length);
-        // From the first seam, and to the second, along the axis.
-        let height = x.dot(axis);
-        let from_first = height + r0 * sine;
-        let to_second = beta / length - from_first;
-        let is_wall = self.passes(Part::Side, (-from_first).max(-to_second));
-        for (part, from_seam, center, radius, inward) in [
-            (Part::Cap0, from_first, DVec3::ZERO, r0, axis),
-            (Part::Cap1, to_second, a, r1, -axis),
-        ] {
-            if !self.passes(part, from_seam) {
-                continue;
-            }
-            if radius == 0.0 {
-                let turned = 2.0 * self.own_displacement() / length;
-                pieces.push(self.apex(part, inward, cosine, turned));
-                return;
-            }
-            let start = pieces.len();
-            self.add_sphere(part, center, radius, pieces);
-            if is_wall {
-                let piece = &mut pieces[start];
-                let around = axis.cross(piece.normal).normalize();
-                let along = around.cross(piece.normal).normalize();
-                let along = if along.dot(inward) > 0.0 {
-                    along
-                } else {
-                    -along
-                };
-                let curvature = 1.0 / radius;
-                let lengthwise = [curvature, 0.0];
-                piece.to_wall = Some(along);
-                piece.bend = Bend::new(around, along, curvature, lengthwise);
-            }
-            return;
-        }
-        let radial = x - axis * height;
-        let outward = radial / radial.length();
-        let radius = r0 + delta * (from_first * length / beta);
-        let along = axis * cosine + outward * sine;
-        let turned = 2.0 * self.own_displacement() / length + self.displacement / radius;
-        pieces.push(Piece {
-            bend: Bend::new(axis.cross(outward), along, 1.0 / radius, [0.0; 2]),
-            ..self.flat(Part::Side, outward * cosine - axis * sine, turned)
-        });
     }
 }
 

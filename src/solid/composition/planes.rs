@@ -1,7 +1,7 @@
 //! First order from exact normals.
 //!
 //! Pieces with tangent planes through one point divide the directions as their planes do. With
-//! an outward normal `n` of each ([`outward`](super::normal::outward)), of any length, all of
+//! an outward normal `n` of each ([`outward`](super::operand::outward)), of any length, all of
 //! that is signs of polynomials:
 //!
 //! - Two pieces are one group if `n1 × n2 = 0`.
@@ -26,7 +26,7 @@ use smallvec::SmallVec;
 use super::bend::Angles;
 use super::circle::Circle;
 use super::first_order::{FirstOrder, Place};
-use super::normal::{Vector, outward};
+use super::operand::{Vector, outward};
 use super::piece::Pieces;
 use crate::solid::AnySolid;
 use crate::solid::exact::{Big, Number, cross, dot, ratio, unit};

@@ -10,7 +10,7 @@ pub(super) mod wall;
 
 use glam::DVec3;
 
-use super::cylinder::disk_reach;
+use super::cylinder::{disk_reach, middle};
 use super::exact::{self, Expression, Number, difference, dot};
 use super::passing::Line;
 use super::quick::{Quick, Range};
@@ -117,17 +117,6 @@ impl Cone {
         } = self.ends;
         (radius0 == radius1).then(|| Cylinder::from_valid(p0, p1, radius0, Caps::Both))
     }
-
-    /// Whether a point of the boundary is on the surface of a part, exactly.
-    pub(super) fn is_on(&self, part: Part, point: DVec3) -> bool {
-        let limit = match part {
-            Part::Cap0 => Limit::Disk0,
-            Part::Cap1 => Limit::Disk1,
-            _ => Limit::Wall,
-        };
-        let cone = self;
-        exact::sign(&Beyond { cone, point, limit }).is_eq()
-    }
 }
 
 impl ConvexSolid for Cone {
@@ -150,6 +139,14 @@ impl ConvexSolid for Cone {
 
     fn anchor(&self) -> DVec3 {
         self.ends.p0
+    }
+
+    fn center(&self) -> DVec3 {
+        middle(self.p0(), self.p1())
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius0().max(self.radius1())
     }
 
     fn caps(&self) -> Caps {
@@ -203,6 +200,16 @@ impl ConvexSolid for Cone {
             Location::Outside => along,
             _ => along.min(within(Limit::Wall)),
         }
+    }
+
+    fn is_on(&self, part: Part, point: DVec3) -> bool {
+        let limit = match part {
+            Part::Cap0 => Limit::Disk0,
+            Part::Cap1 => Limit::Disk1,
+            _ => Limit::Wall,
+        };
+        let cone = self;
+        exact::sign(&Beyond { cone, point, limit }).is_eq()
     }
 
     fn size(&self) -> f64 {

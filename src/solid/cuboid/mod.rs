@@ -133,6 +133,14 @@ impl ConvexSolid for Cuboid {
         self.center
     }
 
+    fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    fn radius(&self) -> f64 {
+        self.half_widths.min_element()
+    }
+
     #[inline]
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
         chord::chord(self, from_anchor, direction)
@@ -189,15 +197,7 @@ impl ConvexSolid for Cuboid {
         })
     }
 
-    fn size(&self) -> f64 {
-        // The diagonal, and what `bounds` adds to it.
-        2.0 * self.half_widths.length() * (1.0 + 64.0 * UNIT_ROUNDOFF)
-    }
-}
-
-impl Cuboid {
-    /// Whether a point is in the plane of a face, exactly.
-    pub(super) fn is_on(&self, part: Part, point: DVec3) -> bool {
+    fn is_on(&self, part: Part, point: DVec3) -> bool {
         let (axis, is_upper) = face(part);
         sign(&Height {
             cuboid: self,
@@ -208,6 +208,13 @@ impl Cuboid {
         .is_eq()
     }
 
+    fn size(&self) -> f64 {
+        // The diagonal, and what `bounds` adds to it.
+        2.0 * self.half_widths.length() * (1.0 + 64.0 * UNIT_ROUNDOFF)
+    }
+}
+
+impl Cuboid {
     /// Whether a point is between the planes of an axis. Rounded numbers, which are
     /// off by less than 6 u of their terms, decide where they do by 2^-48.
     fn locate_along(&self, axis: usize, point: DVec3) -> Location {

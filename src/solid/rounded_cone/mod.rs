@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::cone::Ends;
 use super::cone::wall::{Fit, Measures, Taper};
+use super::cylinder::middle;
 use super::exact::{self, Expression, Number, difference, dot};
 use super::passing::Line;
 use super::quick::{Quick, Range};
@@ -107,24 +108,6 @@ impl RoundedCone {
             & from_p1.passes_ball(radius1)
             & from_p0.passes_wall(&self.ends.taper(Fit::Balls))
     }
-
-    /// Whether a point of the boundary is on the surface of a part, exactly: a seam is on
-    /// that of its sphere and of the wall. Neither ball contains the other.
-    pub(super) fn is_on(&self, part: Part, point: DVec3) -> bool {
-        let beyond = |limit| {
-            let solid = self;
-            exact::sign(&Beyond {
-                solid,
-                point,
-                limit,
-            })
-        };
-        match part {
-            Part::Cap0 => beyond(Limit::Seam0).is_ge(),
-            Part::Cap1 => beyond(Limit::Seam1).is_ge(),
-            _ => beyond(Limit::Seam0).is_le() && beyond(Limit::Seam1).is_le(),
-        }
-    }
 }
 
 impl ConvexSolid for RoundedCone {
@@ -149,6 +132,14 @@ impl ConvexSolid for RoundedCone {
 
     fn anchor(&self) -> DVec3 {
         self.ends.p0
+    }
+
+    fn center(&self) -> DVec3 {
+        middle(self.p0(), self.p1())
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius0().max(self.radius1())
     }
 
     fn chord(&self, from_anchor: DVec3, direction: DVec3) -> Option<Chord> {
@@ -210,6 +201,24 @@ impl ConvexSolid for RoundedCone {
         match between {
             Location::Outside => balls,
             _ => balls.max(between.min(within(Limit::Wall))),
+        }
+    }
+
+    /// A seam is on the surface of its sphere and of the wall. Neither ball contains the
+    /// other.
+    fn is_on(&self, part: Part, point: DVec3) -> bool {
+        let beyond = |limit| {
+            let solid = self;
+            exact::sign(&Beyond {
+                solid,
+                point,
+                limit,
+            })
+        };
+        match part {
+            Part::Cap0 => beyond(Limit::Seam0).is_ge(),
+            Part::Cap1 => beyond(Limit::Seam1).is_ge(),
+            _ => beyond(Limit::Seam0).is_le() && beyond(Limit::Seam1).is_le(),
         }
     }
 

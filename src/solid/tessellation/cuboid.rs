@@ -5,8 +5,15 @@
 
 use glam::DVec3;
 
+use super::{Fit, Outline, Tessellated};
 use crate::math::UNIT_ROUNDOFF;
 use crate::solid::Cuboid;
+
+impl Tessellated for Cuboid {
+    fn outline(&self, _: u32, _: Fit) -> Outline {
+        Outline::Cuboid(*self)
+    }
+}
 
 /// The corners. Bit i of a corner's number says on which side of axis i it is.
 pub(super) fn vertices(cuboid: &Cuboid) -> Vec<DVec3> {

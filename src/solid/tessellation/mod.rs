@@ -42,6 +42,7 @@ pub use prism::{inscribed_prism, prism_size, sagitta};
 use glam::DVec3;
 
 use super::{AnySolid, Cuboid};
+use crate::with_solid;
 use profile::Profile;
 
 /// Fewest sides of a prism, and of any mesh that is turned about an axis.
@@ -108,7 +109,13 @@ enum Outline {
     Cuboid(Cuboid),
 }
 
-/// What the mesh of this one is made from.
+/// A kind of solid that has meshes.
+trait Tessellated {
+    /// What its mesh of `segments` sides is made from.
+    fn outline(&self, segments: u32, fit: Fit) -> Outline;
+}
+
+/// As [`Tessellated::outline`], of a solid of any kind.
 ///
 /// # Panics
 /// When there are fewer than 3 segments.
@@ -117,16 +124,7 @@ fn outline(solid: &AnySolid, segments: u32, fit: Fit) -> Outline {
         segments >= LEAST_SEGMENTS,
         "a mesh has at least {LEAST_SEGMENTS} sides, not {segments}"
     );
-    Outline::Turned(match solid {
-        AnySolid::Cylinder(cylinder) => profiles::of_cylinder(cylinder),
-        AnySolid::Cone(cone) => profiles::of_cone(cone),
-        AnySolid::RoundedCone(cone) => profiles::of_rounded_cone(cone, segments, fit),
-        AnySolid::Sphere(sphere) => {
-            profiles::of_ball(sphere.center(), sphere.radius(), segments, fit)
-        }
-        AnySolid::Disk(disk) => profiles::of_disk(disk),
-        AnySolid::Cuboid(cuboid) => return Outline::Cuboid(*cuboid),
-    })
+    with_solid!(solid, solid => solid.outline(segments, fit))
 }
 
 /// The mesh of a solid with `segments` sides around its axis, in the solid's own

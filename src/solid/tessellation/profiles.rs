@@ -41,58 +41,69 @@
 
 use glam::DVec3;
 
-use super::Fit;
 use super::profile::{Profile, Ring};
+use super::{Fit, Outline, Tessellated};
 use crate::math::{UNIT_ROUNDOFF, unit};
-use crate::solid::{Cone, Cylinder, Disk, RoundedCone};
+use crate::solid::{Cone, Cylinder, Disk, RoundedCone, Sphere};
 
 /// The wall of a cylinder with its disks.
-pub(super) fn of_cylinder(cylinder: &Cylinder) -> Profile {
-    let (radius, caps) = (cylinder.radius(), cylinder.caps());
-    of_cone(&Cone::from_valid(
-        cylinder.p0(),
-        cylinder.p1(),
-        radius,
-        radius,
-        caps,
-    ))
+impl Tessellated for Cylinder {
+    fn outline(&self, segments: u32, fit: Fit) -> Outline {
+        self.as_cone().outline(segments, fit)
+    }
 }
 
 /// The wall of a cone with its disks or its apex.
-pub(super) fn of_cone(cone: &Cone) -> Profile {
-    let ends = [(cone.p0(), cone.radius0()), (cone.p1(), cone.radius1())];
-    let rings = ends.iter().filter(|(_, radius)| *radius > 0.0);
-    let pole = |end: usize, has_disk: bool| {
-        let (point, radius) = ends[end];
-        (has_disk || radius == 0.0).then_some(point)
-    };
-    Profile {
-        axis: (cone.p1() - cone.p0()).normalize(),
-        rings: rings
-            .map(|&(center, radius)| Ring { center, radius })
-            .collect(),
-        start: pole(0, cone.caps().at_p0()),
-        end: pole(1, cone.caps().at_p1()),
-        deviation: 0.0,
-        error: 0.0,
+impl Tessellated for Cone {
+    fn outline(&self, _: u32, _: Fit) -> Outline {
+        let ends = [(self.p0(), self.radius0()), (self.p1(), self.radius1())];
+        let rings = ends.iter().filter(|(_, radius)| *radius > 0.0);
+        let pole = |end: usize, has_disk: bool| {
+            let (point, radius) = ends[end];
+            (has_disk || radius == 0.0).then_some(point)
+        };
+        Outline::Turned(Profile {
+            axis: (self.p1() - self.p0()).normalize(),
+            rings: rings
+                .map(|&(center, radius)| Ring { center, radius })
+                .collect(),
+            start: pole(0, self.caps().at_p0()),
+            end: pole(1, self.caps().at_p1()),
+            deviation: 0.0,
+            error: 0.0,
+        })
     }
 }
 
 /// A disk, whose rim is the beginning and whose middle is the end.
-pub(super) fn of_disk(disk: &Disk) -> Profile {
-    let (center, radius) = (disk.center(), disk.radius());
-    Profile {
-        axis: disk.normal().normalize(),
-        rings: vec![Ring { center, radius }],
-        start: None,
-        end: Some(center),
-        deviation: 0.0,
-        error: 0.0,
+impl Tessellated for Disk {
+    fn outline(&self, _: u32, _: Fit) -> Outline {
+        let (center, radius) = (self.center(), self.radius());
+        Outline::Turned(Profile {
+            axis: self.normal().normalize(),
+            rings: vec![Ring { center, radius }],
+            start: None,
+            end: Some(center),
+            deviation: 0.0,
+            error: 0.0,
+        })
+    }
+}
+
+impl Tessellated for Sphere {
+    fn outline(&self, segments: u32, fit: Fit) -> Outline {
+        Outline::Turned(of_ball(self.center(), self.radius(), segments, fit))
+    }
+}
+
+impl Tessellated for RoundedCone {
+    fn outline(&self, segments: u32, fit: Fit) -> Outline {
+        Outline::Turned(of_rounded_cone(self, segments, fit))
     }
 }
 
 /// A ball, whose axis is along z.
-pub(super) fn of_ball(center: DVec3, radius: f64, segments: u32, fit: Fit) -> Profile {
+fn of_ball(center: DVec3, radius: f64, segments: u32, fit: Fit) -> Profile {
     let half = |towards: DVec3| {
         let rings = rings_of(std::f64::consts::FRAC_PI_2, segments);
         let step = std::f64::consts::FRAC_PI_2 / (f64::from(rings) + 0.5);
@@ -102,7 +113,7 @@ pub(super) fn of_ball(center: DVec3, radius: f64, segments: u32, fit: Fit) -> Pr
 }
 
 /// Both balls of a rounded cone and the wall between them.
-pub(super) fn of_rounded_cone(cone: &RoundedCone, segments: u32, fit: Fit) -> Profile {
+fn of_rounded_cone(cone: &RoundedCone, segments: u32, fit: Fit) -> Profile {
     let ends = [(cone.p0(), cone.radius0()), (cone.p1(), cone.radius1())];
     let wall = cone.taper().and_then(|taper| Some((taper, unit(taper.a)?)));
     let Some((taper, axis)) = wall else {

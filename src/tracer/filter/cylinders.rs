@@ -73,7 +73,7 @@
 use glam::DVec3;
 
 use super::cell::{dot, greater, less};
-use super::{Cell, Filter, NearRay, Sheath, Sheathed};
+use super::{Cell, Filter, FilterOf, NearRay, Sheath, Sheathed};
 use crate::math::LANES;
 use crate::tracer::frame::Frame;
 
@@ -105,10 +105,8 @@ pub(crate) struct CylinderFilter {
 
 const _: () = assert!(size_of::<CylinderFilter>() == 64);
 
-impl CylinderFilter {
-    /// That of up to eight solids of a group with this frame, with a share of what has to
-    /// be added: less than all of it loses hits.
-    pub fn new<S: Sheathed>(solids: &[S], frame: &Frame, share: f64) -> Self {
+impl<S: Sheathed> FilterOf<S> for CylinderFilter {
+    fn new(solids: &[S], frame: &Frame, share: f64) -> Self {
         let cell = Cell::around(solids.iter().map(S::bounds), frame);
         let mut filter = Self {
             cell,
@@ -129,7 +127,9 @@ impl CylinderFilter {
         filter.r = filter.cell.keep_radii(radii, share);
         filter
     }
+}
 
+impl CylinderFilter {
     #[inline(always)]
     fn lane(&self, lane: usize, ray: &NearRay, apart: f32) -> Lane {
         let b = [

@@ -1,9 +1,11 @@
 //! What filters lose, for tests that draw solids and rays.
 
-use super::{HasFilter, survivors};
+use super::{FilterOf, survivors};
+use crate::for_each_solid;
 use crate::math::{Bounds, LANES, Ray};
 use crate::solid::AnySolid;
 use crate::tracer::frame::{Frame, LocalRay};
+use crate::tracer::kinds::TracedKind;
 
 /// What rays find of a block, solved in f64, and what its filter leaves of that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,12 +28,12 @@ impl FilterLosses {
     pub fn of(solids: &[AnySolid], whole: &Bounds, rays: &[Ray], share: f64) -> Self {
         assert!(solids.len() <= LANES, "a block has no more");
         macro_rules! of_kinds {
-            ($($kind:ident)*) => {
+            ($({ $type:ident $($rest:tt)* })*) => {
                 match solids {
                     [] => Self::default(),
-                    $([AnySolid::$kind(_), ..] => {
+                    $([AnySolid::$type(_), ..] => {
                         let alike = solids.iter().map(|one| match one {
-                            AnySolid::$kind(one) => *one,
+                            AnySolid::$type(one) => *one,
                             other => panic!("{other:?} beside {:?}", solids[0]),
                         });
                         Self::of_kind(&alike.collect::<Vec<_>>(), whole, rays, share)
@@ -39,12 +41,12 @@ impl FilterLosses {
                 }
             };
         }
-        of_kinds!(Cylinder Cone RoundedCone Sphere Cuboid Disk)
+        for_each_solid!(of_kinds)
     }
 
-    fn of_kind<S: HasFilter>(solids: &[S], whole: &Bounds, rays: &[Ray], share: f64) -> Self {
+    fn of_kind<S: TracedKind>(solids: &[S], whole: &Bounds, rays: &[Ray], share: f64) -> Self {
         let frame = Frame::new(whole);
-        let filter = S::filter_with(solids, &frame, share);
+        let filter = S::Filter::new(solids, &frame, share);
         let mut losses = Self::default();
         for ray in rays {
             let (t_min, t_max) = (ray.t_min, ray.t_max);

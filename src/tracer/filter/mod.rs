@@ -71,7 +71,6 @@ pub(crate) use spheres::SphereFilter;
 
 use crate::embree::Ray32;
 use crate::math::{LANES, LaneMask};
-use crate::solid::{ConvexSolid, Sphere};
 use crate::tracer::frame::Frame;
 
 /// The size of every filter: a cache line.
@@ -98,34 +97,11 @@ pub(crate) trait Filter: Send + Sync + 'static {
     }
 }
 
-/// A kind of solid that has a filter.
-pub(crate) trait HasFilter: ConvexSolid {
-    /// The copies of up to eight.
-    type Filter: Filter;
-
-    /// The filter of up to eight solids of a group with this frame.
-    fn filter(solids: &[Self], frame: &Frame) -> Self::Filter {
-        Self::filter_with(solids, frame, 1.0)
-    }
-
-    /// The same with a share of the margins that it needs: less than all of them lose hits.
-    fn filter_with(solids: &[Self], frame: &Frame, share: f64) -> Self::Filter;
-}
-
-impl<S: Sheathed> HasFilter for S {
-    type Filter = CylinderFilter;
-
-    fn filter_with(solids: &[Self], frame: &Frame, share: f64) -> CylinderFilter {
-        CylinderFilter::new(solids, frame, share)
-    }
-}
-
-impl HasFilter for Sphere {
-    type Filter = SphereFilter;
-
-    fn filter_with(solids: &[Self], frame: &Frame, share: f64) -> SphereFilter {
-        SphereFilter::new(solids, frame, share)
-    }
+/// The filter of a kind of solid.
+pub(crate) trait FilterOf<S>: Filter {
+    /// That of up to eight solids of a group with this frame, with a share of the margins that
+    /// it needs: less than all of them loses hits.
+    fn new(solids: &[S], frame: &Frame, share: f64) -> Self;
 }
 
 /// The lanes whose solids a ray may meet, as bits.

@@ -31,7 +31,7 @@
 //! Where the range is empty either answer is right.
 
 use super::cell::{LONGEST, dot, greater, less};
-use super::{Cell, Filter, NearRay};
+use super::{Cell, Filter, FilterOf, NearRay};
 use crate::math::LANES;
 use crate::solid::{ConvexSolid, Sphere};
 use crate::tracer::frame::Frame;
@@ -58,10 +58,8 @@ pub(crate) struct SphereFilter {
 
 const _: () = assert!(size_of::<SphereFilter>() == 64);
 
-impl SphereFilter {
-    /// That of up to eight spheres of a group with this frame, with a share of what has to
-    /// be added: less than all of it loses hits.
-    pub fn new(spheres: &[Sphere], frame: &Frame, share: f64) -> Self {
+impl FilterOf<Sphere> for SphereFilter {
+    fn new(spheres: &[Sphere], frame: &Frame, share: f64) -> Self {
         let bounds = spheres.iter().map(Sphere::bounds);
         let mut cell = Cell::around(bounds, frame);
         let units = f64::from(cell.units());

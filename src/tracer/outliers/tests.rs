@@ -8,7 +8,7 @@ use glam::{DAffine3, DVec3};
 use super::{Outlier, outliers};
 use crate::math::{Orientation, Random, Ray};
 use crate::scene::{
-    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, SolidRecord,
+    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, SolidRecord, Solids,
 };
 use crate::solid::{Caps, Cuboid, Cylinder, SolidKind, Sphere};
 use crate::tracer::{Options, Tracer};
@@ -51,7 +51,7 @@ fn callbacks(prototypes: Vec<Prototype>, center: DVec3) -> f64 {
 
 fn root(cylinders: Vec<CylinderRecord>) -> Prototype {
     Prototype {
-        cylinders: cylinders.into(),
+        solids: Solids::of_cylinders(cylinders),
         ..Prototype::default()
     }
 }

@@ -2,95 +2,64 @@
 //! each kind that it contains.
 
 use super::blocks::{Blocked, block_bytes};
-use super::cylinders::{Cylinders, KnownCylinders};
-use super::ends::{Capped, Ends, EndsKind, Mixed, Open};
+use super::group_solids::{GroupSolids, InPrototype, Records, Single};
 use super::members::Members;
-use super::prototype_ref::{PrototypeRef, SolidList};
-use super::solids::{Filtered, Single, Solids};
+use super::numbers::Numbers;
+use super::prototype_ref::PrototypeRef;
 use crate::embree::{self, SceneBuilder};
-use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, Sphere};
-use crate::tracer::filter::HasFilter;
+use crate::solid::Composition;
+use crate::tracer::kinds::TracedKind;
 use crate::tracer::options::Layout;
 use crate::tracer::query::Query;
-use crate::tracer::traced::TracedSolid;
+use crate::with_solid_kind;
 
-/// Attaches cylinders in the layout that is asked for, made on up to `threads`
-/// threads.
-pub(super) fn attach_cylinders(
-    cylinders: &Cylinders,
-    layout: Layout,
-    threads: usize,
-    builder: &mut SceneBuilder<Query>,
-) -> Result<(), embree::Error> {
-    if cylinders.len() == 0 {
-        return Ok(());
+/// Where solids are attached, and how.
+pub(crate) struct Attaching<'a> {
+    pub prototype_ref: &'a PrototypeRef,
+    pub layout: Layout,
+    /// The most threads that make blocks.
+    pub threads: usize,
+    pub builder: &'a mut SceneBuilder<Query>,
+}
+
+impl Attaching<'_> {
+    /// Attaches all solids of a group.
+    ///
+    /// Set operations are a primitive each: what a few bytes can say of one is its box, which
+    /// Embree tests as well.
+    pub fn attach_all(&mut self, members: &Members) -> Result<(), embree::Error> {
+        for (kind, numbers) in members.solids() {
+            with_solid_kind!(kind, S => S::attach(numbers, self))?;
+        }
+        Ok(())
     }
-    match cylinders.ends() {
-        EndsKind::Open => attach::<Open>(cylinders, layout, threads, builder),
-        EndsKind::Capped => attach::<Capped>(cylinders, layout, threads, builder),
-        EndsKind::Mixed => attach::<Mixed>(cylinders, layout, threads, builder),
+
+    /// Attaches solids of a convex kind.
+    pub fn attach<R: Records<Solid: TracedKind>>(
+        &mut self,
+        numbers: &Numbers,
+        records: R,
+    ) -> Result<(), embree::Error> {
+        let solids = GroupSolids::new(self.prototype_ref, numbers, records);
+        let attached = if self.layout.has_blocks(u64::from(solids.len())) {
+            self.builder.attach_user(Blocked::new(solids, self.threads))
+        } else {
+            self.builder.attach_user(Single(solids))
+        };
+        attached.map(drop)
     }
 }
 
-fn attach<E: Ends>(
-    cylinders: &Cylinders,
-    layout: Layout,
-    threads: usize,
-    builder: &mut SceneBuilder<Query>,
-) -> Result<(), embree::Error> {
-    let known = KnownCylinders::<E>::new(cylinders.clone());
-    attach_filtered(known, layout, threads, builder)
+/// As [`TracedKind::attach`].
+trait AttachComposed {
+    fn attach(numbers: &Numbers, to: &mut Attaching) -> Result<(), embree::Error>;
 }
 
-/// Attaches the solids of other kinds, likewise.
-///
-/// Set operations are a primitive each: what a few bytes can say of one is its box, which
-/// Embree tests as well.
-pub(super) fn attach_solids(
-    prototype_ref: &PrototypeRef,
-    members: &Members,
-    layout: Layout,
-    threads: usize,
-    builder: &mut SceneBuilder<Query>,
-) -> Result<(), embree::Error> {
-    attach_list::<Sphere>(prototype_ref, members, layout, threads, builder)?;
-    attach_list::<Cuboid>(prototype_ref, members, layout, threads, builder)?;
-    attach_list::<Cone>(prototype_ref, members, layout, threads, builder)?;
-    attach_list::<RoundedCone>(prototype_ref, members, layout, threads, builder)?;
-    attach_list::<Disk>(prototype_ref, members, layout, threads, builder)?;
-    let composed = SolidList::<Composition>::new(prototype_ref, members);
-    if composed.len() > 0 {
-        builder.attach_user(Single(composed))?;
+impl AttachComposed for Composition {
+    fn attach(numbers: &Numbers, to: &mut Attaching) -> Result<(), embree::Error> {
+        let solids = GroupSolids::new(to.prototype_ref, numbers, InPrototype::<Self>::new());
+        to.builder.attach_user(Single(solids)).map(drop)
     }
-    Ok(())
-}
-
-fn attach_list<S: TracedSolid + HasFilter>(
-    prototype_ref: &PrototypeRef,
-    members: &Members,
-    layout: Layout,
-    threads: usize,
-    builder: &mut SceneBuilder<Query>,
-) -> Result<(), embree::Error> {
-    let solids = SolidList::<S>::new(prototype_ref, members);
-    if solids.len() == 0 {
-        return Ok(());
-    }
-    attach_filtered(solids, layout, threads, builder)
-}
-
-fn attach_filtered<S: Filtered>(
-    solids: S,
-    layout: Layout,
-    threads: usize,
-    builder: &mut SceneBuilder<Query>,
-) -> Result<(), embree::Error> {
-    let attached = if layout.has_blocks(u64::from(solids.len())) {
-        builder.attach_user(Blocked::new(solids, threads))
-    } else {
-        builder.attach_user(Single(solids))
-    };
-    attached.map(|_| ())
 }
 
 /// The bytes of all blocks of a group.

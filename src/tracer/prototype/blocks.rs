@@ -6,11 +6,12 @@
 //! build, and a ray pays once for a leaf that it reaches, not for each solid there.
 
 use super::clusters::{Item, cluster};
-use super::solids::Filtered;
+use super::group_solids::{GroupSolids, Records};
 use crate::embree::{Box32, GREATEST_PACKET, Ray32, RaySet, Rays32, Reached, UserGeometry};
 use crate::math::LANES;
 use crate::tracer::counters;
 use crate::tracer::filter::{FILTER_BYTES, Filter, NearPacket, survivors};
+use crate::tracer::kinds::TracedKind;
 use crate::tracer::query::{Packet, Query};
 
 /// The most rays of a packet that are put to all solids of a block one by one; more are put
@@ -25,18 +26,21 @@ pub(crate) fn block_bytes(solids: u64) -> u64 {
     filters.saturating_add(records)
 }
 
+/// The filter of a block.
+type FilterOf<R> = <<R as Records>::Solid as TracedKind>::Filter;
+
 /// A user geometry with a primitive for each block.
-pub(super) struct Blocked<S: Filtered> {
-    solids: S,
-    filters: Vec<S::Filter>,
+pub(super) struct Blocked<R: Records<Solid: TracedKind>> {
+    solids: GroupSolids<R>,
+    filters: Vec<FilterOf<R>>,
     /// The records in the order of blocks, [`LANES`] for each but the last.
     records: Vec<u32>,
 }
 
-impl<S: Filtered> Blocked<S> {
+impl<R: Records<Solid: TracedKind>> Blocked<R> {
     /// Puts the solids into blocks, on up to `threads` threads.
-    pub fn new(solids: S, threads: usize) -> Self {
-        const { assert!(size_of::<S::Filter>() == FILTER_BYTES, "a cache line") };
+    pub fn new(solids: GroupSolids<R>, threads: usize) -> Self {
+        const { assert!(size_of::<FilterOf<R>>() == FILTER_BYTES, "a cache line") };
         let mut items: Vec<Item> = (0..solids.len())
             .map(|position| solids.record(position))
             .map(|number| Item {
@@ -101,8 +105,12 @@ impl<S: Filtered> Blocked<S> {
 const LEAST_FOR_THREADS: usize = 1 << 11;
 
 /// The filters of records in the order of blocks.
-fn filters<S: Filtered>(solids: &S, records: &[u32], threads: usize) -> Vec<S::Filter> {
-    let made = move |records: &[u32]| -> Vec<S::Filter> {
+fn filters<R: Records<Solid: TracedKind>>(
+    solids: &GroupSolids<R>,
+    records: &[u32],
+    threads: usize,
+) -> Vec<FilterOf<R>> {
+    let made = move |records: &[u32]| -> Vec<FilterOf<R>> {
         let blocks = records.chunks(LANES);
         blocks.map(|records| solids.filter(records)).collect()
     };
@@ -147,7 +155,7 @@ impl Iterator for Near<'_> {
     }
 }
 
-impl<S: Filtered> UserGeometry for Blocked<S> {
+impl<R: Records<Solid: TracedKind>> UserGeometry for Blocked<R> {
     type Query = Query;
 
     fn primitive_count(&self) -> u32 {

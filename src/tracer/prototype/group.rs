@@ -6,24 +6,23 @@
 //! it is first needed, which may be when a first ray gets there: threads that need
 //! it then build it together, and others continue.
 
+use std::borrow::Borrow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
-use super::attach::{attach_cylinders, attach_solids, kept_blocks_bytes};
-use super::cylinders::Cylinders;
-use super::members::{List, Members};
+use super::attach::{Attaching, kept_blocks_bytes};
+use super::members::Members;
 use super::outline::Outline;
 use super::parts::Parts;
 use super::placements::Placements;
-use super::prototype_ref::{PrototypeRef, SolidList};
+use super::prototype_ref::PrototypeRef;
 use super::{BuildContext, Children, Prototype, stays_packet};
 use crate::embree::{self, Coherence, GREATEST_PACKET, JointCommit, RaySet, SceneBuilder};
 use crate::math::Bounds;
-use crate::scene::{PrototypeIndex, Scene};
-use crate::solid::{Composition, Cone, Cuboid, Disk, RoundedCone, SolidKind, Sphere};
+use crate::scene::{Listed, PrototypeIndex, Scene, SolidList};
 use crate::tracer::frame::{Frame, LocalRay, PacketEntry};
 use crate::tracer::query::{Packet, Query};
-use crate::tracer::traced::TracedSolid;
+use crate::with_solid_kind;
 
 /// A group that can be traced.
 pub(crate) struct Group {
@@ -36,7 +35,7 @@ pub(crate) struct Group {
     prototype: PrototypeIndex,
     /// What it contains of the prototype.
     pub members: Members,
-    cylinders: Cylinders,
+    prototype_ref: PrototypeRef,
     /// The placements, a geometry for each group of what they place.
     placements: Vec<Arc<Placements>>,
     context: BuildContext,
@@ -89,7 +88,7 @@ impl Group {
         Self {
             reach: outline.reach,
             parts: outline.parts,
-            cylinders: Cylinders::new(&prototype_ref, &outline.members),
+            prototype_ref,
             frame: outline.frame,
             prototype: index,
             placements,
@@ -169,15 +168,13 @@ impl Group {
         for placements in &self.placements {
             placements.attach_instances(&mut builder)?;
         }
-        let (layout, threads) = (self.context.layout, self.context.threads);
-        attach_cylinders(&self.cylinders, layout, threads, &mut builder)?;
-        attach_solids(
-            self.cylinders.prototype_ref(),
-            &self.members,
-            layout,
-            threads,
-            &mut builder,
-        )?;
+        let mut to = Attaching {
+            prototype_ref: &self.prototype_ref,
+            layout: self.context.layout,
+            threads: self.context.threads,
+            builder: &mut builder,
+        };
+        to.attach_all(&self.members)?;
         for placements in &self.placements {
             if placements.reached.called_back.len() > 0 {
                 builder.attach_user(Arc::clone(placements))?;
@@ -301,27 +298,17 @@ impl Group {
 
     /// Visits every primitive.
     fn visit_all(&self, query: &mut Query) {
-        for record in self.members.of(List::Solids(SolidKind::Cylinder)).iter() {
-            query.visit(&self.cylinders.cylinder(record), &self.cylinders, record);
+        let solids = &self.prototype_ref.prototype().solids;
+        for (kind, numbers) in self.members.solids() {
+            with_solid_kind!(kind, S => for record in numbers.iter() {
+                let solid = S::list(solids).solid(record as usize);
+                query.visit::<S>(solid.borrow(), &self.prototype_ref, record);
+            });
         }
-        self.visit_list::<Sphere>(query);
-        self.visit_list::<Cuboid>(query);
-        self.visit_list::<Cone>(query);
-        self.visit_list::<RoundedCone>(query);
-        self.visit_list::<Disk>(query);
-        self.visit_list::<Composition>(query);
         for placements in &self.placements {
             for number in placements.all.iter() {
                 placements.visit(number, query, Self::search_exhaustively);
             }
-        }
-    }
-
-    /// Visits every solid of one kind.
-    fn visit_list<S: TracedSolid>(&self, query: &mut Query) {
-        let list = SolidList::<S>::new(self.cylinders.prototype_ref(), &self.members);
-        for record in self.members.of(S::LIST).iter() {
-            query.visit_solid(&list, record);
         }
     }
 }

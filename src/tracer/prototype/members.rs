@@ -5,14 +5,17 @@
 //! each of them, and these may be in different groups of the parent. So a far solid
 //! in a placed prototype does not enlarge the boxes of the others there, at any depth.
 
+use std::borrow::Borrow;
+
 use rayon::prelude::*;
 
 use super::grouping::{Boxed, Cube, cubes};
 use super::numbers::Numbers;
 use crate::math::Bounds;
-use crate::scene::{self, PrototypeIndex, SolidRecord};
+use crate::scene::{self, Listed, PrototypeIndex, SolidList};
 use crate::solid::SolidKind;
 use crate::tracer::traced::TracedSolid;
+use crate::with_solid_kind;
 
 /// A list of a prototype.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,27 +29,14 @@ pub(crate) enum List {
     },
 }
 
-/// The first kind of each list of solids.
-const KINDS: [SolidKind; 7] = [
-    SolidKind::Cylinder,
-    SolidKind::Sphere,
-    SolidKind::Cuboid,
-    SolidKind::Cone,
-    SolidKind::RoundedCone,
-    SolidKind::Disk,
-    SolidKind::Union,
-];
+/// The kinds of the lists of solids.
+const KINDS: &[SolidKind] = SolidKind::LISTS;
 
 impl List {
     fn position(self) -> usize {
         match self {
-            Self::Solids(SolidKind::Cylinder) => 0,
-            Self::Solids(SolidKind::Sphere) => 1,
-            Self::Solids(SolidKind::Cuboid) => 2,
-            Self::Solids(SolidKind::Cone) => 3,
-            Self::Solids(SolidKind::RoundedCone) => 4,
-            Self::Solids(SolidKind::Disk) => 5,
-            Self::Solids(SolidKind::Union | SolidKind::Intersection | SolidKind::Difference) => 6,
+            // Further set operations are in the last list.
+            Self::Solids(kind) => (kind as usize).min(KINDS.len() - 1),
             Self::Placements { group } => KINDS.len() + group,
         }
     }
@@ -72,10 +62,9 @@ impl Members {
     }
 
     /// The lists of solids with at least one number.
-    pub fn solids(&self) -> impl Iterator<Item = (List, &Numbers)> {
-        let lists = self.lists[..KINDS.len()].iter().enumerate();
-        let lists = lists.filter(|(_, numbers)| numbers.len() > 0);
-        lists.map(|(position, numbers)| (List::at(position), numbers))
+    pub fn solids(&self) -> impl Iterator<Item = (SolidKind, &Numbers)> {
+        let lists = KINDS.iter().copied().zip(&self.lists);
+        lists.filter(|(_, numbers)| numbers.len() > 0)
     }
 
     /// The lists of placements with at least one number, each with the number of the
@@ -87,7 +76,7 @@ impl Members {
 
     /// How many it contains of each kind of solid, without set operations.
     pub fn single_counts(&self) -> impl Iterator<Item = u32> {
-        let kinds = KINDS.iter().filter(|&&kind| kind != SolidKind::Union);
+        let kinds = SolidKind::SIMPLE.iter();
         kinds.map(|&kind| self.of(List::Solids(kind)).len())
     }
 
@@ -134,44 +123,23 @@ impl<'a> Boxes<'a> {
                 groups = groups.max(children(placement.of).len());
             }
         }
-        let solids = &prototype.solids;
-        let lens = [
-            prototype.cylinders.len(),
-            solids.spheres.len(),
-            solids.cuboids.len(),
-            solids.cones.len(),
-            solids.rounded_cones.len(),
-            solids.disks.len(),
-            solids.compositions.len(),
-        ];
+        let lens = KINDS.iter().map(|&kind| prototype.solids.len_of(kind));
         let placements = std::iter::repeat_n(prototype.placements.len(), groups);
         Self {
             prototype,
             children,
-            lens: lens
-                .into_iter()
-                .chain(placements)
-                .map(|len| len as u32)
-                .collect(),
+            lens: lens.chain(placements).map(|len| len as u32).collect(),
         }
     }
 
     /// The box of an entry of a list; empty if it contains nothing.
     pub fn entry(&self, list: List, number: u32) -> Bounds {
         let (prototype, number) = (self.prototype, number as usize);
-        let solids = &prototype.solids;
         match list {
-            List::Solids(SolidKind::Cylinder) => {
-                prototype.cylinders.get(number).cylinder().bounds()
-            }
-            List::Solids(SolidKind::Sphere) => bounds(&solids.spheres[number]),
-            List::Solids(SolidKind::Cuboid) => bounds(&solids.cuboids[number]),
-            List::Solids(SolidKind::Cone) => bounds(&solids.cones[number]),
-            List::Solids(SolidKind::RoundedCone) => bounds(&solids.rounded_cones[number]),
-            List::Solids(SolidKind::Disk) => bounds(&solids.disks[number]),
-            List::Solids(SolidKind::Union | SolidKind::Intersection | SolidKind::Difference) => {
-                bounds(&solids.compositions[number])
-            }
+            List::Solids(kind) => with_solid_kind!(kind, S => {
+                let solid = S::list(&prototype.solids).solid(number);
+                TracedSolid::bounds(solid.borrow() as &S)
+            }),
             List::Placements { group } => {
                 let placement = &prototype.placements[number];
                 let child = (self.children)(placement.of).get(group);
@@ -299,8 +267,4 @@ impl Boxed for Boxes<'_> {
         }
         Bounds::EMPTY
     }
-}
-
-fn bounds<S: TracedSolid>(record: &SolidRecord<S>) -> Bounds {
-    record.solid.bounds()
 }

@@ -12,9 +12,8 @@
 mod attach;
 mod blocks;
 mod clusters;
-mod cylinders;
-mod ends;
 mod group;
+mod group_solids;
 mod grouping;
 mod instances;
 mod members;
@@ -25,21 +24,21 @@ mod parts;
 mod placement_margin;
 mod placements;
 mod prototype_ref;
-mod solids;
 
 use std::sync::Arc;
 
 use smallvec::SmallVec;
 
+pub(crate) use attach::Attaching;
 pub(crate) use blocks::block_bytes;
-pub(crate) use cylinders::Cylinders;
-pub(crate) use ends::Ends;
 pub(crate) use group::Group;
+pub(crate) use group_solids::{InPrototype, Records};
 pub(crate) use instances::MOST_INSTANCES;
 pub(crate) use members::{Boxes, List};
+pub(crate) use numbers::Numbers;
 pub(crate) use opened::{MOST_INNER, MOST_OUTER};
 pub(crate) use outline::{Outline, Outlines};
-pub(crate) use prototype_ref::{PrototypeRef, SolidList};
+pub(crate) use prototype_ref::PrototypeRef;
 
 use super::frame::{LocalRay, PacketRays};
 use super::options::Layout;

@@ -80,7 +80,7 @@ pub(super) fn inner_placements(
 ) -> Option<&[Placement]> {
     let prototype = &scene.prototypes[index.0 as usize];
     let placements = &prototype.placements[..];
-    let may_be_opened = prototype.has_no_solids()
+    let may_be_opened = prototype.solids.is_empty()
         && (1..=MOST_INNER).contains(&placements.len())
         && placements.iter().all(|inner| is_innermost(inner.of));
     may_be_opened.then_some(placements)

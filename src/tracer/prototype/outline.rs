@@ -10,7 +10,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::instances::{Image, MOST_INSTANCES, needed_growth};
-use super::members::{Boxes, Members};
+use super::members::{Boxes, List, Members};
 use super::numbers::Numbers;
 use super::opened::{MOST_OUTER, OpenedFrames, inner_placements};
 use super::parts::Parts;
@@ -184,7 +184,7 @@ impl Outlines {
         let solids = solids.par_iter().flat_map(|&(list, numbers)| {
             numbers
                 .par_iter()
-                .map(move |number| boxes.entry(list, number))
+                .map(move |number| boxes.entry(List::Solids(list), number))
         });
         let lists: Vec<_> = outline.members.placements().collect();
         let placed = self.placed(placements, &lists).map(|(placement, child)| {

@@ -266,8 +266,8 @@ mod tests {
             SolidRecord::new(sphere, number, MaterialIndex(0))
         });
         Prototype {
-            cylinders: cylinders.into(),
             solids: Solids {
+                cylinders: cylinders.into(),
                 spheres: spheres.collect(),
                 ..Solids::default()
             },
@@ -278,7 +278,7 @@ mod tests {
 
     /// Points on rims of all cylinders, and the poles of all spheres.
     fn surface(prototype: &Prototype) -> Vec<DVec3> {
-        let rims = prototype.cylinders.iter().flat_map(|record| {
+        let rims = prototype.solids.cylinders.iter().flat_map(|record| {
             let cylinder = record.cylinder();
             let (p0, p1) = (cylinder.p0(), cylinder.p1());
             let (x, y) = (p1 - p0).normalize().any_orthonormal_pair();

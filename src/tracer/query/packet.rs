@@ -13,13 +13,12 @@ use super::single::Query;
 use crate::embree::{GREATEST_PACKET, GeometryId, Instructions, RaySet};
 use crate::math::{ChildFromParent, LANES, LaneMask, Lanes};
 use crate::scene::PrototypeIndex;
-use crate::solid::{Cylinder, SolidKind};
 use crate::tracer::counters;
 use crate::tracer::decisions::Decisions;
 use crate::tracer::frame::{
     Enter, Frame, IntoChild, IntoInstance, PacketEntry, PacketRays, ROWS, Rows,
 };
-use crate::tracer::prototype::{Cylinders, Ends, PrototypeRef, SolidList};
+use crate::tracer::prototype::PrototypeRef;
 use crate::tracer::traced::{RowOfPacket, TracedSolid};
 
 /// A packet on its way.
@@ -224,61 +223,17 @@ impl Packet {
         self.levels.current().window(ray).t_far(self.bound(ray))
     }
 
-    /// Keeps the points where rays first meet a cylinder of the current
-    /// prototype, if they are before the known ones. Answers with the rays that
-    /// end earlier now, whose `t_far` is set. `cylinder` is that of the record.
+    /// Keeps the points where rays first meet a solid of the current prototype, if they are
+    /// before the known ones. Returns the rays that end earlier now, whose `t_far` is set.
+    /// `solid` is that of the record.
     #[inline(always)]
-    pub fn visit<E: Ends>(
+    pub fn visit<S: TracedSolid>(
         &mut self,
-        cylinder: &Cylinder,
-        (cylinders, record): (&Cylinders, u32),
+        solid: &S,
+        (prototype_ref, record): (&PrototypeRef, u32),
         rays: RaySet,
         t_far: &mut [f32; GREATEST_PACKET],
     ) -> RaySet {
-        let member = SolidSlot::new(SolidKind::Cylinder, record);
-        let mut shorter = RaySet::EMPTY;
-        for row in 0..ROWS {
-            let wanted = (rays.bits() >> (row * LANES)) as u8;
-            if wanted == 0 {
-                continue;
-            }
-            let (met, t) = self.first::<E>(cylinder, row, wanted, &self.bound[row]);
-            self.offer_row(
-                (row, met, t),
-                (cylinders.prototype_ref(), member),
-                |packet, ray| {
-                    t_far[ray] = packet.t_far(ray);
-                    shorter.insert(ray);
-                },
-            );
-        }
-        shorter
-    }
-
-    /// Those of the rays that meet a cylinder of the current prototype.
-    #[inline(always)]
-    pub fn meets<E: Ends>(&self, cylinder: &Cylinder, rays: RaySet) -> RaySet {
-        let mut blocked = 0;
-        for row in 0..ROWS {
-            let wanted = (rays.bits() >> (row * LANES)) as u8;
-            if wanted != 0 {
-                let (met, _) = self.first::<E>(cylinder, row, wanted, &self.t_max[row]);
-                blocked |= u16::from(met.bits()) << (row * LANES);
-            }
-        }
-        RaySet::from_bits(blocked)
-    }
-
-    /// As [`Packet::visit`] for a solid of another kind.
-    #[inline(always)]
-    pub fn visit_solid<S: TracedSolid>(
-        &mut self,
-        list: &SolidList<S>,
-        record: u32,
-        rays: RaySet,
-        t_far: &mut [f32; GREATEST_PACKET],
-    ) -> RaySet {
-        let solid = list.solid(record);
         let member = SolidSlot::new(solid.kind(), record);
         let mut shorter = RaySet::EMPTY;
         for row in 0..ROWS {
@@ -286,27 +241,23 @@ impl Packet {
             if wanted == 0 {
                 continue;
             }
-            let (met, t) = self.first_of_solid(solid, row, wanted, &self.bound[row]);
-            self.offer_row(
-                (row, met, t),
-                (list.prototype_ref(), member),
-                |packet, ray| {
-                    t_far[ray] = packet.t_far(ray);
-                    shorter.insert(ray);
-                },
-            );
+            let (met, t) = self.first(solid, row, wanted, &self.bound[row]);
+            self.offer_row((row, met, t), (prototype_ref, member), |packet, ray| {
+                t_far[ray] = packet.t_far(ray);
+                shorter.insert(ray);
+            });
         }
         shorter
     }
 
-    /// As [`Packet::meets`] for a solid of another kind.
+    /// Those of the rays that meet a solid of the current prototype.
     #[inline(always)]
-    pub fn meets_solid(&self, solid: &impl TracedSolid, rays: RaySet) -> RaySet {
+    pub fn meets<S: TracedSolid>(&self, solid: &S, rays: RaySet) -> RaySet {
         let mut blocked = 0;
         for row in 0..ROWS {
             let wanted = (rays.bits() >> (row * LANES)) as u8;
             if wanted != 0 {
-                let (met, _) = self.first_of_solid(solid, row, wanted, &self.t_max[row]);
+                let (met, _) = self.first(solid, row, wanted, &self.t_max[row]);
                 blocked |= u16::from(met.bits()) << (row * LANES);
             }
         }
@@ -326,7 +277,7 @@ impl Packet {
 
     /// Where the rays of a row that are `wanted` first meet a solid.
     #[inline(always)]
-    fn first_of_solid(
+    fn first(
         &self,
         solid: &impl TracedSolid,
         row: usize,
@@ -335,22 +286,8 @@ impl Packet {
     ) -> (LaneMask, Lanes) {
         counters::solved(wanted.count_ones());
         let active = LaneMask::from_bits(wanted);
-        row::first_of_solid(solid, &self.row(row, t_max), active, self.decisions)
-    }
-
-    /// Where the rays of a row that are `wanted` first meet a cylinder.
-    #[inline(always)]
-    fn first<E: Ends>(
-        &self,
-        cylinder: &Cylinder,
-        row: usize,
-        wanted: u8,
-        t_max: &Lanes,
-    ) -> (LaneMask, Lanes) {
-        counters::solved(wanted.count_ones());
-        let active = LaneMask::from_bits(wanted);
         let how = (self.decisions, self.instructions);
-        row::first_of_cylinder::<E>(cylinder, &self.row(row, t_max), active, how)
+        row::first(solid, &self.row(row, t_max), active, how)
     }
 
     /// Keeps the first hits of the rays of a row that have `met` a solid, where they are

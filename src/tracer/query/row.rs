@@ -4,100 +4,70 @@
 //! solids without lanes, are solved ray by ray.
 
 use crate::embree::{Instructions, Kernel};
-use crate::math::{LANES, LaneMask, LaneVectors, Lanes};
-use crate::solid::lanes::{self, CylinderLanes, LaneCaps, RayLanes};
+use crate::math::{LANES, LaneMask, Lanes};
 use crate::solid::quick::QuickLanes;
-use crate::solid::{Cylinder, settled};
-use crate::tracer::decisions::{Decisions, exact_first};
+use crate::tracer::decisions::Decisions;
 use crate::tracer::frame::LocalRay;
-use crate::tracer::prototype::Ends;
 use crate::tracer::traced::{RowOfPacket, TracedSolid};
 
 /// Where the `active` rays first meet a solid.
 #[inline(always)]
-pub(super) fn first_of_solid(
+pub(super) fn first(
     solid: &impl TracedSolid,
-    row: &RowOfPacket,
-    active: LaneMask,
-    decisions: Decisions,
-) -> (LaneMask, Lanes) {
-    let QuickLanes { open, met, t } = solid.quick_first(row, active, decisions);
-    if open.any() {
-        return one_by_one(row, open, (met, t), |ray, t_min, t_max| {
-            Some(solid.first(ray, decisions, t_min, t_max)?.meeting.t)
-        });
-    }
-    (met, t)
-}
-
-/// Where the `active` rays first meet a cylinder.
-#[inline(always)]
-pub(super) fn first_of_cylinder<E: Ends>(
-    cylinder: &Cylinder,
     row: &RowOfPacket,
     active: LaneMask,
     (decisions, instructions): (Decisions, Instructions),
 ) -> (LaneMask, Lanes) {
     if decisions == Decisions::Exact {
-        return exactly::<E>(cylinder, row, active, instructions);
+        return exactly(solid, row, active, instructions);
     }
-    lanes::first(
-        &lanes_of::<E>(cylinder),
-        &row.seen_from(cylinder.p0()),
-        &active,
-    )
+    let quick = solid.first_in_row(row, active);
+    with_open(solid, row, quick, decisions)
 }
 
-/// A cylinder eight times.
-#[inline(always)]
-fn lanes_of<E: Ends>(cylinder: &Cylinder) -> CylinderLanes<E::Lanes> {
-    CylinderLanes {
-        axis: LaneVectors::splat(cylinder.p1() - cylinder.p0()),
-        radius: Lanes::splat(cylinder.radius()),
-        caps: E::of_one(cylinder.caps()),
-    }
-}
-
-/// [`settled::first_in_lanes`] with the instructions of the packet.
-struct SettledRow<'a, C> {
-    cylinders: &'a CylinderLanes<C>,
-    rays: &'a RayLanes,
+/// [`TracedSolid::exact_first_in_row`] with the instructions of the packet.
+struct ExactRow<'a, 'r, S> {
+    solid: &'a S,
+    row: &'a RowOfPacket<'r>,
     active: LaneMask,
 }
 
-impl<C: LaneCaps> Kernel for SettledRow<'_, C> {
+impl<S: TracedSolid> Kernel for ExactRow<'_, '_, S> {
     type Answer = QuickLanes;
 
     #[inline(always)]
     fn run(self) -> QuickLanes {
-        settled::first_in_lanes(self.cylinders, self.rays, &self.active)
+        self.solid.exact_first_in_row(self.row, self.active)
     }
 }
 
-/// The same decided exactly: what is settled in lanes, and the rest ray by ray. A call, as
-/// [`exact_first`] is, which gets nothing that the caller would otherwise have in registers.
+/// The same decided exactly. A call, which gets nothing that the caller would otherwise have
+/// in registers.
 #[cold]
 #[inline(never)]
-fn exactly<E: Ends>(
-    cylinder: &Cylinder,
+fn exactly<S: TracedSolid>(
+    solid: &S,
     row: &RowOfPacket,
     active: LaneMask,
     instructions: Instructions,
 ) -> (LaneMask, Lanes) {
-    let QuickLanes { open, met, t } = if row.is_plain() {
-        instructions.run(SettledRow {
-            cylinders: &lanes_of::<E>(cylinder),
-            rays: &row.seen_from(cylinder.p0()),
-            active,
-        })
-    } else {
-        QuickLanes::all_open(active)
-    };
+    let quick = instructions.run(ExactRow { solid, row, active });
+    with_open(solid, row, quick, Decisions::Exact)
+}
+
+/// The answers with those that are left open, ray by ray.
+#[inline(always)]
+fn with_open(
+    solid: &impl TracedSolid,
+    row: &RowOfPacket,
+    QuickLanes { open, met, t }: QuickLanes,
+    decisions: Decisions,
+) -> (LaneMask, Lanes) {
     if !open.any() {
         return (met, t);
     }
     one_by_one(row, open, (met, t), |ray, t_min, t_max| {
-        Some(exact_first(cylinder, ray, t_min, t_max)?.t)
+        Some(solid.first(ray, decisions, t_min, t_max)?.meeting.t)
     })
 }
 

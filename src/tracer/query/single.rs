@@ -8,11 +8,10 @@ use super::found::{Found, InstancePath, Nearest, Next, QueryMode, SolidRef, Soli
 use crate::embree::{self, GeometryId, Ray32};
 use crate::math::Ray;
 use crate::scene::PrototypeIndex;
-use crate::solid::{ConvexSolid, Cylinder, Intersection, SolidKind, triple_product};
 use crate::tracer::counters;
-use crate::tracer::decisions::{Decisions, exact_first};
+use crate::tracer::decisions::Decisions;
 use crate::tracer::frame::{Frame, Level, LocalRay};
-use crate::tracer::prototype::{Cylinders, PrototypeRef, SolidList};
+use crate::tracer::prototype::PrototypeRef;
 use crate::tracer::traced::{SurfaceHit, TracedSolid};
 
 /// A query on its way.
@@ -182,83 +181,45 @@ impl Query {
         }
     }
 
-    /// The first point, up to `t_max`, where the ray meets a cylinder of the
-    /// current prototype.
+    /// The first point, up to `t_max`, where the ray meets a solid of the current prototype.
     #[inline(always)]
-    fn first_meeting(&self, cylinder: &Cylinder, t_max: f64) -> Option<Intersection> {
+    fn first_meeting(&self, solid: &impl TracedSolid, t_max: f64) -> Option<SurfaceHit> {
         counters::solved(1);
-        let ray = self.ray();
-        if self.decisions == Decisions::Exact {
-            return exact_first(cylinder, ray, self.t_min, t_max);
-        }
-        let (direction, shift) = (ray.direction, ray.shift);
-        let from_p0 = ray.origin_from(cylinder.p0());
-        triple_product::first(cylinder, from_p0, direction, shift, self.t_min, t_max)
+        solid.first(self.ray(), self.decisions, self.t_min, t_max)
     }
 
-    /// Whether the ray meets a cylinder of the current prototype.
+    /// Whether the ray meets a solid of the current prototype.
     #[inline(always)]
-    pub fn meets(&self, cylinder: &Cylinder) -> bool {
-        self.first_meeting(cylinder, self.t_max).is_some()
+    pub fn meets<S: TracedSolid>(&self, solid: &S) -> bool {
+        self.first_meeting(solid, self.t_max).is_some()
     }
 
-    /// Keeps of the points where the ray meets a cylinder of the current
-    /// prototype those that are wanted. `cylinder` is that of the record.
+    /// Keeps the points where the ray meets a solid of the current prototype that are wanted.
+    /// `solid` is that of the record.
     #[inline(always)]
-    pub fn visit(&mut self, cylinder: &Cylinder, cylinders: &Cylinders, record: u32) {
+    pub fn visit<S: TracedSolid>(&mut self, solid: &S, prototype_ref: &PrototypeRef, record: u32) {
         if let QueryMode::First(_) = self.keep {
-            if let Some(meeting) = self.first_meeting(cylinder, self.bound()) {
-                let member = SolidSlot::new(SolidKind::Cylinder, record);
-                self.offer(meeting.t, cylinders.prototype_ref(), member);
+            if let Some(met) = self.first_meeting(solid, self.bound()) {
+                let member = SolidSlot::new(solid.kind(), record);
+                self.offer(met.meeting.t, prototype_ref, member);
             }
         } else {
-            self.visit_all(cylinder, cylinders, record);
+            self.visit_all(solid, prototype_ref, record);
         }
     }
 
-    /// As [`Query::visit`], where all hits are asked for, or what holds the origin.
+    /// As [`Query::visit`], for all hits, or for the solids that contain the origin.
     #[cold]
-    fn visit_all(&mut self, cylinder: &Cylinder, cylinders: &Cylinders, record: u32) {
-        let member = SolidSlot::new(SolidKind::Cylinder, record);
-        if let QueryMode::Containing(_) = self.keep {
-            return self.hold(cylinders.prototype_ref(), member, |point| {
-                cylinder.contains(point)
-            });
-        }
-        let ray = self.ray();
-        let shift = ray.shift;
-        let Some(chord) = self.decisions.chord(cylinder, ray) else {
-            return;
-        };
-        let (bound, t_min) = (self.bound(), self.t_min);
-        let mut offer = self.next_of(cylinders.prototype_ref(), member);
-        for meeting in chord.meetings(cylinder.caps(), shift, t_min, bound) {
-            offer(SurfaceHit::whole(meeting));
-        }
-    }
-
-    /// As [`Query::visit`] for a solid of another kind.
-    #[inline]
-    pub fn visit_solid<S: TracedSolid>(&mut self, list: &SolidList<S>, record: u32) {
+    fn visit_all<S: TracedSolid>(&mut self, solid: &S, prototype_ref: &PrototypeRef, record: u32) {
         counters::solved(1);
-        let solid = list.solid(record);
         let member = SolidSlot::new(solid.kind(), record);
-        let (decisions, bound, t_min) = (self.decisions, self.bound(), self.t_min);
-        match self.keep {
-            QueryMode::First(_) => {
-                if let Some(met) = solid.first(self.ray(), decisions, t_min, bound) {
-                    self.offer(met.meeting.t, list.prototype_ref(), member);
-                }
-            }
-            QueryMode::Next(_) => {
-                let ray = *self.ray();
-                let offer = self.next_of(list.prototype_ref(), member);
-                solid.for_each_hit(&ray, decisions, t_min, bound, offer);
-            }
-            QueryMode::Containing(_) => {
-                self.hold(list.prototype_ref(), member, |point| solid.contains(point));
-            }
+        if let QueryMode::Containing(_) = self.keep {
+            return self.hold(prototype_ref, member, |point| solid.contains(point));
         }
+        let (ray, decisions) = (*self.ray(), self.decisions);
+        let (bound, t_min) = (self.bound(), self.t_min);
+        let offer = self.next_of(prototype_ref, member);
+        solid.for_each_hit(&ray, decisions, t_min, bound, offer);
     }
 
     /// Keeps a solid if it `contains` the origin of the ray.
@@ -277,14 +238,6 @@ impl Query {
         if let QueryMode::Containing(places) = &mut self.keep {
             places.push(SolidRef::new(prototype_ref.index(), member, &self.path));
         }
-    }
-
-    /// Whether the ray meets a solid of another kind of the current prototype.
-    #[inline]
-    pub fn meets_solid(&self, solid: &impl TracedSolid) -> bool {
-        counters::solved(1);
-        let met = solid.first(self.ray(), self.decisions, self.t_min, self.t_max);
-        met.is_some()
     }
 
     /// What keeps the meetings with a solid that are wanted, where all hits are asked

@@ -2,7 +2,7 @@
 
 use cyltrace::math::Ray;
 use cyltrace::solid::{ConvexSolid, Cuboid, Disk, Part, Sphere};
-use cyltrace_oracle::{ExactRay, ExactVector, TrueChord, exact, to_f64};
+use cyltrace_oracle::{ExactRay, ExactVector, TrueChord, TrueSolid, exact, to_f64};
 use glam::DVec3;
 
 /// A solid and what is true of it.
@@ -27,11 +27,11 @@ impl Judged for Sphere {
     }
 
     fn truly_holds(&self, point: DVec3) -> bool {
-        cyltrace_oracle::sphere_holds(self, point)
+        TrueSolid::truly_contains(self, point)
     }
 
     fn gap(&self, ray: &Ray) -> f64 {
-        cyltrace_oracle::sphere_gap(self, ray)
+        TrueSolid::gap(self, ray)
     }
 
     fn distance(&self, part: Part, point: DVec3) -> f64 {
@@ -53,11 +53,11 @@ impl Judged for Cuboid {
     }
 
     fn truly_holds(&self, point: DVec3) -> bool {
-        cyltrace_oracle::cuboid_holds(self, point)
+        TrueSolid::truly_contains(self, point)
     }
 
     fn gap(&self, ray: &Ray) -> f64 {
-        cyltrace_oracle::cuboid_gap(self, ray)
+        TrueSolid::gap(self, ray)
     }
 
     fn distance(&self, part: Part, point: DVec3) -> f64 {
@@ -96,11 +96,11 @@ impl Judged for Disk {
     }
 
     fn truly_holds(&self, point: DVec3) -> bool {
-        cyltrace_oracle::disk_holds(self, point)
+        TrueSolid::truly_contains(self, point)
     }
 
     fn gap(&self, ray: &Ray) -> f64 {
-        cyltrace_oracle::disk_gap(self, ray)
+        TrueSolid::gap(self, ray)
     }
 
     fn distance(&self, part: Part, point: DVec3) -> f64 {

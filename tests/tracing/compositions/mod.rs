@@ -1,7 +1,7 @@
 //! Set operations of solids: what a line meets of them, against exact membership of
 //! the leaves.
 //!
-//! `CYLTRACE_CASES=1000000 cargo test --release --test compositions` is the full run.
+//! `CYLTRACE_CASES=1000000 cargo test --release --test tracing compositions` is the full run.
 
 mod in_plane;
 mod random;

@@ -9,7 +9,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{SEED, traced, tracer_of};
-use test_support::solids::{crowd, prototype_of, ray_through, truly_holds};
+use test_support::solids::{crowd, prototype_of, ray_through};
 use test_support::{self, nested_placements};
 
 fn numbers(found: &[Containing]) -> Vec<u32> {
@@ -40,7 +40,7 @@ fn points_are_held_by_what_exact_arithmetic_says() {
                 let point = point(&mut random, &tracer);
                 let truth: Vec<u32> = (0..)
                     .zip(&solids)
-                    .filter(|(_, solid)| truly_holds(solid, point))
+                    .filter(|(_, solid)| cyltrace_oracle::truth(solid).truly_contains(point))
                     .map(|(number, _)| number)
                     .collect();
                 let found = tracer.contains(point);

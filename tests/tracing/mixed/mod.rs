@@ -238,7 +238,7 @@ fn spawned_rays_do_not_meet_the_solid_they_left() {
 }
 
 #[test]
-fn statistics_count_the_other_kinds() {
+fn statistics_count_each_kind() {
     let solids = crowd(SEED, 60);
     let root = test_support::placing(vec![
         test_support::placed(1, glam::DAffine3::IDENTITY),
@@ -246,20 +246,13 @@ fn statistics_count_the_other_kinds() {
     ]);
     let tracer = tracer_of(vec![root, prototype_of(&solids)]);
     let statistics = tracer.statistics();
-    assert_eq!(
-        (statistics.cylinders_unique, statistics.cylinders_instanced),
-        (10, 20)
-    );
-    assert_eq!(
-        (
-            statistics.other_solids_unique,
-            statistics.other_solids_instanced
-        ),
-        (50, 100)
-    );
+    for &kind in SolidKind::SIMPLE {
+        assert_eq!(statistics.unique[kind], 10, "{kind}");
+        assert_eq!(statistics.instanced[kind], 20, "{kind}");
+    }
+    assert_eq!(statistics.unique.total(), 60);
     let contents = tracer.scene().contents();
-    assert_eq!(contents[1].others.count, 50);
-    assert_eq!(contents[1].others.singles, [10; 5]);
+    assert_eq!(contents[1].solids.counts, statistics.unique);
     for layout in [Layout::Single, Layout::Block] {
         let options = Options {
             layout,

@@ -1,6 +1,6 @@
 //! Formulations against textbook answers, and where they are known to fail.
 //!
-//! Agreement with exact arithmetic is in `tests/formulations.rs`.
+//! Agreement with exact arithmetic is in `crates/bench/tests/bench/formulations.rs`.
 
 use glam::DVec3;
 

@@ -7,7 +7,7 @@ use super::spaced::Spaced;
 use super::{Rival, Row, measured_cylinders};
 use crate::formulations::{Answer, Batch, Precision, Problem};
 use cyltrace::math::Ray;
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Prototype, Scene};
+use cyltrace::scene::{CylinderRecord, MaterialIndex, Prototype, Scene, Solids};
 use cyltrace::solid::Cylinder;
 use cyltrace::tracer::{Options, Tracer, TracerError};
 
@@ -84,12 +84,9 @@ impl Batch for TracedBatch {
 /// A scene of these cylinders and nothing else.
 fn scene_of(cylinders: &[Cylinder]) -> Arc<Scene> {
     let root = Prototype {
-        cylinders: (0..)
-            .zip(cylinders)
-            .map(|(primitive, cylinder)| {
-                CylinderRecord::new(cylinder, primitive, MaterialIndex::default())
-            })
-            .collect(),
+        solids: Solids::of_cylinders((0..).zip(cylinders).map(|(primitive, cylinder)| {
+            CylinderRecord::new(cylinder, primitive, MaterialIndex::default())
+        })),
         ..Prototype::default()
     };
     Arc::new(Scene::new(vec![root]))

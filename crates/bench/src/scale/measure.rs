@@ -12,8 +12,10 @@ use crate::traversal::{
 };
 use cyltrace::math::Random;
 use cyltrace::scene::{
-    ExpectedCounts, OtherSolids, PlacedCount, Placement, Prototype, PrototypeIndex, Records, Scene,
+    ExpectedCounts, ExpectedSolids, PlacedCount, Placement, Prototype, PrototypeIndex, Records,
+    Scene,
 };
+use cyltrace::solid::SolidKind;
 use cyltrace::tracer::{Layout, MemoryEstimate, Options, Tracer};
 use cyltrace_output::readable;
 
@@ -62,16 +64,18 @@ impl Series {
 
     /// Bytes that a scene of the series takes, before there is one.
     fn estimate(self, n: usize) -> u64 {
-        let contents = |cylinders: usize, placements: usize| ExpectedCounts {
-            name: String::new(),
-            cylinders: cylinders as u64,
-            records: Records::F64,
-            others: OtherSolids::default(),
-            placed: vec![PlacedCount {
-                of: PrototypeIndex(1),
-                count: placements as u64,
-            }],
-            is_used: true,
+        let contents = |cylinders: usize, placements: usize| {
+            let mut solids = ExpectedSolids::default();
+            solids.add(SolidKind::Cylinder, cylinders as u64, Records::F64);
+            ExpectedCounts {
+                name: String::new(),
+                solids,
+                placed: vec![PlacedCount {
+                    of: PrototypeIndex(1),
+                    count: placements as u64,
+                }],
+                is_used: true,
+            }
         };
         let contents = match self {
             Self::Cylinders => vec![contents(n, 0)],

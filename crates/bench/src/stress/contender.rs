@@ -9,6 +9,7 @@ use cyltrace::math::Ray;
 use cyltrace::solid::{
     AnySolid, ConvexSolid, Intersection, Part, RayOrigin, SolidKind, SpawnMargin, SurfacePoint,
 };
+use cyltrace::{for_each_solid, with_solid};
 use cyltrace_oracle::cases::Case;
 
 /// Someone who answers cases of one kind of solid.
@@ -27,18 +28,17 @@ impl Contender {
     /// All, in the order of tables.
     #[must_use]
     pub fn all() -> Vec<Self> {
-        let solvers = [
-            SolidKind::Cone,
-            SolidKind::RoundedCone,
-            SolidKind::Sphere,
-            SolidKind::Cuboid,
-            SolidKind::Disk,
-        ];
+        // Those of cylinders are formulations.
+        let mut kinds = SolidKind::SIMPLE.to_vec();
+        kinds.sort_by_key(|kind| kind.code());
+        let others = kinds
+            .clone()
+            .into_iter()
+            .filter(|&kind| kind != SolidKind::Cylinder);
         let formulations = formulations::all().into_iter().map(Self::Formulation);
         formulations
-            .chain(solvers.map(Self::Solver))
-            .chain([Self::ExactSolver(SolidKind::Cylinder)])
-            .chain(solvers.map(Self::ExactSolver))
+            .chain(others.map(Self::Solver))
+            .chain(kinds.into_iter().map(Self::ExactSolver))
             .chain([Self::Composition])
             .collect()
     }
@@ -127,17 +127,15 @@ impl Contender {
 
 /// The name of the solver of a kind with exact decisions.
 fn exact_name(kind: SolidKind) -> &'static str {
-    match kind {
-        SolidKind::Cylinder => "exact_cylinder",
-        SolidKind::Cone => "exact_cone",
-        SolidKind::RoundedCone => "exact_rounded_cone",
-        SolidKind::Sphere => "exact_sphere",
-        SolidKind::Cuboid => "exact_cuboid",
-        SolidKind::Disk => "exact_disk",
-        SolidKind::Union | SolidKind::Intersection | SolidKind::Difference => {
-            unreachable!("set operations have one solver")
-        }
+    macro_rules! names {
+        ($({ $type:ident $name:ident $($rest:tt)* })*) => {
+            match kind {
+                $(SolidKind::$type => concat!("exact_", stringify!($name)),)*
+                _ => unreachable!("set operations have one solver"),
+            }
+        };
     }
+    for_each_solid!(names)
 }
 
 fn first_answer(case: &Case) -> Option<Answer> {
@@ -204,12 +202,5 @@ impl<S: ConvexSolid> Solver for S {
 
 /// The solid, of whichever kind.
 pub(super) fn solver(solid: &AnySolid) -> &dyn Solver {
-    match solid {
-        AnySolid::Cylinder(cylinder) => cylinder,
-        AnySolid::Cone(cone) => cone,
-        AnySolid::RoundedCone(cone) => cone,
-        AnySolid::Sphere(sphere) => sphere,
-        AnySolid::Cuboid(cuboid) => cuboid,
-        AnySolid::Disk(disk) => disk,
-    }
+    with_solid!(solid, solid => solid)
 }

@@ -23,6 +23,7 @@ const CAPS: [(&str, Caps); 4] = [
 
 /// Why a word is not a case.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReplayError {
     /// There are more or fewer parts.
     #[error(

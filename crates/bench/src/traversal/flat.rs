@@ -53,7 +53,7 @@ impl Flat {
         path: &mut Vec<u32>,
     ) {
         let description = &scene.prototypes[prototype.0 as usize];
-        if !description.has_no_solids() {
+        if !description.solids.is_empty() {
             let number = self.placed.len() as u32;
             self.numbers.insert(path.clone(), number);
             self.placed.push(Placed {
@@ -94,7 +94,7 @@ impl Flat {
     /// The cylinders of a prototype.
     #[must_use]
     pub fn cylinders(&self, prototype: PrototypeIndex) -> &CylinderList {
-        &self.prototype(prototype).cylinders
+        &self.prototype(prototype).solids.cylinders
     }
 
     /// The solids of a prototype in an order of their own, which is that of rivals'
@@ -117,11 +117,9 @@ impl Flat {
     pub fn kinds(&self) -> Vec<SolidKind> {
         let mut kinds = Vec::new();
         for prototype in self.prototypes() {
-            // All of the list are of one kind, and may be millions.
-            let has_cylinders = !self.cylinders(prototype).is_empty();
-            kinds.extend(has_cylinders.then_some(SolidKind::Cylinder));
-            let others = self.prototype(prototype).solids.singles();
-            kinds.extend(others.map(|(_, solid)| solid.kind()));
+            let solids = &self.prototype(prototype).solids;
+            let simple = SolidKind::SIMPLE.iter();
+            kinds.extend(simple.filter(|&&kind| solids.len_of(kind) > 0));
         }
         kinds.sort_unstable();
         kinds.dedup();
@@ -148,7 +146,7 @@ impl Flat {
     #[must_use]
     pub fn stored(&self) -> usize {
         let used = self.prototypes();
-        let count = |one| self.cylinders(one).len() + self.prototype(one).solids.len();
+        let count = |one| self.prototype(one).solids.len();
         used.into_iter().map(count).sum()
     }
 }

@@ -35,11 +35,11 @@ pub fn sticks(count: usize, seed: u64) -> Scene {
         CylinderRecord::new(&cylinder, number, MaterialIndex::default())
     };
     let mut sticks = Prototype {
-        cylinders: (0..count as u32).map(stick).collect(),
+        solids: Solids::of_cylinders((0..count as u32).map(stick)),
         ..Prototype::default()
     };
     // As a scene file's are when they are loaded.
-    sticks.cylinders.arrange();
+    sticks.solids.cylinders.arrange();
     scene_of(sticks)
 }
 
@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn sticks_are_in_f32_numbers_and_of_their_length() {
         let scene = sticks(1000, 3);
-        let cylinders = &scene.prototypes[0].cylinders;
+        let cylinders = &scene.prototypes[0].solids.cylinders;
         assert_eq!(cylinders.len(), 1000);
         for record in cylinders {
             let cylinder = record.cylinder();

@@ -8,6 +8,7 @@ use cyltrace::solid::SolidKind;
 
 /// A scene of the benchmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum SceneName {
     /// 10^4 random sticks.
     Sticks1e4,

@@ -234,7 +234,7 @@ mod tests {
     use super::super::ours;
     use super::super::random_scene::{random_scene, sticks};
     use super::*;
-    use cyltrace::scene::{CylinderList, Placement, PrototypeIndex, Scene};
+    use cyltrace::scene::{Placement, PrototypeIndex, Scene, Solids};
     use cyltrace::solid::SolidKind;
     use cyltrace::tracer::{Options, Tracer};
 
@@ -252,7 +252,7 @@ mod tests {
             }
         };
         let of_sticks = |count, placements| Prototype {
-            cylinders: sticks(count, SEED).prototypes[0].cylinders.clone(),
+            solids: Solids::of_cylinders(&sticks(count, SEED).prototypes[0].solids.cylinders),
             placements,
             ..Prototype::default()
         };
@@ -281,8 +281,7 @@ mod tests {
     fn placed_others(kind: SolidKind) -> Scene {
         let mut scene = placed_sticks();
         for prototype in &mut scene.prototypes[1..] {
-            let count = prototype.cylinders.len();
-            prototype.cylinders = CylinderList::default();
+            let count = prototype.solids.cylinders.len();
             prototype.solids = random_scene(kind, count, SEED).prototypes[0].solids.clone();
         }
         scene

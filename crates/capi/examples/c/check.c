@@ -4,10 +4,10 @@
  *
  *     check SCENE [FACTOR]
  *
- * FACTOR multiplies the radii, to see what a wrong renderer gets. Exits with 0
- * if the check holds, 1 if it finds violations, 2 if it could not run. Float is
- * found out: its t is off by more than the bounds allow. Compiled with
- * -DREAL=double the same code holds.
+ * FACTOR multiplies the radii, to show the report of a wrong renderer. Exits with 0
+ * if the check passes, 1 if it finds violations, 2 if it could not run. Float
+ * fails: its t is off by more than the bounds allow. Compiled with -DREAL=double
+ * the same code passes.
  */
 #include "cyltrace.h"
 
@@ -76,7 +76,7 @@ static int inside(const struct cylinder *c, real factor, const real *origin,
     return *enter <= *leave;
 }
 
-/* The intersector: it tells t alone. `user` is the factor on radii. */
+/* The intersector: it returns only t. `user` is the factor on radii. */
 static void closest(void *user, const struct cyltrace_ray *rays, size_t count,
                     struct cyltrace_hit *hits) {
     const real factor = (real) * (const double *)user;
@@ -121,7 +121,7 @@ int main(int count, char **arguments) {
     if (code == CYLTRACE_ERROR)
         fprintf(stderr, "%s\n", cyltrace_last_error());
     else
-        printf("%s%s\n", outcome.text, code == CYLTRACE_OK ? "it holds" : "it does not hold");
+        printf("%s%s\n", outcome.text, code == CYLTRACE_OK ? "it passes" : "it fails");
     cyltrace_check_outcome_free(&outcome);
     cyltrace_scene_free(scene);
     return code;

@@ -1,58 +1,24 @@
-//! Calls as C makes them: answers are the tracer's, and what is wrong is
-//! refused with a message.
+//! Calls as C makes them: results are the tracer's, and misuse is an error with a message.
 
 use std::collections::HashSet;
-use std::ffi::{CStr, CString, c_char, c_void};
+use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 use std::sync::Mutex;
 use std::thread::{self, ThreadId};
 
 use cyltrace::math::{Random, Ray};
 use cyltrace::scene;
-use cyltrace::solid::{Crossing, Part};
+use cyltrace::solid::{Crossing, Part, SolidKind};
 use cyltrace::tracer::{Options, Tracer};
 use cyltrace_c::*;
 use glam::DVec3;
 
-/// A loaded scene that is freed in the end.
-struct Loaded(*mut CyltraceScene);
-
-impl Loaded {
-    fn new(name: &str) -> Self {
-        Self::at(&format!("{}/{name}", super::ROOT))
-    }
-
-    fn at(path: &str) -> Self {
-        let path = CString::new(path).expect("no NUL");
-        // SAFETY: a text with its NUL.
-        let scene = unsafe { cyltrace_scene_load(path.as_ptr()) };
-        assert!(!scene.is_null(), "{}", last_error());
-        Self(scene)
-    }
-}
-
-impl Drop for Loaded {
-    fn drop(&mut self) {
-        // SAFETY: it was loaded and is freed here alone.
-        unsafe { cyltrace_scene_free(self.0) };
-    }
-}
-
-fn last_error() -> String {
-    text(cyltrace_last_error())
-}
-
-fn text(pointer: *const c_char) -> String {
-    assert!(!pointer.is_null());
-    // SAFETY: the library's texts end with a NUL.
-    let text = unsafe { CStr::from_ptr(pointer) };
-    text.to_str().expect("UTF-8").to_owned()
-}
+use super::loaded::{Loaded, last_error, scene_path, text};
 
 #[test]
 fn rays_get_the_tracer_s_answers() {
-    let loaded = Loaded::new("scenes/minimal.toml");
-    let path = std::path::Path::new(super::ROOT).join("scenes/minimal.toml");
+    let loaded = Loaded::new("minimal.toml");
+    let path = scene_path("minimal.toml");
     let scene = std::sync::Arc::new(scene::load(&path).expect("loads"));
     let tracer = Tracer::new(scene, &Options::default()).expect("builds");
     let center = tracer.bounds().center();
@@ -134,7 +100,7 @@ fn rays_get_the_fields_that_are_requested_and_no_others() {
     let folder = tempfile::tempdir().expect("directory");
     let path = folder.path().join("placed.toml");
     std::fs::write(&path, PLACED).expect("written");
-    let loaded = Loaded::at(path.to_str().expect("UTF-8"));
+    let loaded = Loaded::at(&path);
     // Down onto the scene, so that some rays hit and some miss.
     let rays: Vec<CyltraceRay> = (0..200)
         .map(|number| {
@@ -171,7 +137,7 @@ fn rays_get_the_fields_that_are_requested_and_no_others() {
                 }
                 if !is_requested(CYLTRACE_FIELD_NORMAL) {
                     expected.normal = [f64::NAN; 3];
-                    expected.tells &= !CYLTRACE_TELLS_NORMAL;
+                    expected.valid_fields &= !CYLTRACE_VALID_NORMAL;
                 }
                 if !is_requested(CYLTRACE_FIELD_UV) {
                     (expected.u, expected.v) = (f64::NAN, f64::NAN);
@@ -182,7 +148,7 @@ fn rays_get_the_fields_that_are_requested_and_no_others() {
                 if !is_requested(CYLTRACE_FIELD_PATH) {
                     expected.instance_count = 0;
                     expected.instance = [0; CYLTRACE_GREATEST_DEPTH];
-                    expected.tells &= !CYLTRACE_TELLS_PLACE;
+                    expected.valid_fields &= !CYLTRACE_VALID_PLACE;
                 }
             }
             // The text of a number names its bits; all NaN are the same.
@@ -228,7 +194,7 @@ fn every_kind_of_solid_and_every_face_has_its_code() {
     let folder = tempfile::tempdir().expect("directory");
     let path = folder.path().join("kinds.toml");
     std::fs::write(&path, KINDS).expect("written");
-    let loaded = Loaded::at(path.to_str().expect("UTF-8"));
+    let loaded = Loaded::at(&path);
     let towards = |x: f64, from: [f64; 3]| CyltraceRay {
         origin: [x + 5.0 * from[0], 5.0 * from[1], 5.0 * from[2]],
         direction: from.map(|x| -x),
@@ -239,45 +205,41 @@ fn every_kind_of_solid_and_every_face_has_its_code() {
     for (ray, solid, part) in [
         (
             towards(0.0, [-1.0, 0.0, 0.0]),
-            CYLTRACE_SOLID_CUBOID,
+            SolidKind::Cuboid,
             CYLTRACE_X_MIN,
         ),
         (
             towards(0.0, [1.0, 0.0, 0.0]),
-            CYLTRACE_SOLID_CUBOID,
+            SolidKind::Cuboid,
             CYLTRACE_X_MAX,
         ),
         (
             towards(0.0, [0.0, -1.0, 0.0]),
-            CYLTRACE_SOLID_CUBOID,
+            SolidKind::Cuboid,
             CYLTRACE_Y_MIN,
         ),
         (
             towards(0.0, [0.0, 1.0, 0.0]),
-            CYLTRACE_SOLID_CUBOID,
+            SolidKind::Cuboid,
             CYLTRACE_Y_MAX,
         ),
         (
             towards(0.0, [0.0, 0.0, -1.0]),
-            CYLTRACE_SOLID_CUBOID,
+            SolidKind::Cuboid,
             CYLTRACE_Z_MIN,
         ),
-        (towards(0.0, down), CYLTRACE_SOLID_CUBOID, CYLTRACE_Z_MAX),
-        (towards(10.0, down), CYLTRACE_SOLID_CYLINDER, CYLTRACE_CAP1),
-        (towards(20.0, down), CYLTRACE_SOLID_CONE, CYLTRACE_CAP1),
-        (
-            towards(30.0, down),
-            CYLTRACE_SOLID_ROUNDED_CONE,
-            CYLTRACE_CAP1,
-        ),
-        (towards(40.0, down), CYLTRACE_SOLID_SPHERE, CYLTRACE_SIDE),
-        (towards(50.0, down), CYLTRACE_SOLID_DISK, CYLTRACE_SIDE),
+        (towards(0.0, down), SolidKind::Cuboid, CYLTRACE_Z_MAX),
+        (towards(10.0, down), SolidKind::Cylinder, CYLTRACE_CAP1),
+        (towards(20.0, down), SolidKind::Cone, CYLTRACE_CAP1),
+        (towards(30.0, down), SolidKind::RoundedCone, CYLTRACE_CAP1),
+        (towards(40.0, down), SolidKind::Sphere, CYLTRACE_SIDE),
+        (towards(50.0, down), SolidKind::Disk, CYLTRACE_SIDE),
     ] {
         let mut hit = CyltraceHit::MISS;
         // SAFETY: one ray and one hit.
         let code = unsafe { cyltrace_closest(loaded.0, &raw const ray, 1, &raw mut hit) };
         assert_eq!((code, hit.is_hit), (CYLTRACE_OK, 1), "{ray:?}");
-        assert_eq!((hit.solid, hit.part), (solid, part), "{ray:?}");
+        assert_eq!((hit.solid, hit.part), (solid.code(), part), "{ray:?}");
     }
 }
 
@@ -339,7 +301,7 @@ const SETTINGS: CyltraceCheckSettings = CyltraceCheckSettings {
 
 #[test]
 fn tracer_checked_through_c_holds_and_wrong_parts_do_not() {
-    let loaded = Loaded::new("scenes/minimal.toml");
+    let loaded = Loaded::new("minimal.toml");
     let segments = [24];
     let settings = CyltraceCheckSettings {
         segments: segments.as_ptr(),
@@ -380,7 +342,7 @@ fn tracer_checked_through_c_holds_and_wrong_parts_do_not() {
 
 #[test]
 fn what_cannot_be_checked_is_refused_with_its_reason() {
-    let loaded = Loaded::new("scenes/minimal.toml");
+    let loaded = Loaded::new("minimal.toml");
     let two = [2];
     for (settings, part, reason) in [
         (SETTINGS, Some(9), "a hit's part is 9"),
@@ -419,7 +381,7 @@ fn what_cannot_be_checked_is_refused_with_its_reason() {
 
 #[test]
 fn settings_beyond_their_limits_are_refused() {
-    let loaded = Loaded::new("scenes/minimal.toml");
+    let loaded = Loaded::new("minimal.toml");
     let segments = [8_u32; 65];
     let misaligned = segments.as_ptr().cast::<u8>().wrapping_add(1).cast();
     for (settings, reason) in [
@@ -478,7 +440,7 @@ fn settings_beyond_their_limits_are_refused() {
 
 #[test]
 fn arrays_that_no_program_can_have_are_refused() {
-    let loaded = Loaded::new("scenes/minimal.toml");
+    let loaded = Loaded::new("minimal.toml");
     let rays = [CyltraceRay::from(&Ray::new(DVec3::ZERO, DVec3::X)); 2];
     let mut hits = [CyltraceHit::MISS; 2];
     let mut occluded = [0_u8; 2];
@@ -506,7 +468,7 @@ fn arrays_that_no_program_can_have_are_refused() {
 
 #[test]
 fn rays_of_sizes_that_are_not_supported_are_misses() {
-    let loaded = Loaded::new("scenes/minimal.toml");
+    let loaded = Loaded::new("minimal.toml");
     let ray = |origin: f64, direction: f64| CyltraceRay {
         origin: [origin, 0.0, 0.5],
         direction: [direction, 0.0, 0.0],
@@ -529,14 +491,19 @@ fn rays_of_sizes_that_are_not_supported_are_misses() {
 
 #[test]
 fn null_pointers_and_missing_files_are_refused() {
-    let loaded = Loaded::new("scenes/minimal.toml");
+    let loaded = Loaded::new("minimal.toml");
     let ray = CyltraceRay::from(&Ray::new(DVec3::ZERO, DVec3::X));
     let mut outcome = CyltraceCheckOutcome::NOTHING;
     // SAFETY: null, or locals.
     unsafe {
-        assert!(cyltrace_scene_load(null()).is_null());
+        assert!(cyltrace_scene_load_checked(null(), &CyltraceLayout::LIBRARY).is_null());
         assert_eq!(last_error(), "cyltrace_scene_load: path is null");
-        assert!(cyltrace_scene_load(c"nowhere/a.toml".as_ptr()).is_null());
+        assert!(cyltrace_scene_load_checked(c"a.toml".as_ptr(), null()).is_null());
+        assert_eq!(last_error(), "cyltrace_scene_load: program is null");
+        assert!(
+            cyltrace_scene_load_checked(c"nowhere/a.toml".as_ptr(), &CyltraceLayout::LIBRARY)
+                .is_null()
+        );
         assert!(last_error().contains("nowhere/a.toml"), "{}", last_error());
         let hits = null_mut();
         for (code, reason) in [

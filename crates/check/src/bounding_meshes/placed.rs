@@ -134,12 +134,11 @@ impl<'a> Tree<'a> {
         }
         let scene = self.scene;
         let prototype = &scene.prototypes[index.0 as usize];
-        let (cylinders, solids) = (&prototype.cylinders, &prototype.solids);
-        let boxes = cylinders.iter().map(|record| record.cylinder().bounds());
+        let solids = &prototype.solids;
         let compositions = solids.compositions.iter();
         let mut node = Node {
-            count: (cylinders.len() + solids.len()) as u64,
-            bounds: boxes.fold(solids.bounds(), |all, bounds| all.union(&bounds)),
+            count: solids.len() as u64,
+            bounds: solids.bounds(),
             placed: Vec::with_capacity(prototype.placements.len()),
             compositions: compositions
                 .map(|record| Arc::new(record.solid.clone()))
@@ -228,23 +227,16 @@ impl<'a> Tree<'a> {
         let mut number = random.below(self.root().count);
         loop {
             let prototype = &self.scene.prototypes[index.0 as usize];
-            let (cylinders, solids) = (&prototype.cylinders, &prototype.solids);
-            let own = (cylinders.len() + solids.len()) as u64;
+            let solids = &prototype.solids;
+            let own = solids.len() as u64;
             if number < own {
-                let (primitive, solid) = if number < cylinders.len() as u64 {
-                    let record = cylinders.get(number as usize);
-                    (record.primitive(), record.cylinder().into())
-                } else {
+                let (primitive, solid) = solids.nth_simple(number as usize).unwrap_or_else(|| {
                     // A composition is picked by its first leaf.
-                    let compositions = solids.compositions.iter();
-                    let compositions = compositions.filter_map(|record| {
-                        let leaf = record.solid.solids().first().copied()?;
-                        Some((record.primitive, leaf))
-                    });
-                    let others = number as usize - cylinders.len();
-                    let mut all = solids.singles().chain(compositions);
-                    all.nth(others).expect("a solid of the prototype")
-                };
+                    let simple = solids.len() - solids.compositions.len();
+                    let record = &solids.compositions[number as usize - simple];
+                    let leaf = record.solid.solids().first().copied();
+                    (record.primitive, leaf.expect("an operation has operands"))
+                });
                 let frame = Arc::new(frame);
                 let placed = PlacedSolid {
                     solid,

@@ -88,10 +88,7 @@ impl<'a> Surfaces<'a> {
         }
         let scene = self.scene;
         let prototype = &scene.prototypes[number];
-        let cylinders = prototype.cylinders.iter();
-        let own = cylinders.fold(prototype.solids.bounds(), |all, one| {
-            all.union(&one.cylinder().bounds())
-        });
+        let own = prototype.solids.bounds();
         // A composition's numbers are those of its leaves, whose boxes may be larger.
         let composed = prototype.solids.compositions.iter();
         let leaves: Vec<AnySolid> = composed.flat_map(|record| record.solid.solids()).collect();

@@ -9,7 +9,6 @@ use glam::{DAffine3, DVec3};
 use super::target::any_point_of;
 use cyltrace::math::{Bounds, Random, Ray};
 use cyltrace::scene::{Prototype, PrototypeIndex, Scene};
-use cyltrace::solid::AnySolid;
 use cyltrace::tracer::Tracer;
 
 /// The rays of class `around`: from a sphere of twice the scene's radius to points of its box
@@ -49,8 +48,6 @@ struct Targets<'a> {
 
 /// The contents of a prototype.
 struct Members {
-    /// Single solids other than cylinders.
-    others: Vec<AnySolid>,
     /// The boxes of compositions.
     composed: Vec<Bounds>,
     /// The number of solids up to and including each placement. Rounding makes some of
@@ -61,7 +58,7 @@ struct Members {
 impl Members {
     /// The solids that are the prototype's own.
     fn own(&self, prototype: &Prototype) -> usize {
-        prototype.cylinders.len() + self.others.len() + self.composed.len()
+        prototype.solids.len()
     }
 
     /// All solids, including placed ones.
@@ -95,10 +92,8 @@ impl<'a> Targets<'a> {
             sum
         });
         let placed = placed.collect();
-        let others = prototype.solids.singles().map(|(_, solid)| solid);
         let composed = prototype.solids.compositions.iter();
         let members = Members {
-            others: others.collect(),
             composed: composed.map(|record| record.solid.bounds()).collect(),
             placed,
         };
@@ -140,14 +135,11 @@ fn own_point(
     chosen: usize,
     random: &mut Random,
 ) -> DVec3 {
-    let cylinders = prototype.cylinders.len();
-    if chosen < cylinders {
-        let cylinder = prototype.cylinders.get(chosen).cylinder();
-        return any_point_of(&cylinder.into(), random);
-    }
-    let chosen = chosen - cylinders;
-    match members.others.get(chosen) {
-        Some(solid) => any_point_of(solid, random),
-        None => random_point(&members.composed[chosen - members.others.len()], random),
+    match prototype.solids.nth_simple(chosen) {
+        Some((_, solid)) => any_point_of(&solid, random),
+        None => {
+            let simple = prototype.solids.len() - members.composed.len();
+            random_point(&members.composed[chosen - simple], random)
+        }
     }
 }

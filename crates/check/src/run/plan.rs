@@ -51,7 +51,7 @@ pub(super) fn chosen_windows(
         }
     }
     let scene_stats = scene.scene_stats();
-    if scene_stats.cylinders_instanced == 0 && scene_stats.other_solids_unique == 0 {
+    if scene_stats.instanced.total() == 0 {
         return Err(CheckError::Empty);
     }
     let segments = settings.segments.iter().copied().max().unwrap_or(3);

@@ -45,11 +45,11 @@ fn scene() -> Scene {
 fn changed(scene: &Scene, change: impl Fn(&Cylinder) -> Cylinder) -> Tracer {
     let mut scene = scene.clone();
     for prototype in &mut scene.prototypes {
-        let records = prototype.cylinders.iter().map(|record| {
+        let records = prototype.solids.cylinders.iter().map(|record| {
             let cylinder = change(&record.cylinder());
             CylinderRecord::new(&cylinder, record.primitive(), MaterialIndex(0))
         });
-        prototype.cylinders = records.collect();
+        prototype.solids.cylinders = records.collect();
     }
     tracer(&Arc::new(scene))
 }

@@ -1,7 +1,9 @@
 //! Scenes made by rule.
 
 use cyltrace::math::Random;
-use cyltrace::scene::{CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene};
+use cyltrace::scene::{
+    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, Solids,
+};
 use cyltrace::solid::{Caps, Cylinder};
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -9,11 +11,9 @@ use glam::{DAffine3, DMat3, DVec3};
 pub fn prototype(cylinders: impl IntoIterator<Item = Cylinder>) -> Prototype {
     let records = (0..).zip(cylinders);
     Prototype {
-        cylinders: records
-            .map(|(primitive, cylinder)| {
-                CylinderRecord::new(&cylinder, primitive, MaterialIndex(0))
-            })
-            .collect(),
+        solids: Solids::of_cylinders(records.map(|(primitive, cylinder)| {
+            CylinderRecord::new(&cylinder, primitive, MaterialIndex(0))
+        })),
         ..Prototype::default()
     }
 }

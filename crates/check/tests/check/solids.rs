@@ -158,7 +158,6 @@ fn shrunk_scene(scene: &Scene) -> Tracer {
                 ..record.clone()
             });
         }
-        prototype.cylinders = solids.cylinders;
         prototype.solids = solids.solids;
     }
     tracer(&Arc::new(scene))

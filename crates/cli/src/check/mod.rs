@@ -21,7 +21,7 @@ use super::memory::readable;
 use super::output_sink::{make_directory, write_text};
 use super::outputs::Files;
 use super::print::print;
-use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene, text};
+use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
 use external_input::ExternalInput;
 
 /// The fields of the rows that depend on Embree's f32 arithmetic, whose last bits depend
@@ -263,10 +263,8 @@ fn sentence(arguments: &CheckArguments, tracer: &Tracer, outcome: &Outcome) -> S
     };
     let statistics = tracer.statistics();
     format!(
-        "{rays}; {} cylinders; Embree {} with {}.",
-        text::count(statistics.cylinders_instanced),
-        statistics.embree_version,
-        statistics.isa
+        "{rays}; {}; Embree {} with {}.",
+        statistics.instanced, statistics.embree_version, statistics.isa
     )
 }
 
@@ -276,9 +274,11 @@ fn figures(arguments: &CheckArguments, tracer: &Tracer, outcome: &Outcome, elaps
     let is_external = outcome.rows.iter().any(|row| row.tolerance.is_some());
     let mut figures = json!({ "scene": arguments.scene });
     let all = json!(outcome);
+    let solids = json::Solids::of(&statistics);
     let of_run = json!({
         "seed": arguments.seed,
-        "cylinders": json::cylinders(&statistics),
+        "solids": solids.by_kind(),
+        "cylinders": solids.cylinders(),
         "embree": statistics.embree_version,
         "isa": statistics.isa,
         // External hits are compared in f64.

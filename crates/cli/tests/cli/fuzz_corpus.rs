@@ -1,7 +1,7 @@
 //! Replays the inputs of `fuzz/corpus` through the fuzz targets, without libFuzzer: the
 //! seeds, and whatever fuzzing found to be wrong once.
 //!
-//! `CYLTRACE_FUZZ_CASES=100000 cargo test --release --test fuzz_corpus` also tries that many
+//! `CYLTRACE_FUZZ_CASES=100000 cargo test --release --test cli fuzz_corpus` also tries that many
 //! random inputs on the targets that draw what they do from any bytes.
 
 #[path = "../../../../fuzz/src/lib.rs"]

@@ -1,7 +1,7 @@
 //! The promises of the library's solvers on the families of hard cases, and
 //! the command that shows them.
 //!
-//! `CYLTRACE_CASES=1000000 cargo test --release --test stress` is the full run.
+//! `CYLTRACE_CASES=1000000 cargo test --release --test cli stress` is the full run.
 
 use std::sync::atomic::AtomicBool;
 

@@ -154,7 +154,7 @@ fn scene(files: &[(&str, &str)]) -> Result<Scene, String> {
 
 /// Primitive number, ends and radius of every cylinder.
 fn cylinders(scene: &Scene) -> Vec<(u32, DVec3, DVec3, f64)> {
-    let records = scene.prototypes[0].cylinders.iter();
+    let records = scene.prototypes[0].solids.cylinders.iter();
     records
         .map(|record| {
             let cylinder = record.cylinder();
@@ -233,6 +233,7 @@ fn neuron(text: &str, keys: &str) -> Result<Vec<(SolidKind, u32)>, String> {
     let mut all: Vec<(SolidKind, u32)> = Vec::new();
     all.extend(
         prototype
+            .solids
             .cylinders
             .iter()
             .map(|one| (SolidKind::Cylinder, one.primitive())),

@@ -84,12 +84,13 @@ impl Strut {
         // The first prototype with struts along the first placements.
         let mut prototype = &scene.prototypes[0];
         let mut map = DAffine3::IDENTITY;
-        while prototype.cylinders.iter().count() < 1000 {
+        while prototype.solids.cylinders.iter().count() < 1000 {
             let placement = &prototype.placements[0];
             map *= placement.parent_from_child;
             prototype = &scene.prototypes[placement.of.0 as usize];
         }
         let strut: Cylinder = prototype
+            .solids
             .cylinders
             .iter()
             .nth(number)

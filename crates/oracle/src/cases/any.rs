@@ -6,13 +6,12 @@
 use std::fmt::Debug;
 use std::str::FromStr;
 
-use super::Problem;
-use super::{
-    CuboidFamily, DiskFamily, Family, Inputs, SphereFamily, TaperFamily, TaperSolid, UnknownFamily,
-    family_named,
-};
+use super::{Inputs, Problem, UnknownFamily, family_named};
+use cyltrace::for_each_solid;
 use cyltrace::math::Ray;
-use cyltrace::solid::{AnySolid, Caps, SolidKind};
+use cyltrace::solid::{
+    AnySolid, Cone, ConvexSolid, Cuboid, Cylinder, Disk, RoundedCone, SolidKind, Sphere,
+};
 
 /// A solid and a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,8 +23,7 @@ pub struct Case {
 }
 
 impl From<Problem> for Case {
-    fn from(problem: Problem) -> Self {
-        let Problem { cylinder, ray } = problem;
+    fn from(Problem { cylinder, ray }: Problem) -> Self {
         Self {
             solid: cylinder.into(),
             ray,
@@ -33,103 +31,88 @@ impl From<Problem> for Case {
     }
 }
 
-/// A family of cases of some kind of solid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum AnyFamily {
-    /// Of cylinders.
-    Cylinder(Family),
-    /// Of cones.
-    Cone(TaperFamily),
-    /// Of rounded cones.
-    RoundedCone(TaperFamily),
-    /// Of spheres.
-    Sphere(SphereFamily),
-    /// Of cuboids.
-    Cuboid(CuboidFamily),
-    /// Of disks.
-    Disk(DiskFamily),
-}
+/// A kind of solid with families of hard cases.
+pub trait HardCases: ConvexSolid + Into<AnySolid> {
+    /// The families.
+    type Family: Copy + Debug + 'static;
 
-impl AnyFamily {
-    /// All families, in the order of tables.
+    /// All of them, in the order of tables.
+    const FAMILIES: &'static [Self::Family];
+
+    /// The name of a family: that of the kind and its own.
     #[must_use]
-    pub fn all() -> Vec<Self> {
-        let cylinders = Family::ALL.into_iter().map(Self::Cylinder);
-        cylinders
-            .chain(TaperFamily::ALL.map(Self::Cone))
-            .chain(TaperFamily::ALL.map(Self::RoundedCone))
-            .chain(SphereFamily::ALL.map(Self::Sphere))
-            .chain(CuboidFamily::ALL.map(Self::Cuboid))
-            .chain(DiskFamily::ALL.map(Self::Disk))
-            .collect()
+    fn family_name(family: Self::Family) -> String {
+        let kind = Self::KIND.name().replace('_', "-");
+        format!("{kind}{}", with_hyphens(&format!("{family:?}")))
     }
 
-    /// The kind of its solids.
-    #[must_use]
-    pub fn kind(self) -> SolidKind {
-        match self {
-            Self::Cylinder(_) => SolidKind::Cylinder,
-            Self::Cone(_) => SolidKind::Cone,
-            Self::RoundedCone(_) => SolidKind::RoundedCone,
-            Self::Sphere(_) => SolidKind::Sphere,
-            Self::Cuboid(_) => SolidKind::Cuboid,
-            Self::Disk(_) => SolidKind::Disk,
-        }
-    }
-
-    /// The name on the command line and in tables.
-    #[must_use]
-    pub fn name(self) -> String {
-        let of = |family: &dyn Debug| {
-            let kind = self.kind().name().replace('_', "-");
-            format!("{kind}{}", with_hyphens(&format!("{family:?}")))
-        };
-        match self {
-            Self::Cylinder(family) => family.name().to_owned(),
-            Self::Cone(family) | Self::RoundedCone(family) => of(&family),
-            Self::Sphere(family) => of(&family),
-            Self::Cuboid(family) => of(&family),
-            Self::Disk(family) => of(&family),
-        }
-    }
-
-    /// Case `index`, below 2^32, of the family; the same for the same arguments.
-    /// Cones have all combinations of caps in turn.
-    ///
-    /// # Panics
-    /// When none of many draws is a solid and a ray, which no family does.
-    #[must_use]
-    pub fn case(self, seed: u64, index: u64, inputs: Inputs) -> Case {
-        match self {
-            Self::Cylinder(family) => family.case(seed, index, inputs).into(),
-            Self::Cone(family) => {
-                let case = family.case(TaperSolid::Cone, seed, index, inputs);
-                let caps = [Caps::Both, Caps::None, Caps::P0, Caps::P1][(index % 4) as usize];
-                case_of((case.cone(caps), case.ray))
-            }
-            Self::RoundedCone(family) => {
-                let case = family.case(TaperSolid::RoundedCone, seed, index, inputs);
-                case_of((case.rounded_cone(), case.ray))
-            }
-            Self::Sphere(family) => drawn(index, |index| family.case(seed, index, inputs)),
-            Self::Cuboid(family) => drawn(index, |index| family.case(seed, index, inputs)),
-            Self::Disk(family) => drawn(index, |index| family.case(seed, index, inputs)),
-        }
-    }
+    /// Draw `index`, below 2^38, of a family; the same for the same arguments. `None` where
+    /// the numbers round to no case, which fewer than one in ten do.
+    fn draw(family: Self::Family, seed: u64, index: u64, inputs: Inputs) -> Option<(Self, Ray)>;
 }
 
 /// The first draw that is a case: some round to none.
-fn drawn<S: Into<AnySolid>>(index: u64, draw: impl Fn(u64) -> Option<(S, Ray)>) -> Case {
-    let drawn = (0..64).find_map(|again| draw(index | again << 32));
-    case_of(drawn.expect("more than nine in ten draws are cases"))
-}
-
-fn case_of<S: Into<AnySolid>>((solid, ray): (S, Ray)) -> Case {
+fn case_of<S: HardCases>(family: S::Family, seed: u64, index: u64, inputs: Inputs) -> Case {
+    let drawn = (0..64).find_map(|again| S::draw(family, seed, index | again << 32, inputs));
+    let (solid, ray) = drawn.expect("more than nine in ten draws are cases");
     Case {
         solid: solid.into(),
         ray,
     }
 }
+
+macro_rules! any_family {
+    ($({ $type:ident $name:ident $list:ident $($rest:tt)* })*) => {
+        /// A family of cases of some kind of solid.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum AnyFamily {
+            $(
+                #[doc = concat!("Of ", stringify!($list), ".")]
+                $type(<$type as HardCases>::Family),
+            )*
+        }
+
+        impl AnyFamily {
+            /// All families, in the order of tables.
+            #[must_use]
+            pub fn all() -> Vec<Self> {
+                let mut all = Vec::new();
+                $(all.extend($type::FAMILIES.iter().copied().map(Self::$type));)*
+                all.sort_by_key(|family| family.kind().code());
+                all
+            }
+
+            /// The kind of its solids.
+            #[must_use]
+            pub fn kind(self) -> SolidKind {
+                match self {
+                    $(Self::$type(_) => SolidKind::$type,)*
+                }
+            }
+
+            /// The name on the command line and in tables.
+            #[must_use]
+            pub fn name(self) -> String {
+                match self {
+                    $(Self::$type(family) => $type::family_name(family),)*
+                }
+            }
+
+            /// Case `index`, below 2^32, of the family; the same for the same arguments.
+            ///
+            /// # Panics
+            /// When none of many draws is a solid and a ray, which no family does.
+            #[must_use]
+            pub fn case(self, seed: u64, index: u64, inputs: Inputs) -> Case {
+                match self {
+                    $(Self::$type(family) => case_of::<$type>(family, seed, index, inputs),)*
+                }
+            }
+        }
+    };
+}
+
+for_each_solid!(any_family);
 
 /// `-exact-rim` of `ExactRim`.
 pub(super) fn with_hyphens(name: &str) -> String {

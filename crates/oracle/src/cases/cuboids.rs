@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::Inputs;
 use super::aiming::{Aim, sign, whole};
+use super::any::HardCases;
 use super::shapes::scale_and_speed;
 use cyltrace::math::{Orientation, Random, Ray};
 use cyltrace::solid::Cuboid;
@@ -203,4 +204,14 @@ fn other_corner(random: &mut Random, own: DVec3, axis: usize) -> DVec3 {
 fn with_axis(mut vector: DVec3, axis: usize, value: f64) -> DVec3 {
     vector[axis] = value;
     vector
+}
+
+impl HardCases for Cuboid {
+    type Family = CuboidFamily;
+
+    const FAMILIES: &'static [CuboidFamily] = &CuboidFamily::ALL;
+
+    fn draw(family: CuboidFamily, seed: u64, index: u64, inputs: Inputs) -> Option<(Self, Ray)> {
+        family.case(seed, index, inputs)
+    }
 }

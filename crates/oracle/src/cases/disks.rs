@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::Inputs;
 use super::aiming::{Aim, sign, whole};
+use super::any::HardCases;
 use super::shapes::{Round, scale_and_speed};
 use cyltrace::math::{Random, Ray};
 use cyltrace::solid::Disk;
@@ -115,5 +116,15 @@ impl DiskFamily {
         };
         let ray = Ray::new(center + point - heading * steps, heading);
         ray.is_valid().then_some((disk, ray))
+    }
+}
+
+impl HardCases for Disk {
+    type Family = DiskFamily;
+
+    const FAMILIES: &'static [DiskFamily] = &DiskFamily::ALL;
+
+    fn draw(family: DiskFamily, seed: u64, index: u64, inputs: Inputs) -> Option<(Self, Ray)> {
+        family.case(seed, index, inputs)
     }
 }

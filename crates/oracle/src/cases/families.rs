@@ -9,6 +9,7 @@ use std::str::FromStr;
 use super::Inputs;
 use super::Problem;
 use super::aiming::{Aim, Target, sign};
+use super::any::HardCases;
 use super::shapes::{Offset, Shape};
 use cyltrace::math::{Random, Ray, power_of_two};
 use cyltrace::solid::{Caps, Cylinder};
@@ -356,4 +357,20 @@ fn exact_tangent(random: &mut Random) -> Option<Problem> {
         cylinder,
         ray: Ray::new(origin, heading),
     })
+}
+
+impl HardCases for Cylinder {
+    type Family = Family;
+
+    const FAMILIES: &'static [Family] = &Family::ALL;
+
+    /// Those of cylinders have names without the kind.
+    fn family_name(family: Family) -> String {
+        family.name().to_owned()
+    }
+
+    fn draw(family: Family, seed: u64, index: u64, inputs: Inputs) -> Option<(Self, Ray)> {
+        let Problem { cylinder, ray } = family.case(seed, index, inputs);
+        Some((cylinder, ray))
+    }
 }

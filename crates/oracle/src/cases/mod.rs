@@ -17,7 +17,7 @@ mod shapes;
 mod spheres;
 mod tapers;
 
-pub use any::{AnyFamily, Case};
+pub use any::{AnyFamily, Case, HardCases};
 pub use composed::{ComposedCase, ComposedFamily};
 pub use cuboids::CuboidFamily;
 pub use disks::DiskFamily;

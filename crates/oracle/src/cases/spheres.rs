@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::Inputs;
 use super::aiming::{Aim, whole};
+use super::any::HardCases;
 use super::shapes::{Round, scale_and_speed};
 use cyltrace::math::{Random, Ray};
 use cyltrace::solid::Sphere;
@@ -103,4 +104,14 @@ fn tangent(random: &mut Random) -> Option<(Sphere, Ray)> {
     let steps = random.below(64) as f64 - 16.0;
     let sphere = Sphere::new(center, hypotenuse * times).ok()?;
     Some((sphere, Ray::new(center + touch - along * steps, along)))
+}
+
+impl HardCases for Sphere {
+    type Family = SphereFamily;
+
+    const FAMILIES: &'static [SphereFamily] = &SphereFamily::ALL;
+
+    fn draw(family: SphereFamily, seed: u64, index: u64, inputs: Inputs) -> Option<(Self, Ray)> {
+        family.case(seed, index, inputs)
+    }
 }

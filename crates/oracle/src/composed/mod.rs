@@ -32,6 +32,8 @@ mod ring;
 mod sheet;
 mod smooth;
 
+pub(crate) use leaf::{Leaf, TrueOperand};
+pub(crate) use sheet::Sheet;
 use std::cmp::Ordering;
 
 use glam::DVec3;
@@ -41,7 +43,6 @@ use around::Around;
 use cyltrace::math::Ray;
 use cyltrace::solid::{Composition, Crossing, Location};
 pub use face::Face;
-use leaf::Leaf;
 use line::{Station, stations};
 use place::Place;
 

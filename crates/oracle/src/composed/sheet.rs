@@ -17,8 +17,8 @@ use super::ring::{Form, Number, Vector};
 
 /// A plane or a quadric.
 #[derive(Clone, Debug)]
-pub(super) struct Sheet {
-    pub form: Form,
+pub(crate) struct Sheet {
+    pub(super) form: Form,
     pub linear: ExactVector,
     pub constant: Exact,
     /// The part of the solid that it is, unless it only divides others.
@@ -103,13 +103,13 @@ impl Sheet {
     }
 
     /// `g`, half the gradient of `r²F`.
-    pub fn gradient(&self, place: &Place) -> Vector {
+    pub(super) fn gradient(&self, place: &Place) -> Vector {
         let linear = Vector::rational(&self.linear.times(&place.unit));
         self.form.image_of(&place.coordinates).plus(&linear)
     }
 
     /// `r²F`.
-    pub fn value(&self, place: &Place) -> Number {
+    pub(super) fn value(&self, place: &Place) -> Number {
         let linear = Vector::rational(&self.linear.times(&place.unit));
         let rest = Number::rational(&self.constant * &place.unit * &place.unit);
         let inner = self.gradient(place).plus(&linear);

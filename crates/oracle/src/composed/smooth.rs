@@ -264,7 +264,7 @@ fn zeros(form: &[Number; 3]) -> Vec<f64> {
     let [a, b, c] = [0, 1, 2].map(|i| form[i].approximation());
     let root = discriminant.approximation().sqrt();
     let far = -b - if b < 0.0 { -root } else { root };
-    // As in the textbook: (far, a) and (c, far), one of which may be zero.
+    // As in the textbook: (far, a) and (c, far); one may be zero.
     [(far, a), (c, far)]
         .into_iter()
         .filter(|&(x, y)| x != 0.0 || y != 0.0)

@@ -32,7 +32,7 @@ fn whole(random: &mut Random, from: i32, count: u64) -> f64 {
     f64::from(from) + random.below(count) as f64
 }
 
-/// A solid of which rays of small whole numbers often touch an edge, a rim or a wall.
+/// A solid whose edges, rims or walls rays of small whole numbers often touch.
 fn coarse_solid(random: &mut Random, kind: u64, caps: Caps) -> AnySolid {
     let p0 = DVec3::from_array([0; 3].map(|_| whole(random, -1, 3)));
     let p1 = p0 + DVec3::AXES[random.below(3) as usize] * whole(random, 1, 3);

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use cyltrace::scene::{
     self, Camera, CylinderRecord, Frame, Integrator, Material, MaterialIndex, Projection,
-    Prototype, Scene, Sky, Sun,
+    Prototype, Scene, Sky, Solids, Sun,
 };
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{Options, Tracer, workers};
@@ -25,7 +25,7 @@ fn scene(cylinders: &[(DVec3, DVec3, f64, Caps)]) -> Scene {
             CylinderRecord::new(&cylinder, primitive, MaterialIndex(0))
         });
     let root = Prototype {
-        cylinders: records.collect(),
+        solids: Solids::of_cylinders(records),
         ..Prototype::default()
     };
     Scene {

@@ -7,9 +7,7 @@ use crate::bounding_meshes::placed::{Budget, windows};
 use crate::bounding_meshes::window::Window;
 use crate::solids::tests::random_solid;
 use cyltrace::math::Random;
-use cyltrace::scene::{
-    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, SolidRecord,
-};
+use cyltrace::scene::{MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, SolidRecord};
 use cyltrace_oracle::ExactVector;
 
 const BOTH: [Fit; 2] = [Fit::Inscribed, Fit::Circumscribed];
@@ -41,21 +39,8 @@ pub(crate) fn random_window(solid: AnySolid, random: &mut Random) -> Window {
     };
     let mut own = Prototype::default();
     let material = MaterialIndex(0);
-    let solids = &mut own.solids;
-    match solid {
-        AnySolid::Sphere(one) => solids.spheres.push(SolidRecord::new(one, 0, material)),
-        AnySolid::Cuboid(one) => solids.cuboids.push(SolidRecord::new(one, 0, material)),
-        AnySolid::Cone(one) => solids.cones.push(SolidRecord::new(one, 0, material)),
-        AnySolid::RoundedCone(one) => {
-            solids
-                .rounded_cones
-                .push(SolidRecord::new(one, 0, material));
-        }
-        AnySolid::Disk(one) => solids.disks.push(SolidRecord::new(one, 0, material)),
-        AnySolid::Cylinder(one) => {
-            own.cylinders = vec![CylinderRecord::new(&one, 0, material)].into();
-        }
-    }
+    let record = SolidRecord::new(solid, 0, material);
+    own.solids.push(record).expect("f64 keeps it");
     let budget = Budget {
         triangles: 1 << 24,
         segments: 64,

@@ -11,6 +11,7 @@ use glam::DVec3;
 
 use super::Inputs;
 use super::aiming::{Aim, sign, valid};
+use super::any::HardCases;
 use cyltrace::math::{Random, Ray};
 use cyltrace::solid::{Caps, Cone, RoundedCone};
 use grids::{tangent_plane, through_apex};
@@ -259,5 +260,29 @@ impl TaperFamily {
             }
         };
         Aim::new(point, heading.normalize()).ray(distance, speed, inputs)
+    }
+}
+
+/// With all combinations of caps in turn.
+impl HardCases for Cone {
+    type Family = TaperFamily;
+
+    const FAMILIES: &'static [TaperFamily] = &TaperFamily::ALL;
+
+    fn draw(family: TaperFamily, seed: u64, index: u64, inputs: Inputs) -> Option<(Self, Ray)> {
+        let case = family.case(TaperSolid::Cone, seed, index, inputs);
+        let caps = [Caps::Both, Caps::None, Caps::P0, Caps::P1][(index % 4) as usize];
+        Some((case.cone(caps), case.ray))
+    }
+}
+
+impl HardCases for RoundedCone {
+    type Family = TaperFamily;
+
+    const FAMILIES: &'static [TaperFamily] = &TaperFamily::ALL;
+
+    fn draw(family: TaperFamily, seed: u64, index: u64, inputs: Inputs) -> Option<(Self, Ray)> {
+        let case = family.case(TaperSolid::RoundedCone, seed, index, inputs);
+        Some((case.rounded_cone(), case.ray))
     }
 }

@@ -1,0 +1,299 @@
+//! Beam lattices in 3MF: `archive` unpacks the file, `package` finds the model, `model` the
+//! objects that it builds, `lattice` the beams and balls of one, `element` reads
+//! XML, `limits` refuses what would take too long, `notes` collects notes for the user,
+//! `counted` computes the number of solids beforehand. Here they become solids.
+//!
+//! **What a beam is.** The specification (3MF Beam Lattice Extension, 2.1.1) makes it
+//! a frustum, united at either end with what the end's cap is: nothing for `butt`, the
+//! ball of the end's radius for `sphere`, the outer half of that ball for
+//! `hemisphere`. All beams and balls of a lattice are united. So a frustum is a
+//! [`Cylinder`] or, where its radii differ, a [`Cone`], and at each vertex there is one
+//! [`Sphere`]: of all the balls there the greatest, which holds the others. (A rounded
+//! cone is another solid: its flank touches its balls, a beam's goes through the
+//! circles at its vertices.)
+//!
+//! **Half a ball** is the whole one to the union wherever its other half is inside the
+//! frustum, whose radius is nowhere less than the end's: at the end where the beam is
+//! not thicker than at the other, if the beam is at least as long as that radius.
+//! Where it is not, it is the intersection of the ball with a cylinder that stands on
+//! the end and is wider and higher than the half; unless the ball at the vertex holds
+//! it anyway.
+
+#[cfg_attr(not(feature = "three-mf"), path = "no_archive.rs")]
+mod archive;
+mod counted;
+mod element;
+mod lattice;
+mod limits;
+mod model;
+mod notes;
+mod package;
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use serde::Deserialize;
+use toml::Spanned;
+
+use self::counted::count;
+use self::element::{Element, Similarity};
+use self::lattice::{Beam, End, Lattice};
+use self::model::{Model, UNITS};
+use super::{Context, SolidFile, SolidFormat};
+use crate::scene::contents::ExpectedSolids;
+use crate::scene::cylinder_list::Records;
+use crate::scene::description::MaterialIndex;
+use crate::scene::error::SceneError;
+use crate::scene::solid_collector::{
+    Degenerate, Refusal, SKIP_HELP, SolidCollector, is_degenerate, is_degenerate_cone,
+};
+use crate::scene::source::Source;
+use crate::solid::{AnySolid, Caps, Composition, Cone, Cylinder, Sphere};
+
+/// `[[beam_lattice]]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct BeamLatticeKeys {
+    file: Spanned<String>,
+    unit: Option<Spanned<String>>,
+    meshes: Option<Spanned<String>>,
+    degenerate: Option<Spanned<String>>,
+    material: Option<Spanned<String>>,
+}
+
+/// How a file is read.
+struct BeamLattice {
+    /// The unit of the scene, in micrometers; without it, the file's.
+    unit: Option<f64>,
+    /// Whether meshes are left out; they are an error otherwise.
+    skips_meshes: bool,
+    material: MaterialIndex,
+    degenerate: Degenerate,
+}
+
+impl SolidFormat for BeamLatticeKeys {
+    const WHAT: &'static str = "a model in 3MF";
+    const EXTENSIONS: &'static [&'static str] = &["3mf"];
+}
+
+impl SolidFile for BeamLatticeKeys {
+    fn file(&self) -> &Spanned<String> {
+        &self.file
+    }
+
+    fn count(&self, source: &Source, records: Records, solids: &mut ExpectedSolids) {
+        // Loading makes nothing of what cannot be read.
+        let _ = count(source, &self.file, records, solids);
+    }
+
+    fn add(&self, context: &Context, solids: &mut SolidCollector) -> Result<(), SceneError> {
+        let (source, file) = (context.source, &self.file);
+        let keys = self.stated(context)?;
+        let part = package::model_part(source, file)?;
+        let document = package::parsed(&part)?;
+        let root = Element::root(&part.path, &document);
+        let model = Model::new(&root, keys.skips_meshes)?;
+        for note in &model.notes {
+            solids.note(note);
+        }
+        let units = keys
+            .unit
+            .map_or((1.0, 1.0), |unit| lowest(model.unit, unit));
+        for placed in &model.placed {
+            for place in &placed.places {
+                let mut lowering = Lowering {
+                    source,
+                    file,
+                    root,
+                    place,
+                    units,
+                    keys: &keys,
+                    solids: &mut *solids,
+                };
+                lowering.add(&placed.lattice)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl BeamLatticeKeys {
+    fn stated(&self, context: &Context) -> Result<BeamLattice, SceneError> {
+        const MESHES: [(&str, bool); 2] = [("error", false), ("skip", true)];
+        let (source, unit, meshes) = (context.source, self.unit.as_ref(), self.meshes.as_ref());
+        let unit = unit.map(|word| source.choose("unit", word, &UNITS));
+        let meshes = meshes.map(|word| source.choose("meshes", word, &MESHES));
+        Ok(BeamLattice {
+            unit: unit.transpose()?,
+            skips_meshes: meshes.transpose()?.unwrap_or(false),
+            material: context.material(self.material.as_ref())?,
+            degenerate: context.degenerate(self.degenerate.as_ref())?,
+        })
+    }
+}
+
+/// The number of beams that the model part of a 3MF file builds: what is read of it, without
+/// the archive around it.
+///
+/// # Errors
+/// As those of [`super::load`] for the file.
+pub fn beams_of_model(text: &str) -> Result<u64, SceneError> {
+    let part = package::Part {
+        path: "model".into(),
+        text: text.to_owned(),
+    };
+    let document = package::parsed(&part)?;
+    let model = Model::new(&Element::root(&part.path, &document), true)?;
+    let beams = model.placed.iter();
+    let beams = beams.map(|placed| (placed.lattice.beams.len() * placed.places.len()) as u64);
+    Ok(beams.sum())
+}
+
+/// Two whole numbers without their common factors.
+fn lowest(one: f64, other: f64) -> (f64, f64) {
+    let (mut factor, mut rest) = (one, other);
+    while rest != 0.0 {
+        (factor, rest) = (rest, factor % rest);
+    }
+    (one / factor, other / factor)
+}
+
+/// A lattice on its way into a scene.
+struct Lowering<'a, 'input> {
+    source: &'a Source,
+    file: &'a Spanned<String>,
+    root: Element<'a, 'input>,
+    place: &'a Similarity,
+    /// What to multiply lengths with and to divide them by: one rounding where one of
+    /// them is 1.
+    units: (f64, f64),
+    keys: &'a BeamLattice,
+    solids: &'a mut SolidCollector,
+}
+
+impl Lowering<'_, '_> {
+    fn point(&self, point: DVec3) -> DVec3 {
+        self.place.parent_from_child.transform_point3(point) * self.units.0 / self.units.1
+    }
+
+    fn length(&self, length: f64) -> f64 {
+        length * self.place.scale * self.units.0 / self.units.1
+    }
+
+    /// Adds the beams in their order, then the balls in the order of their
+    /// vertices, then the halves of balls in the order of their beams.
+    fn add(&mut self, lattice: &Lattice) -> Result<(), SceneError> {
+        let points: Vec<_> = lattice.vertices.iter().map(|&at| self.point(at)).collect();
+        let mut balls = BTreeMap::new();
+        for (&vertex, &radius) in &lattice.balls {
+            balls.insert(vertex, self.length(radius));
+        }
+        let mut halves = Vec::new();
+        for beam in &lattice.beams {
+            let ends = beam.vertices.map(|vertex| points[vertex]);
+            let radii = beam.radii.map(|radius| self.length(radius));
+            let Some(solid) = self.frustum(beam, ends, radii)? else {
+                self.solids
+                    .skip()
+                    .map_err(|refusal| self.refused(&refusal))?;
+                continue;
+            };
+            self.push(&solid)?;
+            for end in [0, 1] {
+                let half = Half {
+                    vertex: beam.vertices[end],
+                    center: ends[end],
+                    outward: ends[end] - ends[1 - end],
+                    radius: radii[end],
+                };
+                match beam.end(end, radii, half.outward.length()) {
+                    End::Flat => {}
+                    End::Half => halves.push(half),
+                    End::Ball => {
+                        let radius = balls.entry(half.vertex).or_insert(half.radius);
+                        *radius = radius.max(half.radius);
+                    }
+                }
+            }
+        }
+        for (&vertex, &radius) in &balls {
+            let ball = Sphere::new(points[vertex], radius);
+            let ball = ball.map_err(|error| self.root.error(error.to_string()))?;
+            self.push(&ball.into())?;
+        }
+        for half in halves {
+            if balls
+                .get(&half.vertex)
+                .is_none_or(|&radius| radius < half.radius)
+            {
+                let solid = half.solid().map_err(|message| self.root.error(message))?;
+                let pushed = self.solids.push_composition(solid, self.keys.material);
+                pushed.map_err(|refusal| self.refused(&refusal))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn push(&mut self, solid: &AnySolid) -> Result<(), SceneError> {
+        let pushed = self.solids.push_any(solid, self.keys.material);
+        pushed.map_err(|refusal| self.refused(&refusal))
+    }
+
+    /// That a solid is not added.
+    fn refused(&self, refusal: &Refusal) -> SceneError {
+        let in_file = |message, help: Option<&str>| self.root.error_at(0, message, help);
+        refusal.in_row(self.source, self.file, in_file)
+    }
+
+    /// The beam without its caps, or `None` where it is to be left out.
+    fn frustum(
+        &self,
+        beam: &Beam,
+        [p0, p1]: [DVec3; 2],
+        [radius0, radius1]: [f64; 2],
+    ) -> Result<Option<AnySolid>, SceneError> {
+        if beam.is_short {
+            return Ok(None);
+        }
+        let (message, degenerate) = match radius0 == radius1 {
+            true => match Cylinder::new(p0, p1, radius0, Caps::Both) {
+                Ok(solid) => return Ok(Some(solid.into())),
+                Err(error) => (error.to_string(), is_degenerate(&error)),
+            },
+            false => match Cone::new(p0, p1, radius0, radius1, Caps::Both) {
+                Ok(solid) => return Ok(Some(solid.into())),
+                Err(error) => (error.to_string(), is_degenerate_cone(&error)),
+            },
+        };
+        if degenerate && self.keys.degenerate == Degenerate::Skip {
+            return Ok(None);
+        }
+        let help = degenerate.then_some(SKIP_HELP);
+        Err(self.root.error_at(beam.place, message, help))
+    }
+}
+
+/// The half of a ball beyond the end of a beam.
+struct Half {
+    vertex: usize,
+    center: DVec3,
+    /// Along the beam, of its length.
+    outward: DVec3,
+    radius: f64,
+}
+
+impl Half {
+    fn solid(&self) -> Result<Composition, String> {
+        let mut axis = self.outward;
+        // Doubling is exact, and keeps the direction.
+        while axis.length() < 2.0 * self.radius {
+            axis *= 2.0;
+        }
+        let ball = Sphere::new(self.center, self.radius).map_err(|error| error.to_string())?;
+        let width = 2.0 * self.radius;
+        let stand = Cylinder::new(self.center, self.center + axis, width, Caps::Both);
+        let stand = stand.map_err(|error| error.to_string())?;
+        let parts = [AnySolid::from(ball), stand.into()].map(Composition::Solid);
+        Ok(Composition::Intersection(parts.into()))
+    }
+}

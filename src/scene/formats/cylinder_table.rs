@@ -1,0 +1,205 @@
+//! Cylinders from the rows of a table.
+
+use glam::DVec3;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{Context, SolidFile, SolidFormat};
+use crate::math::unit;
+use crate::scene::contents::ExpectedSolids;
+use crate::scene::cylinder_list::Records;
+use crate::scene::description::CylinderRecord;
+use crate::scene::document::ThreeColumns;
+use crate::scene::error::SceneError;
+use crate::scene::named_table::{NamedTable, TableKeys, keys_of, table_rows};
+use crate::scene::solid_collector::{Degenerate, SKIP_HELP, SolidCollector, is_degenerate};
+use crate::scene::source::Source;
+use crate::scene::table::{Column, ColumnKey, Fault, Row};
+use crate::scene::values::Keys;
+use crate::solid::{Caps, Cylinder, CylinderError, SolidKind};
+
+/// `[[cylinder_table]]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct CylinderTableKeys {
+    file: Spanned<String>,
+    columns: Spanned<Keys<CylinderColumns>>,
+    delimiter: Option<Spanned<String>>,
+    decimal: Option<Spanned<String>>,
+    degenerate: Option<Spanned<String>>,
+    caps: Option<Spanned<String>>,
+    material: Option<Spanned<String>>,
+}
+
+/// `columns` of `[[cylinder_table]]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct CylinderColumns {
+    #[serde(alias = "start")]
+    p0: ThreeColumns,
+    p1: Option<ThreeColumns>,
+    axis: Option<ThreeColumns>,
+    length: Option<Spanned<ColumnKey>>,
+    radius: Option<Spanned<ColumnKey>>,
+    diameter: Option<Spanned<ColumnKey>>,
+}
+
+impl SolidFormat for CylinderTableKeys {
+    const WHAT: &'static str = "a table";
+    const EXTENSIONS: &'static [&'static str] = &["csv", "tsv"];
+    const EXAMPLE: &'static str = r#"columns = { p0 = ["startX", "startY", "startZ"], p1 = ["endX", "endY", "endZ"], radius = "radius" }"#;
+}
+
+impl SolidFile for CylinderTableKeys {
+    fn file(&self) -> &Spanned<String> {
+        &self.file
+    }
+
+    fn has_rows(&self) -> bool {
+        true
+    }
+
+    fn count(&self, source: &Source, records: Records, solids: &mut ExpectedSolids) {
+        let Keys(columns) = self.columns.get_ref();
+        let rows = table_rows(source, &self.file, &columns.p0);
+        solids.add(SolidKind::Cylinder, rows, records);
+    }
+
+    fn add(&self, context: &Context, solids: &mut SolidCollector) -> Result<(), SceneError> {
+        let source = context.source;
+        let look = context.look(self.caps.as_ref(), self.material.as_ref())?;
+        let degenerate = context.degenerate(self.degenerate.as_ref())?;
+        let table = TableKeys {
+            file: &self.file,
+            delimiter: self.delimiter.as_ref(),
+            decimal: self.decimal.as_ref(),
+        };
+        let columns = &self.columns;
+        let mut table = context.tables.open(table, &columns.get_ref().0.all())?;
+        let layout = Layout::new(source, &table, columns)?;
+        table.note_unread(&layout.all());
+        let before = solids.numbers();
+        solids.solids.cylinders.reserve(table.most_rows());
+        while let Some(row) = table.next_row(size_of::<CylinderRecord>())? {
+            match layout.cylinder(&row, look.caps) {
+                Ok(cylinder) => solids.push(cylinder, look.material),
+                Err(Fault::Degenerate { .. }) if degenerate == Degenerate::Skip => solids.skip(),
+                Err(fault) => return Err(row.refused_with_help(fault, Some(SKIP_HELP))),
+            }
+            .map_err(|refusal| {
+                refusal.in_row(source, &self.file, |message, help| {
+                    row.error_with_help(None, message, help)
+                })
+            })?;
+        }
+        if solids.numbers() == before {
+            return Err(source.error(self.file.span(), "the table has a header but no rows"));
+        }
+        Ok(())
+    }
+}
+
+impl CylinderColumns {
+    /// All columns that are stated.
+    fn all(&self) -> Vec<ColumnKey> {
+        let threes = [Some(&self.p0), self.p1.as_ref(), self.axis.as_ref()];
+        let threes = threes.into_iter().flatten().flat_map(|three| &three.0);
+        let ones = [&self.length, &self.radius, &self.diameter];
+        keys_of(threes.chain(ones.into_iter().flatten()))
+    }
+}
+
+/// Where a cylinder's numbers are in a row.
+struct Layout {
+    p0: [Column; 3],
+    end: End,
+    radius: Column,
+    /// What to multiply the radius column with: 1, or 1/2 for a diameter.
+    factor: f64,
+}
+
+/// How a row states the second endpoint.
+enum End {
+    Point([Column; 3]),
+    Along { axis: [Column; 3], length: Column },
+}
+
+impl Layout {
+    fn new(
+        source: &Source,
+        table: &NamedTable,
+        columns: &Spanned<Keys<CylinderColumns>>,
+    ) -> Result<Self, SceneError> {
+        let names = &columns.get_ref().0;
+        let wrong = |message: &str| Err(source.error(columns.span(), message));
+        let p0 = table.three(&names.p0)?;
+        let end = match (&names.p1, &names.axis, &names.length) {
+            (Some(p1), None, None) => End::Point(table.three(p1)?),
+            (None, Some(axis), Some(length)) => End::Along {
+                axis: table.three(axis)?,
+                length: table.column(length)?,
+            },
+            _ => return wrong("columns must name either p1, or both axis and length"),
+        };
+        let (radius, factor) = match (&names.radius, &names.diameter) {
+            (Some(radius), None) => (radius, 1.0),
+            (None, Some(diameter)) => (diameter, 0.5),
+            (Some(_), Some(_)) => return wrong("columns must name radius or diameter, not both"),
+            (None, None) => return wrong("columns must name either radius or diameter"),
+        };
+        Ok(Self {
+            p0,
+            end,
+            radius: table.column(radius)?,
+            factor,
+        })
+    }
+
+    /// All columns that are read.
+    fn all(&self) -> Vec<Column> {
+        let mut all = self.p0.to_vec();
+        match self.end {
+            End::Point(p1) => all.extend(p1),
+            End::Along { axis, length } => {
+                all.extend(axis);
+                all.push(length);
+            }
+        }
+        all.push(self.radius);
+        all
+    }
+
+    /// The cylinder of a row.
+    fn cylinder(&self, row: &Row, caps: Caps) -> Result<Cylinder, Fault> {
+        let p0 = DVec3::from(row.numbers(self.p0)?);
+        let radius = row.number(self.radius)? * self.factor;
+        let p1 = match &self.end {
+            End::Point(columns) => DVec3::from(row.numbers(*columns)?),
+            End::Along { axis, length } => {
+                let distance = row.number(*length)?;
+                if distance < 0.0 {
+                    let message = format!("length is {distance}: it must be a positive number");
+                    return Err(row.error(Some(*length), message).into());
+                }
+                let direction = unit(DVec3::from(row.numbers(*axis)?));
+                let direction = direction.ok_or_else(|| Fault::Degenerate {
+                    column: Some(axis[0]),
+                    message: "the axis is zero: it has no direction".to_owned(),
+                })?;
+                p0 + direction * distance
+            }
+        };
+        Cylinder::new(p0, p1, radius, caps).map_err(|error| {
+            let column = match (error, &self.end) {
+                (CylinderError::Radius { .. }, _) => Some(self.radius),
+                (CylinderError::Length { .. }, End::Along { length, .. }) => Some(*length),
+                _ => None,
+            };
+            let message = error.to_string();
+            match is_degenerate(&error) {
+                true => Fault::Degenerate { column, message },
+                false => row.error(column, message).into(),
+            }
+        })
+    }
+}

@@ -1,0 +1,53 @@
+//! `[[cuboid]]`
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::{SceneSolid, SolidKeys, with_span};
+use crate::math::Orientation;
+use crate::scene::document::Triple;
+use crate::scene::error::SceneError;
+use crate::scene::pose::RigidMotion;
+use crate::scene::settings::vector;
+use crate::scene::solid_keys::solid_table;
+use crate::scene::solid_lists::{SolidRecord, Stored};
+use crate::scene::source::Source;
+use crate::solid::{AnySolid, Cuboid, CuboidError};
+
+solid_table! {
+    /// `[[cuboid]]`
+    CuboidKeys {
+        center: Option<Triple>,
+        half_widths: Triple,
+    }
+}
+
+impl Stored for Cuboid {
+    type List = Vec<SolidRecord<Self>>;
+}
+
+impl SceneSolid for Cuboid {
+    type Keys = CuboidKeys;
+    type Error = CuboidError;
+
+    fn moved(&self, motion: &RigidMotion) -> Result<Self, CuboidError> {
+        let orientation = motion.orientation(self.orientation());
+        Self::new(motion.point(self.center()), self.half_widths(), orientation)
+    }
+}
+
+impl SolidKeys for CuboidKeys {
+    fn place(&self) -> Range<usize> {
+        self.half_widths.span()
+    }
+
+    fn unmoved(&self, source: &Source) -> Result<AnySolid, SceneError> {
+        let center = self.center.as_ref().map_or(DVec3::ZERO, vector);
+        let cuboid = Cuboid::new(center, vector(&self.half_widths), Orientation::IDENTITY);
+        with_span(source, cuboid, |error| match (error, &self.center) {
+            (CuboidError::Center { .. }, Some(center)) => center.span(),
+            _ => self.half_widths.span(),
+        })
+    }
+}

@@ -1,0 +1,78 @@
+//! Single solids in scene files, one file a kind: the keys of its table, the solid that they
+//! state and the solid where a pose puts it.
+
+mod cone;
+mod cuboid;
+mod cylinder;
+mod disk;
+mod rounded_cone;
+mod sphere;
+
+use std::fmt::Display;
+use std::ops::Range;
+
+use serde::de::DeserializeOwned;
+use toml::Spanned;
+
+use super::error::SceneError;
+use super::pose::{Motion, RigidMotion};
+use super::solid_keys::SolidTable;
+use super::source::Source;
+use crate::solid::{AnySolid, Caps, ConvexSolid};
+
+/// A kind of solid that scene files state.
+pub(super) trait SceneSolid: ConvexSolid + Into<AnySolid> {
+    /// The keys of its table.
+    type Keys: SolidKeys + DeserializeOwned;
+
+    /// Why numbers are not such a solid.
+    type Error: Display;
+
+    /// The solid where a motion takes it.
+    fn moved(&self, motion: &RigidMotion) -> Result<Self, Self::Error>;
+}
+
+/// The table of one kind of solid.
+pub(super) trait SolidKeys: SolidTable {
+    /// The place of errors about the solid as a whole.
+    fn place(&self) -> Range<usize>;
+
+    /// The place of the key that says which ends are closed.
+    fn caps_place(&self) -> Option<Range<usize>> {
+        None
+    }
+
+    /// The solid before its pose.
+    fn unmoved(&self, source: &Source) -> Result<AnySolid, SceneError>;
+
+    /// The solid.
+    fn solid(&self, source: &Source) -> Result<AnySolid, SceneError> {
+        let unmoved = self.unmoved(source)?;
+        let motion = Motion::new(source, &self.pose(), self.place())?;
+        motion.of_solid(&unmoved, unmoved.center())
+    }
+}
+
+/// Which ends are closed.
+pub(super) fn caps(source: &Source, word: Option<&Spanned<String>>) -> Result<Caps, SceneError> {
+    const CAPS: [(&str, Caps); 4] = [
+        ("none", Caps::None),
+        ("p0", Caps::P0),
+        ("p1", Caps::P1),
+        ("both", Caps::Both),
+    ];
+    word.map_or(Ok(Caps::default()), |word| {
+        source.choose("caps", word, &CAPS)
+    })
+}
+
+/// A solid of its kind, or the error at its place.
+fn with_span<S: SceneSolid>(
+    source: &Source,
+    solid: Result<S, S::Error>,
+    place: impl FnOnce(&S::Error) -> Range<usize>,
+) -> Result<AnySolid, SceneError> {
+    solid
+        .map(Into::into)
+        .map_err(|error| source.error(place(&error), error.to_string()))
+}

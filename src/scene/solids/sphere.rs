@@ -1,0 +1,51 @@
+//! `[[sphere]]`
+
+use std::ops::Range;
+
+use toml::Spanned;
+
+use super::{SceneSolid, SolidKeys, with_span};
+use crate::scene::document::Triple;
+use crate::scene::error::SceneError;
+use crate::scene::pose::RigidMotion;
+use crate::scene::settings::vector;
+use crate::scene::solid_keys::solid_table;
+use crate::scene::solid_lists::{SolidRecord, Stored};
+use crate::scene::source::Source;
+use crate::scene::values::Number;
+use crate::solid::{AnySolid, Sphere, SphereError};
+
+solid_table! {
+    /// `[[sphere]]`
+    SphereKeys {
+        center: Triple,
+        radius: Spanned<Number>,
+    }
+}
+
+impl Stored for Sphere {
+    type List = Vec<SolidRecord<Self>>;
+}
+
+impl SceneSolid for Sphere {
+    type Keys = SphereKeys;
+    type Error = SphereError;
+
+    fn moved(&self, motion: &RigidMotion) -> Result<Self, SphereError> {
+        Self::new(motion.point(self.center()), self.radius())
+    }
+}
+
+impl SolidKeys for SphereKeys {
+    fn place(&self) -> Range<usize> {
+        self.center.span()
+    }
+
+    fn unmoved(&self, source: &Source) -> Result<AnySolid, SceneError> {
+        let sphere = Sphere::new(vector(&self.center), self.radius.get_ref().0);
+        with_span(source, sphere, |error| match error {
+            SphereError::Center { .. } => self.center.span(),
+            SphereError::Radius { .. } => self.radius.span(),
+        })
+    }
+}

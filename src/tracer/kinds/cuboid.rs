@@ -1,0 +1,39 @@
+//! A cuboid is in the cylinder about one of its axes, which throws 26 % more shadow for a cube; a
+//! box along the axes of the cell has twice as much for one that is turned, a ball 57 %.
+
+use super::TracedKind;
+use crate::math::UNIT_ROUNDOFF;
+use crate::solid::Cuboid;
+use crate::tracer::filter::{CylinderFilter, Sheath, Sheathed};
+
+impl TracedKind for Cuboid {
+    type Filter = CylinderFilter;
+}
+
+impl Sheathed for Cuboid {
+    /// Of the cylinders about its axes the one with the least area.
+    fn sheath(&self) -> Sheath {
+        let half_widths = self.half_widths();
+        // As its bounds: its axes are orthonormal to within roundings.
+        let off = 16.0 * UNIT_ROUNDOFF * half_widths.element_sum();
+        let about = |axis: usize| {
+            let height = half_widths[axis] + off;
+            let across = [half_widths[(axis + 1) % 3], half_widths[(axis + 2) % 3]];
+            Sheath {
+                anchor: self.center(),
+                axis: self.orientation().world_from_object().col(axis),
+                heights: [-height, height],
+                radius: libm::hypot(across[0], across[1]) + off,
+            }
+        };
+        let area = |one: &Sheath| one.radius * (one.radius + 2.0 * one.heights[1]);
+        let others = [about(1), about(2)];
+        others.into_iter().fold(about(0), |least, one| {
+            if area(&one) < area(&least) {
+                one
+            } else {
+                least
+            }
+        })
+    }
+}

@@ -1,0 +1,19 @@
+//! A rounded cone is in the cylinder of its greater radius, which throws 17 % more shadow where
+//! radii vary by a factor of three, twice as much where one of them is zero.
+
+use super::TracedKind;
+use crate::solid::RoundedCone;
+use crate::tracer::filter::{CylinderFilter, Sheath, Sheathed};
+
+impl TracedKind for RoundedCone {
+    type Filter = CylinderFilter;
+}
+
+impl Sheathed for RoundedCone {
+    fn sheath(&self) -> Sheath {
+        let (r0, r1) = (self.radius0(), self.radius1());
+        // One ball may be within the other.
+        let heights = |length: f64| [(-r0).min(length - r1), r0.max(length + r1)];
+        Sheath::between(self.p0(), self.p1(), heights, r0.max(r1))
+    }
+}

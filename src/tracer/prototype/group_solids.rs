@@ -1,0 +1,237 @@
+//! The solids of one kind in a group, as user geometries see them, and the plainest of
+//! those: a primitive of Embree's for each solid.
+
+use std::borrow::Borrow;
+use std::marker::PhantomData;
+
+use smallvec::SmallVec;
+
+use super::numbers::Numbers;
+use super::prototype_ref::PrototypeRef;
+use crate::embree::{
+    Box32, GREATEST_PACKET, Ray32, RaySet, Rays32, Reached, UserGeometry, prefetch,
+};
+use crate::math::LANES;
+use crate::scene::SolidList;
+use crate::tracer::counters;
+use crate::tracer::filter::FilterOf;
+use crate::tracer::kinds::TracedKind;
+use crate::tracer::query::{Packet, Query};
+use crate::tracer::traced::TracedSolid;
+
+/// Where callbacks find the solids of one kind, by the positions of their records in the
+/// description.
+pub(crate) trait Records: Send + Sync + 'static {
+    /// The kind.
+    type Solid: TracedSolid;
+
+    /// The solid of a record.
+    fn solid(&self, prototype_ref: &PrototypeRef, record: u32) -> impl Borrow<Self::Solid>;
+
+    /// Begins to bring a record near to the processor.
+    fn prefetch(&self, prototype_ref: &PrototypeRef, record: u32);
+
+    /// As [`Query::visit`]. A call by default, for a solver with its branches gains nothing from
+    /// being compiled for each instruction set.
+    fn visit(&self, prototype_ref: &PrototypeRef, record: u32, query: &mut Query) {
+        query.visit::<Self::Solid>(
+            self.solid(prototype_ref, record).borrow(),
+            prototype_ref,
+            record,
+        );
+    }
+
+    /// As [`Query::meets`], likewise.
+    fn meets(&self, prototype_ref: &PrototypeRef, record: u32, query: &Query) -> bool {
+        query.meets::<Self::Solid>(self.solid(prototype_ref, record).borrow())
+    }
+}
+
+/// The records in the list of the prototype.
+pub(crate) struct InPrototype<S>(PhantomData<fn() -> S>);
+
+impl<S> InPrototype<S> {
+    pub fn new() -> Self {
+        Self(PhantomData)
+    }
+}
+
+impl<S: TracedSolid> Records for InPrototype<S> {
+    type Solid = S;
+
+    #[inline(always)]
+    fn solid(&self, prototype_ref: &PrototypeRef, record: u32) -> impl Borrow<S> {
+        S::list(&prototype_ref.prototype().solids).solid(record as usize)
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, prototype_ref: &PrototypeRef, record: u32) {
+        prefetch::<S>(self.solid(prototype_ref, record).borrow());
+    }
+}
+
+/// The solids of one kind in a group.
+pub(crate) struct GroupSolids<R> {
+    prototype_ref: PrototypeRef,
+    /// The positions of their records.
+    numbers: Numbers,
+    records: R,
+}
+
+impl<R: Records> GroupSolids<R> {
+    pub fn new(prototype_ref: &PrototypeRef, numbers: &Numbers, records: R) -> Self {
+        Self {
+            prototype_ref: prototype_ref.clone(),
+            numbers: numbers.clone(),
+            records,
+        }
+    }
+
+    /// Whose they are.
+    #[inline(always)]
+    pub fn prototype_ref(&self) -> &PrototypeRef {
+        &self.prototype_ref
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> u32 {
+        self.numbers.len()
+    }
+
+    /// The record of the solid at a position.
+    #[inline(always)]
+    pub fn record(&self, position: u32) -> u32 {
+        self.numbers.number(position)
+    }
+
+    /// The solid of a record.
+    #[inline(always)]
+    fn solid(&self, record: u32) -> impl Borrow<R::Solid> {
+        self.records.solid(&self.prototype_ref, record)
+    }
+
+    /// The box of a solid in the frame of the Embree scene.
+    pub fn grown_box(&self, record: u32) -> Box32 {
+        let bounds = TracedSolid::bounds(self.solid(record).borrow());
+        if bounds.is_empty() {
+            // What set operations leave nothing of; Embree wants a box all the same.
+            return Box32 {
+                lower: [0.0; 3],
+                upper: [0.0; 3],
+            };
+        }
+        self.prototype_ref.grown_box(&bounds)
+    }
+
+    /// Begins to bring a record near to the processor.
+    #[inline(always)]
+    pub fn prefetch(&self, record: u32) {
+        self.records.prefetch(&self.prototype_ref, record);
+    }
+
+    /// Keeps of the points where the query's ray meets a solid those that are wanted.
+    #[inline(always)]
+    pub fn visit(&self, record: u32, query: &mut Query) {
+        self.records.visit(&self.prototype_ref, record, query);
+    }
+
+    /// Whether the query's ray meets a solid.
+    #[inline(always)]
+    pub fn meets(&self, record: u32, query: &Query) -> bool {
+        self.records.meets(&self.prototype_ref, record, query)
+    }
+
+    /// As [`visit`](Self::visit) for rays of a packet. Returns those that end earlier now,
+    /// whose `t_far` is set.
+    // Inlined for the rows of lanes within, as `embree::callback` says.
+    #[inline(always)]
+    pub fn visit_packet(
+        &self,
+        record: u32,
+        rays: RaySet,
+        t_far: &mut [f32; GREATEST_PACKET],
+        packet: &mut Packet,
+    ) -> RaySet {
+        let place = (&self.prototype_ref, record);
+        packet.visit::<R::Solid>(self.solid(record).borrow(), place, rays, t_far)
+    }
+
+    /// Those of the rays that meet a solid.
+    #[inline(always)]
+    pub fn meets_packet(&self, record: u32, rays: RaySet, packet: &Packet) -> RaySet {
+        packet.meets::<R::Solid>(self.solid(record).borrow(), rays)
+    }
+}
+
+impl<R: Records<Solid: TracedKind>> GroupSolids<R> {
+    /// The filter of up to eight solids, whose lanes are in this order.
+    pub fn filter(&self, records: &[u32]) -> <R::Solid as TracedKind>::Filter {
+        let solids = records.iter().map(|&record| *self.solid(record).borrow());
+        let solids: SmallVec<[R::Solid; LANES]> = solids.collect();
+        FilterOf::new(&solids, self.prototype_ref.frame(), 1.0)
+    }
+}
+
+/// A user geometry with a primitive for each solid.
+pub(crate) struct Single<R>(pub GroupSolids<R>);
+
+impl<R: Records> UserGeometry for Single<R> {
+    type Query = Query;
+
+    fn primitive_count(&self) -> u32 {
+        self.0.len()
+    }
+
+    fn bounds(&self, primitive: u32) -> Box32 {
+        self.0.grown_box(self.0.record(primitive))
+    }
+
+    #[inline(always)]
+    fn intersect(&self, at: Reached, _: &Ray32, query: &mut Query) -> Option<f32> {
+        counters::called_back();
+        query.callbacks += 1;
+        query.reach(at.instance, self.0.prototype_ref());
+        let before = query.bound();
+        self.0.visit(self.0.record(at.primitive), query);
+        (query.bound() < before).then(|| query.t_far())
+    }
+
+    #[inline(always)]
+    fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
+        counters::called_back();
+        query.callbacks += 1;
+        query.reach(at.instance, self.0.prototype_ref());
+        self.0.meets(self.0.record(at.primitive), query)
+    }
+
+    #[inline(always)]
+    fn intersect_packet(
+        &self,
+        at: Reached,
+        rays: RaySet,
+        _: &Rays32,
+        t_far: &mut [f32; GREATEST_PACKET],
+        packet: &mut Packet,
+    ) -> RaySet {
+        counters::called_back();
+        packet.callbacks += 1;
+        packet.reach(at.instance, self.0.prototype_ref());
+        let record = self.0.record(at.primitive);
+        self.0.visit_packet(record, rays, t_far, packet)
+    }
+
+    #[inline(always)]
+    fn occluded_packet(
+        &self,
+        at: Reached,
+        rays: RaySet,
+        _: &Rays32,
+        packet: &mut Packet,
+    ) -> RaySet {
+        counters::called_back();
+        packet.callbacks += 1;
+        packet.reach(at.instance, self.0.prototype_ref());
+        let record = self.0.record(at.primitive);
+        self.0.meets_packet(record, rays, packet)
+    }
+}
