@@ -19,6 +19,7 @@ use cyltrace::solid::{AnySolid, Composition};
 
 use super::hull::triangles_needed;
 use super::window::{PlacedComposition, PlacedFrame, PlacedSolid, Window};
+use crate::solids::scene_solid::{SceneSolid, nth};
 
 /// The width of a window in half widths of the solid at its center.
 const WIDEST: f64 = (1 << 12) as f64;
@@ -227,16 +228,16 @@ impl<'a> Tree<'a> {
         let mut number = random.below(self.root().count);
         loop {
             let prototype = &self.scene.prototypes[index.0 as usize];
-            let solids = &prototype.solids;
-            let own = solids.len() as u64;
+            let own = prototype.solids.len() as u64;
             if number < own {
-                let (primitive, solid) = solids.nth_simple(number as usize).unwrap_or_else(|| {
-                    // A composition is picked by its first leaf.
-                    let simple = solids.len() - solids.compositions.len();
-                    let record = &solids.compositions[number as usize - simple];
-                    let leaf = record.solid.solids().first().copied();
-                    (record.primitive, leaf.expect("an operation has operands"))
-                });
+                let (primitive, solid) = match nth(prototype, number as usize) {
+                    (primitive, SceneSolid::Single(solid)) => (primitive, solid),
+                    // A composition is represented by its first leaf.
+                    (primitive, SceneSolid::Composed(solid)) => {
+                        let leaf = solid.solids().first().copied();
+                        (primitive, leaf.expect("an operation has operands"))
+                    }
+                };
                 let frame = Arc::new(frame);
                 let placed = PlacedSolid {
                     solid,

@@ -6,8 +6,9 @@
 //! bounded from above by `|A|² ≤ max row sum of |AᵀA|`, which is equality for a
 //! uniformly scaled rotation, and at most √3 too much otherwise.
 //!
-//! The depth in the closed solid is concave along a ray: its greatest value in a range
-//! is found by sections, its least one is at an end. A disk has no inside: a ray crosses
+//! A ray is deeper than `δ` in a solid where it is in the solid shrunk by `δ`. Outside, the
+//! distance counts, because a grown solid has sharp rims. It is greatest at an end, since the
+//! depth is concave along a ray. A disk has no inside: a ray crosses
 //! it if it goes from one side of the slab of half thickness `δ` about its plane
 //! to the other, and is nearer to the axis than the rim by `δ` all the way in between.
 //!
@@ -22,12 +23,9 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::depth::depth_in_composed;
 use super::tolerance::Margin;
-use crate::solids::{Shape, shape};
-use cyltrace::math::Ray;
+use crate::solids::{Shape, checked, shape};
+use cyltrace::math::{Ray, power_of_two_below};
 use cyltrace::solid::{AnySolid, Composition};
-
-/// The number of sections of a range, each to 2/3 of it.
-const SECTIONS: u32 = 64;
 
 /// See the head of this file.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -106,6 +104,16 @@ struct Way {
 impl Way {
     fn at(&self, t: f64) -> DVec3 {
         self.origin + self.direction * t
+    }
+
+    /// Whether it has a point in a closed solid.
+    fn enters(&self, solid: &AnySolid) -> bool {
+        let size = power_of_two_below(self.direction.abs().max_element());
+        let from_anchor = self.origin - solid.anchor();
+        let chord = solid.chord(from_anchor, self.direction / size);
+        chord.is_some_and(|chord| {
+            self.low <= chord.leave.t / size && chord.enter.t / size <= self.high
+        })
     }
 
     /// Whether nothing is left of it; also if an end is NaN.
@@ -187,26 +195,13 @@ impl Frame {
         if inner.flat().is_some() {
             return is_disk_crossed(&inner, &way, inside);
         }
-        let (mut low, mut high) = (way.low, way.high);
         let outer_depth = |t: f64| outer.get().depth(way.at(t));
-        if !(outer_depth(low).min(outer_depth(high)) < -outside) {
+        if !(outer_depth(way.low).min(outer_depth(way.high)) < -outside) {
             return false;
         }
-        let depth = |t: f64| inner.get().depth(way.at(t));
-        for _ in 0..SECTIONS {
-            let third = (high - low) / 3.0;
-            let (left, right) = (low + third, high - third);
-            let (at_left, at_right) = (depth(left), depth(right));
-            if at_left.max(at_right) > inside {
-                return true;
-            }
-            if at_left < at_right {
-                low = left;
-            } else {
-                high = right;
-            }
-        }
-        false
+        let core = inner.get().displaced(-inside);
+        let core = core.and_then(|core| checked(solid).with_shape(&core));
+        core.is_some_and(|core| way.enters(&core))
     }
 
     /// As [`Frame::is_crossed`], for a composition. It is deepest at an unknown place: the

@@ -7,8 +7,9 @@
 use glam::{DAffine3, DVec3};
 
 use super::target::any_point_of;
+use crate::solids::scene_solid::{SceneSolid, nth};
 use cyltrace::math::{Bounds, Random, Ray};
-use cyltrace::scene::{Prototype, PrototypeIndex, Scene};
+use cyltrace::scene::{PrototypeIndex, Scene};
 use cyltrace::tracer::Tracer;
 
 /// The rays of class `around`: from a sphere of twice the scene's radius to points of its box
@@ -42,64 +43,33 @@ fn random_point(bounds: &Bounds, random: &mut Random) -> DVec3 {
 /// All solids of a scene, to choose among.
 struct Targets<'a> {
     scene: &'a Scene,
-    /// The contents of each prototype that the root contains.
-    members: Vec<Option<Members>>,
-}
-
-/// The contents of a prototype.
-struct Members {
-    /// The boxes of compositions.
-    composed: Vec<Bounds>,
-    /// The number of solids up to and including each placement. Rounding makes some of
-    /// them slightly more likely.
-    placed: Vec<f64>,
-}
-
-impl Members {
-    /// The solids that are the prototype's own.
-    fn own(&self, prototype: &Prototype) -> usize {
-        prototype.solids.len()
-    }
-
-    /// All solids, including placed ones.
-    fn all(&self, prototype: &Prototype) -> f64 {
-        self.own(prototype) as f64 + self.placed.last().unwrap_or(&0.0)
-    }
+    /// For each prototype that the root contains, the number of solids up to and including
+    /// each placement. Rounding makes some of them slightly more likely.
+    placed: Vec<Option<Vec<f64>>>,
 }
 
 impl<'a> Targets<'a> {
     fn new(scene: &'a Scene) -> Self {
-        let members = scene.prototypes.iter().map(|_| None);
-        let mut targets = Self {
-            scene,
-            members: members.collect(),
-        };
+        let placed = vec![None; scene.prototypes.len()];
+        let mut targets = Self { scene, placed };
         targets.count(PrototypeIndex::ROOT);
         targets
     }
 
-    /// Counts the solids of a prototype.
+    /// Counts the solids of a prototype, including placed ones.
     fn count(&mut self, index: PrototypeIndex) -> f64 {
         let number = index.0 as usize;
-        let scene = self.scene;
-        let prototype = &scene.prototypes[number];
-        if let Some(known) = &self.members[number] {
-            return known.all(prototype);
+        let prototype = &self.scene.prototypes[number];
+        if self.placed[number].is_none() {
+            let mut sum = 0.0;
+            let placed = prototype.placements.iter().map(|placement| {
+                sum += self.count(placement.of);
+                sum
+            });
+            self.placed[number] = Some(placed.collect());
         }
-        let mut sum = 0.0;
-        let placed = prototype.placements.iter().map(|placement| {
-            sum += self.count(placement.of);
-            sum
-        });
-        let placed = placed.collect();
-        let composed = prototype.solids.compositions.iter();
-        let members = Members {
-            composed: composed.map(|record| record.solid.bounds()).collect(),
-            placed,
-        };
-        let all = members.all(prototype);
-        self.members[number] = Some(members);
-        all
+        let placed = self.placed[number].as_ref().and_then(|sums| sums.last());
+        prototype.solids.len() as f64 + placed.unwrap_or(&0.0)
     }
 
     /// A point of a solid in the world; for a composition, of its box.
@@ -108,38 +78,24 @@ impl<'a> Targets<'a> {
         let mut index = PrototypeIndex::ROOT;
         loop {
             let prototype = &self.scene.prototypes[index.0 as usize];
-            let members = self.members[index.0 as usize].as_ref();
-            let members = members.expect("what is placed has been counted");
-            let chosen = random.unit() * members.all(prototype);
-            let own = members.own(prototype);
-            if chosen < own as f64 {
-                let point = own_point(prototype, members, chosen as usize, random);
+            let placed = self.placed[index.0 as usize].as_ref();
+            let placed = placed.expect("placements have been counted");
+            let own = prototype.solids.len() as f64;
+            let chosen = random.unit() * (own + placed.last().unwrap_or(&0.0));
+            if chosen < own {
+                let point = match nth(prototype, chosen as usize).1 {
+                    SceneSolid::Single(solid) => any_point_of(&solid, random),
+                    SceneSolid::Composed(solid) => random_point(&solid.bounds(), random),
+                };
                 return world_from_here.transform_point3(point);
             }
-            let rest = chosen - own as f64;
-            let after = members.placed.partition_point(|&sum| sum <= rest);
+            let after = placed.partition_point(|&sum| sum <= chosen - own);
             let Some(placement) = prototype.placements.get(after) else {
                 // Rounded beyond the last.
                 continue;
             };
             world_from_here *= placement.parent_from_child;
             index = placement.of;
-        }
-    }
-}
-
-/// A point of one of a prototype's own solids.
-fn own_point(
-    prototype: &Prototype,
-    members: &Members,
-    chosen: usize,
-    random: &mut Random,
-) -> DVec3 {
-    match prototype.solids.nth_simple(chosen) {
-        Some((_, solid)) => any_point_of(&solid, random),
-        None => {
-            let simple = prototype.solids.len() - members.composed.len();
-            random_point(&members.composed[chosen - simple], random)
         }
     }
 }

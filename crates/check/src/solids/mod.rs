@@ -2,7 +2,7 @@
 //!
 //! A kind states its *shape*: the convex hull of two disks, of two balls, or a block. All
 //! that the check computes of a solid follows from its shape (`disks`, `balls`, `block`), so a
-//! new kind with one of these shapes is one file and one line of [`checked`].
+//! new kind with one of these shapes is one file.
 
 mod balls;
 pub(crate) mod between;
@@ -40,14 +40,7 @@ pub(crate) trait CheckedSolid {
 
 /// The solid as its kind.
 pub(crate) fn checked(solid: &AnySolid) -> &dyn CheckedSolid {
-    match solid {
-        AnySolid::Cylinder(one) => one,
-        AnySolid::Cone(one) => one,
-        AnySolid::RoundedCone(one) => one,
-        AnySolid::Sphere(one) => one,
-        AnySolid::Cuboid(one) => one,
-        AnySolid::Disk(one) => one,
-    }
+    cyltrace::with_solid!(solid, one => one)
 }
 
 /// The shape of a solid.

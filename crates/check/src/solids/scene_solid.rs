@@ -1,8 +1,8 @@
-//! The solid of a hit, by its path in the scene.
+//! A solid of a scene, by its path or by its position in its prototype.
 
 use glam::DAffine3;
 
-use cyltrace::scene::{PrototypeIndex, Scene};
+use cyltrace::scene::{Prototype, PrototypeIndex, Scene};
 use cyltrace::solid::{AnySolid, Composition};
 
 /// A solid of a scene.
@@ -34,4 +34,15 @@ pub(crate) fn find<'a>(
     let position = composed.binary_search_by_key(&primitive, |record| record.primitive);
     let position = position.expect("the hit's solid is in the scene");
     (placements, SceneSolid::Composed(&composed[position].solid))
+}
+
+/// The solid at a position in a prototype, compositions last, and its number.
+pub(crate) fn nth(prototype: &Prototype, position: usize) -> (u32, SceneSolid<'_>) {
+    let solids = &prototype.solids;
+    if let Some((primitive, solid)) = solids.nth_simple(position) {
+        return (primitive, SceneSolid::Single(solid));
+    }
+    let simple = solids.len() - solids.compositions.len();
+    let record = &solids.compositions[position - simple];
+    (record.primitive, SceneSolid::Composed(&record.solid))
 }
