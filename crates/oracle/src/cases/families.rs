@@ -374,6 +374,10 @@ fn exact_rim(random: &mut Random, inputs: Inputs) -> Option<Problem> {
     let off = (x * (3.0 * sign(random)) + y * (4.0 * sign(random))) * times;
     let end = p0 + axis * random.below(2) as f64;
     let ray = whole_ray_through(random, end + off)?;
+    if ray.direction.cross(axis) == DVec3::ZERO {
+        // Within the wall: `Parallel` has such rays.
+        return None;
+    }
     let caps = Caps::at(random.below(4) > 0, random.below(4) > 0);
     let scale = match inputs {
         Inputs::F32 => 1.0,
