@@ -128,13 +128,6 @@ impl Flat {
         kinds
     }
 
-    /// Whether all placed solids are cylinders.
-    #[must_use]
-    pub fn is_of_cylinders_alone(&self) -> bool {
-        let kinds = self.kinds();
-        kinds.iter().all(|&kind| kind == SolidKind::Cylinder)
-    }
-
     /// The placed prototypes, each once.
     #[must_use]
     pub fn prototypes(&self) -> Vec<PrototypeIndex> {
