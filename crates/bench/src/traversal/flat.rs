@@ -103,7 +103,7 @@ impl Flat {
         self.prototype(prototype).singles().map(|(_, solid)| solid)
     }
 
-    /// Whether a solid is composed of others, which rivals have nothing for.
+    /// Whether the scene has set operations, which no rival represents.
     #[must_use]
     pub fn has_compositions(&self) -> bool {
         let prototypes = &self.scene.prototypes;
