@@ -25,7 +25,7 @@ pub use accuracy::{
 };
 pub use machine::Environment;
 pub use outputs::{Record, SUMMARY_HEADINGS, figure, page, records, summaries};
-pub use rivals::{Shape, Traced};
-pub use statistics::{Spread, p99};
+pub use rivals::Shape;
+pub use statistics::Spread;
 pub use timing::{Rounds, ThreadClock, Timer, WallClock};
 pub use truth::{Errors, JudgedCases, draw};

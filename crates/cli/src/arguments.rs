@@ -2,27 +2,28 @@
 //! in docs/command-line.md, see `reference.rs`.
 
 use std::num::{NonZeroU32, NonZeroUsize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{
-    Decimal, Delimiter, Film, GREATEST_CASES, GREATEST_RAYS, GREATEST_SAMPLES, GREATEST_THREADS,
-    Integrator, TableFormat,
+    Decimal, Delimiter, Film, GREATEST_CASES, GREATEST_SAMPLES, GREATEST_THREADS, Integrator,
+    TableFormat,
 };
 use cyltrace_bench::stress::{Contender, StressFamily};
-use cyltrace_check::{Class, Replay};
 use cyltrace_oracle::cases::{Family, Inputs};
 
 mod bench;
+mod check;
 mod names;
 mod numbers;
 
 pub use bench::{AccuracyArguments, Bench, BenchArguments, ScaleArguments, TraversalArguments};
+pub use check::{CheckArguments, Rays};
 use names::one_of;
-use numbers::{count_up_to, parse_length, parse_seed, parse_segments, parse_size};
+use numbers::{count_up_to, parse_seed, parse_segments, parse_size};
 
 use super::exit_codes;
 use super::limit::MemoryArguments;
@@ -293,65 +294,6 @@ pub struct StressArguments {
     pub common: Common,
 }
 
-/// Validate hits against meshes that Embree traces, or against exact results
-///
-/// Exits with 1 if an answer is wrong, or if the meshes leave more than half of a class of
-/// rays without a bound.
-#[derive(Args, Debug)]
-pub struct CheckArguments {
-    /// The scene file
-    #[arg(value_name = "SCENE")]
-    pub scene: PathBuf,
-    /// Bound round solids by meshes of N sides, 3 to 4096; each number is checked with the
-    /// same rays
-    #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "16,64", value_parser = parse_segments, allow_negative_numbers = true)]
-    pub segments: Vec<u32>,
-    /// Trace N rays of each class, 1 to 10^9; for `--hits` and `--mesh` also the rays of a
-    /// table as `trace` reads it
-    #[arg(long, value_name = "N|FILE", default_value = "100000", value_parser = parse_rays)]
-    pub rays: Rays,
-    /// Validate the hits of another program for `--rays FILE`: a table with one row per ray
-    /// and the columns `hit` (`1`, `0`, `True` or `False`) and `t`
-    #[arg(long, value_name = "FILE", conflicts_with = "mesh")]
-    pub hits: Option<PathBuf>,
-    #[command(flatten)]
-    pub format: FormatArguments,
-    /// Allow hits this error, relative to the distances along the ray [default: 16 / 2^24,
-    /// which suits f32]
-    #[arg(long, value_name = "X", value_parser = parse_length, requires = "hits")]
-    pub tolerance: Option<f64>,
-    /// Validate this mesh of the scene: `.obj`, `.ply` or `.stl`
-    #[arg(long, value_name = "FILE")]
-    pub mesh: Option<PathBuf>,
-    /// Allow the mesh this distance from the true surface, in scene units [default: the
-    /// deviation that the file's comments state]
-    #[arg(long, value_name = "X", value_parser = parse_length, requires = "mesh")]
-    pub deviation: Option<f64>,
-    /// Trace only this class of rays: `camera`, `sphere`, `inside`, `grazing` or `axial`;
-    /// may be repeated [default: all five]
-    #[arg(long, value_name = "NAME")]
-    pub class: Vec<Class>,
-    /// Seed the rays
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_seed, allow_negative_numbers = true)]
-    pub seed: u64,
-    /// Let the meshes take up to SIZE of memory, such as `500MB` or `4GiB`; a larger scene
-    /// is checked in parts
-    #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = memory::parse_size)]
-    pub max_memory: u64,
-    /// Write `index.html` to DIR: pictures, heat maps, convergence, the table and the worst
-    /// rays
-    #[arg(long, value_name = "DIR")]
-    pub report: Option<PathBuf>,
-    /// Check one ray again and print every detail: BITS as a run printed them, or
-    /// `CLASS:INDEX`
-    #[arg(long, value_name = "BITS", conflicts_with_all = ["hits", "mesh", "report"])]
-    pub replay: Option<Replay>,
-    #[command(flatten)]
-    pub decisions: DecisionArguments,
-    #[command(flatten)]
-    pub common: Common,
-}
-
 /// Print a script that completes the command line in a shell
 #[derive(Args, Debug)]
 pub struct CompletionsArguments {
@@ -367,15 +309,6 @@ pub struct ManArguments {
     /// `cyltrace` is printed
     #[arg(value_name = "DIR")]
     pub directory: Option<PathBuf>,
-}
-
-/// The source of the rays.
-#[derive(Clone, Debug)]
-pub enum Rays {
-    /// This number of random rays of each class.
-    Count(u64),
-    /// The rays of a table.
-    Table(PathBuf),
 }
 
 /// The names of the integrators.
@@ -405,18 +338,6 @@ pub fn integrator_name(integrator: Integrator) -> &'static str {
         Integrator::Sun => "sun",
         Integrator::Ao => "ao",
         Integrator::Normal => "normal",
-    }
-}
-
-/// Reads a number of rays, or the name of an existing file.
-fn parse_rays(text: &str) -> Result<Rays, String> {
-    let count: Option<u64> = text.parse().ok();
-    match count.filter(|count| (1..=GREATEST_RAYS).contains(count)) {
-        Some(count) => Ok(Rays::Count(count)),
-        None if text == "-" || Path::new(text).exists() => Ok(Rays::Table(text.into())),
-        None => Err(String::from(
-            "it must be a whole number from 1 to 10^9 or the name of an existing file",
-        )),
     }
 }
 

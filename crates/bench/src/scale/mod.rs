@@ -5,6 +5,6 @@ mod growth;
 mod measure;
 mod outputs;
 
-pub use growth::{Fits, slope};
+pub use growth::Fits;
 pub use measure::{Figures, Plan, Resident, Row, Scale, Series};
 pub use outputs::{Record, SUMMARY_HEADINGS, figures, growths, page, records, summary};

@@ -103,7 +103,7 @@ impl Flat {
         self.prototype(prototype).singles().map(|(_, solid)| solid)
     }
 
-    /// Whether a solid is composed of others, which rivals have nothing for.
+    /// Whether the scene has set operations, which no rival represents.
     #[must_use]
     pub fn has_compositions(&self) -> bool {
         let prototypes = &self.scene.prototypes;
@@ -124,13 +124,6 @@ impl Flat {
         kinds.sort_unstable();
         kinds.dedup();
         kinds
-    }
-
-    /// Whether all placed solids are cylinders.
-    #[must_use]
-    pub fn is_of_cylinders_alone(&self) -> bool {
-        let kinds = self.kinds();
-        kinds.iter().all(|&kind| kind == SolidKind::Cylinder)
     }
 
     /// The placed prototypes, each once.

@@ -296,7 +296,7 @@ fn arguments_that_do_not_fit_are_refused() {
         (&["--segments", "16,"], "a whole number from 3 to 4096"),
         (
             &["--rays", "1e4"],
-            "neither a whole number from 1 to 10^9 nor a file",
+            "a whole number from 1 to 10^9 or the name of an existing file",
         ),
         (&["--report", "scene.toml"], "is a file"),
         (&["--max-memory", "1kB"], "bytes"),

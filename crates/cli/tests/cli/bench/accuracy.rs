@@ -50,8 +50,11 @@ fn accuracy_json_has_the_promised_keys_and_sensible_figures() {
             [
                 "name",
                 "precision",
+                "times",
                 "ns_median",
                 "ns_spread",
+                "ratio_median",
+                "ratio_spread",
                 "p99_error_r",
                 "worst_family",
                 "worst_p99_error_r",

@@ -29,8 +29,9 @@ fn scale_json_has_decades_fits_and_reasons() {
     assert_eq!(numbers("placements"), [100, 1000, 10_000]);
     let first = &found["cylinders"][0];
     assert_eq!(
-        keys(first)[..6],
+        keys(first)[..7],
         [
+            "series",
             "n",
             "build_s",
             "bytes",
