@@ -91,7 +91,7 @@ pub unsafe extern "C" fn cyltrace_check(
 /// ignored.
 ///
 /// # Safety
-/// `outcome` is null or was written by [`cyltrace_check`], and nobody else uses it.
+/// `outcome` is null or was written by [`cyltrace_check()`], and nobody else uses it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cyltrace_check_outcome_free(outcome: *mut CyltraceCheckOutcome) {
     guarded(|| {

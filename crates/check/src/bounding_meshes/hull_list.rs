@@ -3,9 +3,10 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use glam::DVec3;
 use rayon::prelude::*;
 
-use super::hull::{Hull, hull, triangles_needed};
+use super::hull::{Hull, hull, triangles_needed, wide};
 use super::mesh_frame::MeshFrame;
 use super::mesh_map::MeshMap;
 use super::window::Window;
@@ -24,10 +25,8 @@ const BYTES_PER_TRIANGLE: u64 = 93;
 pub(crate) struct HullList {
     /// All of them, one after another.
     pub hull: Hull,
-    /// The position in the window of the solid of each hull, rising.
-    pub solid_of: Vec<u32>,
-    /// The number of triangles up to the end of each hull.
-    pub triangles_up_to: Vec<u32>,
+    /// The number of triangles up to the end of each solid's hull.
+    triangles_up_to: Vec<u32>,
     /// Solids without a hull: f32 does not resolve them.
     pub missing: Vec<u32>,
 }
@@ -44,35 +43,43 @@ impl HullList {
     fn append(&mut self, other: &Self) {
         let triangles = self.hull.triangles.len() as u32;
         self.add_triangles(&other.hull);
-        self.solid_of.extend_from_slice(&other.solid_of);
         let ends = other.triangles_up_to.iter();
         self.triangles_up_to.extend(ends.map(|end| triangles + end));
         self.missing.extend_from_slice(&other.missing);
     }
 
-    fn push(&mut self, solid: u32, hull: &Hull) {
-        self.add_triangles(hull);
-        self.solid_of.push(solid);
+    fn push(&mut self, solid: u32, hull: Option<&Hull>) {
+        match hull {
+            Some(hull) => self.add_triangles(hull),
+            None => self.missing.push(solid),
+        }
         self.triangles_up_to.push(self.hull.triangles.len() as u32);
     }
 
-    /// The hull that a triangle belongs to.
-    pub fn hull_of(&self, triangle: u32) -> usize {
-        self.triangles_up_to.partition_point(|&end| end <= triangle)
+    /// The solid that a triangle belongs to.
+    pub fn solid_of(&self, triangle: u32) -> u32 {
+        let before = |&end: &u32| end <= triangle;
+        self.triangles_up_to.partition_point(before) as u32
     }
 
     /// Whether a triangle is in the first half of those of its hull: for a disk, in the upper
     /// sheet.
     pub fn is_in_first_half(&self, triangle: u32) -> bool {
-        let all = self.triangles_of(self.hull_of(triangle));
+        let all = self.triangles_of(self.solid_of(triangle));
         2 * (triangle as usize - all.start) < all.len()
     }
 
-    /// The triangles of a hull.
-    pub fn triangles_of(&self, hull: usize) -> Range<usize> {
-        let end = |hull: usize| self.triangles_up_to[hull] as usize;
-        let start = hull.checked_sub(1).map_or(0, end);
-        start..end(hull)
+    /// The triangles of a solid's hull; none without a hull.
+    pub fn triangles_of(&self, solid: u32) -> Range<usize> {
+        let end = |solid: u32| self.triangles_up_to[solid as usize] as usize;
+        let start = solid.checked_sub(1).map_or(0, end);
+        start..end(solid)
+    }
+
+    /// The corners of a triangle.
+    pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        let vertices = &self.hull.vertices;
+        self.hull.triangles[triangle].map(|vertex| wide(vertices[vertex as usize]))
     }
 }
 
@@ -97,10 +104,8 @@ pub(crate) fn hulls(window: &Window, frame: &MeshFrame, segments: u32, side: Fit
                         (place, map)
                     }
                 };
-                match hull(frame, map, placed, segments, side) {
-                    Some(hull) => part.push(number, &hull),
-                    None => part.missing.push(number),
-                }
+                let hull = hull(frame, map, placed, segments, side);
+                part.push(number, hull.as_ref());
             }
             part
         })

@@ -14,15 +14,13 @@ use cyltrace::embree::{self, Device, GeometryId, MeshHit, Ray32, SceneBuilder};
 use cyltrace::math::{Bounds, Ray};
 
 use super::crossings::LeafCrossings;
+use super::hull::wide;
 use super::hull_list::{HullList, hulls};
 use super::mesh_frame::MeshFrame;
 use super::open_ends::OpenEnds;
 use super::window::{PlacedSolid, Window};
 use crate::solids::shape;
 use cyltrace::solid::tessellation::Fit;
-
-/// A solid without a hull.
-const NONE: u32 = u32::MAX;
 
 /// Both meshes of every solid of a window.
 pub(crate) struct Meshes<'a> {
@@ -41,8 +39,6 @@ pub(crate) struct Meshes<'a> {
 
 struct Mesh {
     hulls: HullList,
-    /// The hull of each solid, or [`NONE`].
-    hull_of: Vec<u32>,
     geometry: GeometryId,
 }
 
@@ -74,21 +70,12 @@ impl<'a> Meshes<'a> {
         frame: &MeshFrame,
         segments: u32,
     ) -> Result<Self, embree::Error> {
-        let solids = window.solids.len();
         let mut builder = SceneBuilder::new(device)?;
         let mut mesh = |side| {
             let hulls = hulls(window, frame, segments, side);
             let geometry =
                 builder.attach_collecting_triangles(&hulls.hull.vertices, &hulls.hull.triangles)?;
-            let mut hull_of = vec![NONE; solids];
-            for (hull, &solid) in hulls.solid_of.iter().enumerate() {
-                hull_of[solid as usize] = hull as u32;
-            }
-            Ok::<Mesh, embree::Error>(Mesh {
-                hulls,
-                hull_of,
-                geometry,
-            })
+            Ok::<Mesh, embree::Error>(Mesh { hulls, geometry })
         };
         let (inner, outer) = (mesh(Fit::Inscribed)?, mesh(Fit::Circumscribed)?);
         let of_solids = window.solids.par_iter();
@@ -107,7 +94,7 @@ impl<'a> Meshes<'a> {
     /// upper bound.
     pub fn has_inner(&self, solid: u32) -> bool {
         let mut leaves = self.window.leaves_with(solid);
-        leaves.all(|leaf| self.inner.hull_of[leaf as usize] != NONE)
+        leaves.all(|leaf| !self.inner.hulls.triangles_of(leaf).is_empty())
     }
 
     /// Solids without an outer hull. Nothing bounds the hits of a ray that may enter their
@@ -125,8 +112,11 @@ impl<'a> Meshes<'a> {
     }
 
     /// The triangles of a solid's outer, then of its inner hull.
-    pub fn triangles(&self, solid: u32) -> [Option<impl Iterator<Item = [DVec3; 3]> + '_>; 2] {
-        [&self.outer, &self.inner].map(|mesh| mesh.triangles_of(solid))
+    pub fn triangles(&self, solid: u32) -> [impl Iterator<Item = [DVec3; 3]> + '_; 2] {
+        [&self.outer.hulls, &self.inner.hulls].map(|hulls| {
+            let triangles = hulls.triangles_of(solid);
+            triangles.map(|triangle| hulls.corners(triangle))
+        })
     }
 
     /// Calls `found` with the first leaf of each solid whose meshes the ray crosses up to a
@@ -138,8 +128,8 @@ impl<'a> Meshes<'a> {
         buffers: &mut Traversal,
         mut found: impl FnMut(u32, &[LeafCrossings]),
     ) {
-        let origin = point(ray.origin);
-        let direction = point(ray.direction);
+        let origin = wide(ray.origin);
+        let direction = wide(ray.direction);
         let whole = Ray32 {
             t_far: up_to,
             ..*ray
@@ -150,11 +140,11 @@ impl<'a> Meshes<'a> {
         for hit in &buffers.hits {
             let is_outer = hit.geometry == self.outer.geometry;
             let mesh = if is_outer { &self.outer } else { &self.inner };
-            let [a, b, c] = mesh.corners(hit.primitive as usize);
+            let [a, b, c] = mesh.hulls.corners(hit.primitive as usize);
             let normal = (b - a).cross(c - a);
             let along = normal.dot(direction);
             if along != 0.0 {
-                let solid = mesh.solid_of(hit.primitive);
+                let solid = mesh.hulls.solid_of(hit.primitive);
                 let enters = if !is_outer && self.is_disk(solid) {
                     mesh.hulls.is_in_first_half(hit.primitive)
                 } else {
@@ -212,30 +202,6 @@ impl<'a> Meshes<'a> {
     pub fn is_composed(&self, solid: u32) -> bool {
         self.window.composition_of(solid).is_some()
     }
-}
-
-impl Mesh {
-    fn solid_of(&self, triangle: u32) -> u32 {
-        self.hulls.solid_of[self.hulls.hull_of(triangle)]
-    }
-
-    fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        let corners = self.hulls.hull.triangles[triangle];
-        corners.map(|vertex| point(self.hulls.hull.vertices[vertex as usize]))
-    }
-
-    fn triangles_of(&self, solid: u32) -> Option<impl Iterator<Item = [DVec3; 3]> + '_> {
-        let hull = self.hull_of[solid as usize];
-        (hull != NONE).then(|| {
-            let triangles = self.hulls.triangles_of(hull as usize);
-            triangles.map(|triangle| self.corners(triangle))
-        })
-    }
-}
-
-/// A point of f32 numbers in f64.
-pub(crate) fn point(x: [f32; 3]) -> DVec3 {
-    DVec3::from_array(x.map(f64::from))
 }
 
 /// Whether a ray may enter a box; `false` is certain.

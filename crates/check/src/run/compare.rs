@@ -19,9 +19,9 @@ use crate::report::words::{truth_text, window_text, wrong_text};
 use crate::reported_hit::{Intersector, ReportedHit};
 use crate::settings::{CheckError, Class, Settings};
 use crate::tally::{BLOCK, Progress, Tally, in_blocks};
-use crate::verdict::answer::{Scratch, Verdict, verdict};
+use crate::verdict::answer::{Verdict, verdict};
 use crate::verdict::judge::solid_of;
-use crate::verdict::seen::Seen;
+use crate::verdict::seen::{Scratch, Seen};
 use crate::verdict::surface::LocalRay;
 use crate::verdict::truth;
 

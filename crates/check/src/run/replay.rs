@@ -15,8 +15,9 @@ use crate::report::words::{
 };
 use crate::reported_hit::{Intersector, ReportedHit};
 use crate::settings::{CheckError, Class, Settings};
-use crate::verdict::answer::{Scratch, Verdict, verdict};
+use crate::verdict::answer::{Verdict, verdict};
 use crate::verdict::judge::first;
+use crate::verdict::seen::Scratch;
 use crate::verdict::truth;
 
 /// What is known about one ray.

@@ -8,24 +8,16 @@ use cyltrace::math::Ray;
 
 use super::exact_recheck::exact_seen;
 use super::judge::{Directory, Wrong, first, judge, solid_of};
-use super::seen::{Seen, look};
+use super::seen::{Scratch, Seen, look};
 use super::surface::LocalRay;
 use crate::bounding_meshes::crossings::LATER;
-use crate::bounding_meshes::meshes::{Meshes, Traversal, may_meet};
+use crate::bounding_meshes::meshes::{Meshes, may_meet};
 use crate::outcome::Row;
 use crate::reported_hit::ReportedHit;
 
 /// The distance beyond an answer up to which the ray is traced for the bounds of its solid,
 /// in sagittas. A ray at more than 4° to the wall enters the inscribed mesh within it.
 const SAGITTAS_BEYOND: f64 = 16.0;
-
-/// The buffers of a thread that judges answers.
-#[derive(Default)]
-pub(crate) struct Scratch {
-    traversal: Traversal,
-    /// The solids whose meshes the last ray crosses.
-    pub seen: Vec<Seen>,
-}
 
 /// What the meshes prove about an answer.
 pub(crate) enum Verdict {
@@ -94,13 +86,7 @@ pub(crate) fn verdict(
             is_cleared: false,
         };
     }
-    look(
-        meshes,
-        ray32,
-        f32::INFINITY,
-        &mut scratch.traversal,
-        &mut scratch.seen,
-    );
+    look(meshes, ray32, f32::INFINITY, scratch);
     let is_odd = scratch.seen.iter().any(|seen| seen.bounds.is_odd);
     let is_suspect = is_odd || judge(directory, ray, answer, &scratch.seen).is_some();
     if is_suspect {
@@ -144,13 +130,7 @@ fn is_settled(
     if !(finding.t < f64::from(up_to)) {
         return false;
     }
-    look(
-        meshes,
-        ray32,
-        up_to,
-        &mut scratch.traversal,
-        &mut scratch.seen,
-    );
+    look(meshes, ray32, up_to, scratch);
     let mut seen = scratch.seen.iter();
     if seen.any(|seen| seen.bounds.is_odd || meshes.is_composed(seen.solid)) {
         return false;

@@ -36,7 +36,8 @@ use cyltrace_oracle::{Exact, ExactVector, exact, to_f64};
 
 use super::seen::{Seen, bounds};
 use crate::bounding_meshes::crossings::{Crossings, LeafCrossings};
-use crate::bounding_meshes::meshes::{Meshes, may_meet, point};
+use crate::bounding_meshes::hull::wide;
+use crate::bounding_meshes::meshes::{Meshes, may_meet};
 
 /// Bits of the quotient from which a parameter is rounded.
 const QUOTIENT_BITS: usize = 256;
@@ -192,7 +193,7 @@ struct Line {
 
 impl Line {
     fn new(ray: &Ray32) -> Self {
-        let (origin, direction) = (point(ray.origin), point(ray.direction));
+        let (origin, direction) = (wide(ray.origin), wide(ray.direction));
         Self {
             origin,
             direction,
@@ -202,9 +203,9 @@ impl Line {
         }
     }
 
-    fn crossings(&self, triangles: Option<impl Iterator<Item = [DVec3; 3]>>) -> ExactCrossings {
+    fn crossings(&self, triangles: impl Iterator<Item = [DVec3; 3]>) -> ExactCrossings {
         let mut crossings = ExactCrossings::default();
-        for corners in triangles.into_iter().flatten() {
+        for corners in triangles {
             if let Some((t, enters)) = self.crossing(corners) {
                 crossings.add(t, enters);
             }
@@ -213,11 +214,8 @@ impl Line {
     }
 
     /// The crossings of the upper sheet of a disk, as entries, and of the lower one, as exits.
-    fn sheet_crossings(
-        &self,
-        triangles: Option<impl Iterator<Item = [DVec3; 3]>>,
-    ) -> ExactCrossings {
-        let triangles: Vec<_> = triangles.into_iter().flatten().collect();
+    fn sheet_crossings(&self, triangles: impl Iterator<Item = [DVec3; 3]>) -> ExactCrossings {
+        let triangles: Vec<_> = triangles.collect();
         let (over, under) = triangles.split_at(triangles.len() / 2);
         let mut crossings = ExactCrossings::default();
         for (sheet, is_over) in [(over, true), (under, false)] {

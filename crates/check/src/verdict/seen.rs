@@ -5,7 +5,8 @@ use cyltrace::embree::Ray32;
 use super::composed::composed_bounds;
 use super::sandwich::{SolidBounds, sheet_bounds, solid_bounds};
 use crate::bounding_meshes::crossings::LeafCrossings;
-use crate::bounding_meshes::meshes::{Meshes, Traversal, point};
+use crate::bounding_meshes::hull::wide;
+use crate::bounding_meshes::meshes::{Meshes, Traversal};
 
 /// A solid whose meshes a ray crosses.
 #[derive(Clone, Copy, Debug)]
@@ -16,15 +17,18 @@ pub(crate) struct Seen {
     pub bounds: SolidBounds,
 }
 
+/// The buffers of a thread that judges answers.
+#[derive(Default)]
+pub(crate) struct Scratch {
+    traversal: Traversal,
+    /// The solids whose meshes the last ray crosses.
+    pub seen: Vec<Seen>,
+}
+
 /// Finds the solids whose meshes Embree's traversal crosses up to a parameter, which may be
 /// infinite.
-pub(super) fn look(
-    meshes: &Meshes,
-    ray: &Ray32,
-    up_to: f32,
-    traversal: &mut Traversal,
-    seen: &mut Vec<Seen>,
-) {
+pub(super) fn look(meshes: &Meshes, ray: &Ray32, up_to: f32, scratch: &mut Scratch) {
+    let Scratch { traversal, seen } = scratch;
     seen.clear();
     meshes.for_each_solid(ray, up_to, traversal, |solid, leaves| {
         let bounds = bounds(meshes, solid, ray, leaves);
@@ -48,7 +52,7 @@ pub(super) fn bounds(
         return sheet_bounds(outer, inner, t_min);
     }
     let ends = &meshes.open_ends[solid as usize];
-    let (origin, direction) = (point(ray.origin), point(ray.direction));
+    let (origin, direction) = (wide(ray.origin), wide(ray.direction));
     solid_bounds(outer, inner, t_min, |t| {
         ends.are_passed(origin, direction, t)
     })

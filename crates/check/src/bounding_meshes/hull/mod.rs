@@ -245,6 +245,7 @@ fn rounded(vertex: DVec3) -> [f32; 3] {
     vertex.to_array().map(nearest)
 }
 
-fn wide(vertex: [f32; 3]) -> DVec3 {
+/// A point of f32 numbers in f64.
+pub(crate) fn wide(vertex: [f32; 3]) -> DVec3 {
     DVec3::from_array(vertex.map(f64::from))
 }
