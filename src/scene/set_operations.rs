@@ -90,7 +90,7 @@ fn operand(source: &Source, keys: &Spanned<Keys<OperandKeys>>) -> Result<Composi
         return Err(source.error_with_help(
             place,
             format!("an operand is one solid, and this states {}", stated.len()),
-            &format!(
+            format!(
                 "write {{ cylinder = {{ ... }} }}, or another of {}, each between braces of its own",
                 names.join(", ")
             ),

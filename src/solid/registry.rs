@@ -68,8 +68,7 @@ macro_rules! with_solid {
     (@arms $any:expr, $solid:ident => $what:expr; $({ $type:ident $($rest:tt)* })*) => {
         match $any {
             $($crate::solid::AnySolid::$type($solid) => $what,)*
-            // Other crates need an arm for kinds to come; the list has all that there are.
-            #[allow(unreachable_patterns)]
+            #[allow(unreachable_patterns, reason = "other crates need an arm for kinds to come")]
             _ => unreachable!("the registry lists every kind"),
         }
     };

@@ -20,6 +20,6 @@ fn names(bindings: &str) -> BTreeSet<&str> {
 fn bindings_for_documentation_have_every_function_and_constant() {
     let generated = names(include_str!(concat!(env!("OUT_DIR"), "/embree.rs")));
     let documented = names(include_str!("../../build/docs_rs.rs"));
-    assert!(generated.len() > 70, "{}", generated.len());
+    assert!(generated.len() > 60, "{}", generated.len());
     assert_eq!(documented, generated);
 }

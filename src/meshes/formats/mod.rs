@@ -42,8 +42,11 @@ struct Writer {
     /// Whether the file has that size, not at most that size.
     is_size_exact: bool,
     /// Writes the mesh of a plan, given what the file calls the scene.
-    write: fn(&Scene, &Plan, &str, &mut dyn Write, &mut Progress) -> Result<(), MeshFileError>,
+    write: WriteMesh,
 }
+
+type WriteMesh =
+    fn(&Scene, &Plan, &str, &mut dyn Write, &mut Progress) -> Result<(), MeshFileError>;
 
 /// Declares [`Format`] from one line a format.
 macro_rules! formats {

@@ -136,7 +136,7 @@ impl BeamLatticeKeys {
 /// the archive around it.
 ///
 /// # Errors
-/// As those of [`super::load`] for the file.
+/// Those of [`scene::load`](crate::scene::load()) for the file.
 pub fn beams_of_model(text: &str) -> Result<u64, SceneError> {
     let part = package::Part {
         path: "model".into(),
