@@ -6,9 +6,7 @@ use std::sync::Arc;
 use arbitrary::{Result, Unstructured};
 use cyltrace::embree::MaxIsa;
 use cyltrace::math::Ray;
-use cyltrace::scene::{
-    CylinderRecord, MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, SolidRecord,
-};
+use cyltrace::scene::{MaterialIndex, Placement, Prototype, PrototypeIndex, Scene, SolidRecord};
 use cyltrace::solid::{AnySolid, Composition};
 use cyltrace_oracle::ExactAffine;
 use glam::{DAffine3, DVec3};
@@ -87,25 +85,13 @@ impl DrawnScene {
 
 fn prototype(drawing: &mut Drawing, later: std::ops::Range<u32>) -> Result<Prototype> {
     let mut prototype = Prototype::default();
-    let mut cylinders = Vec::new();
     let mut number = 0..;
     let mut next = || number.next().expect("numbers do not end");
     let material = MaterialIndex(0);
     for solid in drawing.solids(8)? {
-        let (number, others) = (next(), &mut prototype.solids);
-        match solid {
-            AnySolid::Cylinder(one) => cylinders.push(CylinderRecord::new(&one, number, material)),
-            AnySolid::Cone(one) => others.cones.push(SolidRecord::new(one, number, material)),
-            AnySolid::RoundedCone(one) => {
-                let record = SolidRecord::new(one, number, material);
-                others.rounded_cones.push(record);
-            }
-            AnySolid::Sphere(one) => others.spheres.push(SolidRecord::new(one, number, material)),
-            AnySolid::Cuboid(one) => others.cuboids.push(SolidRecord::new(one, number, material)),
-            AnySolid::Disk(one) => others.disks.push(SolidRecord::new(one, number, material)),
-        }
+        let record = SolidRecord::new(solid, next(), material);
+        prototype.solids.push(record).expect("f64 keeps it");
     }
-    prototype.solids.cylinders = cylinders.into();
     for _ in 0..drawing.below(2)? {
         if let Some(
             solid @ (Composition::Union(_)

@@ -14,7 +14,7 @@ use super::solids::SceneSolid;
 use super::table::ColumnKey;
 use super::values::{ColumnOrList, Keys, List, Number, NumberOrList, Whole};
 use crate::for_each_solid;
-use crate::solid::{Cone, Cuboid, Cylinder, Disk, RoundedCone, SolidKind, Sphere};
+use crate::solid::SolidKind;
 
 /// Three numbers and their place.
 pub(super) type Triple = Spanned<List<Number, 3>>;
@@ -30,7 +30,7 @@ macro_rules! holders {
         $({ $type:ident $solid:ident $($rest:tt)* })*
     ) => {
         holders! {
-            @ [$($solid: <$type as SceneSolid>::Keys,)* $($others)*]
+            @ [$($solid: <crate::solid::$type as SceneSolid>::Keys,)* $($others)*]
             $($(#[$meta])* $name $keys)*
         }
     };

@@ -7,7 +7,6 @@ use super::document::Triple;
 use super::solids::{SceneSolid, SolidKeys};
 use super::values::{Keys, Number};
 use crate::for_each_solid;
-use crate::solid::{Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 
 /// How an object is turned and moved.
 #[derive(Clone, Copy)]
@@ -89,7 +88,7 @@ macro_rules! operand_keys {
         #[derive(Deserialize)]
         #[serde(deny_unknown_fields)]
         pub(super) struct OperandKeys {
-            $($name: Option<Spanned<Keys<<$type as SceneSolid>::Keys>>>,)*
+            $($name: Option<Spanned<Keys<<crate::solid::$type as SceneSolid>::Keys>>>,)*
             pub union: Option<Keys<CompositionKeys>>,
             pub intersection: Option<Keys<CompositionKeys>>,
             pub difference: Option<Keys<CompositionKeys>>,

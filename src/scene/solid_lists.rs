@@ -8,10 +8,7 @@ use rayon::prelude::*;
 use super::cylinder_list::Records;
 use super::description::{CylinderRecord, MaterialIndex};
 use crate::math::Bounds;
-use crate::solid::{
-    AnySolid, Composition, Cone, ConvexSolid, Cuboid, Cylinder, Disk, RoundedCone, SolidCounts,
-    SolidKind, Sphere,
-};
+use crate::solid::{AnySolid, Composition, ConvexSolid, SolidCounts, SolidKind};
 use crate::{for_each_solid, with_solid, with_solid_kind};
 
 /// A solid with its number and material.
@@ -153,7 +150,7 @@ impl Stored for Composition {
 
 macro_rules! listed {
     ($($type:ident $list:ident)*) => {
-        $(impl Listed for $type {
+        $(impl Listed for crate::solid::$type {
             #[inline(always)]
             fn list(solids: &Solids) -> &Self::List {
                 &solids.$list
@@ -174,7 +171,7 @@ macro_rules! solids {
         pub struct Solids {
             $(
                 #[doc = concat!("Each a `", stringify!($name), "`.")]
-                pub $list: <$type as Stored>::List,
+                pub $list: <crate::solid::$type as Stored>::List,
             )*
             /// The solids that are composed of others.
             pub compositions: Vec<CompositionRecord>,

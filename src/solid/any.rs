@@ -2,10 +2,7 @@
 
 use glam::DVec3;
 
-use super::{
-    Chord, Cone, ConvexSolid, Cuboid, Cylinder, Disk, Location, Part, RoundedCone, SolidKind,
-    SpawnMargin, Sphere, SurfacePoint,
-};
+use super::{Chord, ConvexSolid, Location, Part, SolidKind, SpawnMargin, SurfacePoint};
 use crate::math::Bounds;
 use crate::{for_each_solid, with_solid};
 
@@ -13,9 +10,12 @@ macro_rules! any_solid {
     ($({ $type:ident $name:ident $list:ident $code:literal $description:literal })*) => {
         /// A solid of any kind, where kinds are mixed and few: each list of a scene
         /// is of one kind. [`with_solid!`](crate::with_solid) matches it.
+        ///
+        /// A new kind is a new variant. A match that names all of them fails to compile then,
+        /// which is wanted: it has nothing for the new kind.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum AnySolid {
-            $(#[doc = $description] $type($type),)*
+            $(#[doc = $description] $type(super::$type),)*
         }
 
         impl AnySolid {
@@ -28,8 +28,8 @@ macro_rules! any_solid {
             }
         }
 
-        $(impl From<$type> for AnySolid {
-            fn from(solid: $type) -> Self {
+        $(impl From<super::$type> for AnySolid {
+            fn from(solid: super::$type) -> Self {
                 Self::$type(solid)
             }
         })*

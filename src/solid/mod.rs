@@ -45,6 +45,7 @@ pub use way::RayOrigin;
 
 /// The part of a solid's surface that a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
 pub enum Part {
     /// The curved wall; all of a sphere or a disk.
     Side,

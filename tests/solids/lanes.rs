@@ -16,8 +16,9 @@ use cyltrace::solid::lanes::{
     self, AllCapped, AllOpen, CylinderLanes, LaneCaps, MixedCaps, RayLanes,
 };
 use cyltrace::solid::{
-    AnySolid, Caps, ConvexSolid, Cylinder, Intersection, RayOrigin, quick, triple_product,
+    Caps, ConvexSolid, Cylinder, Intersection, RayOrigin, quick, triple_product,
 };
+use cyltrace::with_solid;
 use cyltrace_oracle::cases::Problem;
 use cyltrace_oracle::cases::{AnyFamily, Case, Family, Inputs};
 use glam::DVec3;
@@ -346,14 +347,7 @@ fn quick_solvers_answer_as_the_scalar_solvers_do_or_not_at_all() {
                         verify_quick($solid, &in_lanes(&drawn), active, &name)
                     }};
                 }
-                match &cases[0].solid {
-                    AnySolid::Cylinder(solid) => verify!(solid),
-                    AnySolid::Cone(solid) => verify!(solid),
-                    AnySolid::RoundedCone(solid) => verify!(solid),
-                    AnySolid::Sphere(solid) => verify!(solid),
-                    AnySolid::Cuboid(solid) => verify!(solid),
-                    AnySolid::Disk(solid) => verify!(solid),
-                }
+                with_solid!(&cases[0].solid, solid => verify!(solid))
             };
             let sum = |one: Count, other: Count| Count {
                 open: one.open + other.open,

@@ -86,7 +86,7 @@ impl Sight {
             AnySolid::Cylinder(one) => (one.p0(), one.p1()),
             AnySolid::Cone(one) => (one.p0(), one.p1()),
             AnySolid::RoundedCone(one) => (one.p0(), one.p1()),
-            AnySolid::Sphere(_) | AnySolid::Cuboid(_) | AnySolid::Disk(_) => return true,
+            _ => return true,
         };
         let axis = (p1 - p0).normalize();
         let x = self.origin - p0;

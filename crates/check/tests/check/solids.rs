@@ -221,7 +221,7 @@ fn wrong_parts_are_caught() {
             Part::YMin => Part::YMax,
             Part::YMax => Part::ZMin,
             Part::ZMin => Part::ZMax,
-            Part::ZMax => Part::XMin,
+            _ => Part::XMin,
         };
         finding.normal = None;
     };

@@ -9,9 +9,7 @@ use std::str::FromStr;
 use super::{Inputs, Problem, UnknownFamily, family_named};
 use cyltrace::for_each_solid;
 use cyltrace::math::Ray;
-use cyltrace::solid::{
-    AnySolid, Cone, ConvexSolid, Cuboid, Cylinder, Disk, RoundedCone, SolidKind, Sphere,
-};
+use cyltrace::solid::{AnySolid, ConvexSolid, SolidKind};
 
 /// A solid and a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +66,7 @@ macro_rules! any_family {
         pub enum AnyFamily {
             $(
                 #[doc = concat!("Of ", stringify!($list), ".")]
-                $type(<$type as HardCases>::Family),
+                $type(<cyltrace::solid::$type as HardCases>::Family),
             )*
         }
 
@@ -77,7 +75,7 @@ macro_rules! any_family {
             #[must_use]
             pub fn all() -> Vec<Self> {
                 let mut all = Vec::new();
-                $(all.extend($type::FAMILIES.iter().copied().map(Self::$type));)*
+                $(all.extend(cyltrace::solid::$type::FAMILIES.iter().copied().map(Self::$type));)*
                 all.sort_by_key(|family| family.kind().code());
                 all
             }
@@ -94,7 +92,7 @@ macro_rules! any_family {
             #[must_use]
             pub fn name(self) -> String {
                 match self {
-                    $(Self::$type(family) => $type::family_name(family),)*
+                    $(Self::$type(family) => cyltrace::solid::$type::family_name(family),)*
                 }
             }
 
@@ -105,7 +103,7 @@ macro_rules! any_family {
             #[must_use]
             pub fn case(self, seed: u64, index: u64, inputs: Inputs) -> Case {
                 match self {
-                    $(Self::$type(family) => case_of::<$type>(family, seed, index, inputs),)*
+                    $(Self::$type(family) => case_of::<cyltrace::solid::$type>(family, seed, index, inputs),)*
                 }
             }
         }
