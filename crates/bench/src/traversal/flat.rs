@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
-use cyltrace::scene::{CylinderList, Prototype, PrototypeIndex, Scene};
+use cyltrace::scene::{Prototype, PrototypeIndex, Scene};
 use cyltrace::solid::{AnySolid, SolidKind};
 use cyltrace_oracle::ExactAffine;
 
@@ -89,12 +89,6 @@ impl Flat {
     #[must_use]
     pub fn prototype(&self, index: PrototypeIndex) -> &Prototype {
         &self.scene.prototypes[index.0 as usize]
-    }
-
-    /// The cylinders of a prototype.
-    #[must_use]
-    pub fn cylinders(&self, prototype: PrototypeIndex) -> &CylinderList {
-        &self.prototype(prototype).solids.cylinders
     }
 
     /// The solids of a prototype in an order of their own, which is that of rivals'
