@@ -93,7 +93,7 @@ pub(super) fn chord(x: impl Way, d: DVec3, radius: f64, part: Part) -> Option<Ch
     })
 }
 
-/// The first meeting of the line `center + x + t d`; see [`quick`](super::quick).
+/// The first intersection of the line `center + x + t d`; see [`quick`](super::quick).
 #[inline(always)]
 pub(super) fn quick_first(x: DVec3, d: DVec3, radius: f64, range: &Range) -> Quick {
     let quick = QuickBall::new(x, d, radius, 0.0);

@@ -57,7 +57,7 @@ impl<S: Real> Chord<S> {
     /// on it, 0 unless the solver was given a point farther along the ray. A
     /// tangent is an entry and an exit at the same `t`.
     #[inline]
-    pub fn meetings(
+    pub fn intersections(
         &self,
         caps: Caps,
         shift: S,
@@ -69,7 +69,7 @@ impl<S: Real> Chord<S> {
         enter.into_iter().chain(leave)
     }
 
-    /// The first of [`Chord::meetings`].
+    /// The first of [`Chord::intersections`].
     #[inline(always)]
     #[must_use]
     pub fn first(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> Option<Intersection<S>> {
@@ -92,13 +92,13 @@ impl<S: Real> Chord<S> {
             });
         }
         self.enter
-            .meeting(Crossing::Enter, caps, shift, t_min, t_max)
+            .intersection(Crossing::Enter, caps, shift, t_min, t_max)
     }
 
     #[inline]
     fn exit(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> Option<Intersection<S>> {
         self.leave
-            .meeting(Crossing::Leave, caps, shift, t_min, t_max)
+            .intersection(Crossing::Leave, caps, shift, t_min, t_max)
     }
 
     /// Whether `t` is behind the entry and not behind the exit.
@@ -117,9 +117,9 @@ impl<S: Real> ChordEnd<S> {
         }
     }
 
-    /// The end as a meeting, if the surface is there and it is in range.
+    /// The end as an intersection, if the surface is there and it is in range.
     #[inline(always)]
-    pub(super) fn meeting(
+    pub(super) fn intersection(
         &self,
         crossing: Crossing,
         caps: Caps,
@@ -137,7 +137,7 @@ impl<S: Real> ChordEnd<S> {
             })
     }
 
-    /// Whether [`ChordEnd::meeting`] is one.
+    /// Whether [`ChordEnd::intersection`] is one.
     #[inline(always)]
     pub(super) fn is_met(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> bool {
         (exists(self.part, caps) | self.on_rim) & self.is_in_range(shift, t_min, t_max)

@@ -47,7 +47,7 @@ use std::cell::Cell;
 
 use glam::DVec3;
 
-use super::slab::{Disks, FirstMeeting, Overlap, RoundedEnd};
+use super::slab::{Disks, FirstIntersection, Overlap, RoundedEnd};
 use super::triple_product::{Axis, Line, Roots, StatedAxis, answer, slab};
 use super::{Caps, ChordEnd, ties};
 use crate::math::{LANES, LaneMask, LaneVectors, Lanes, power_of_two};
@@ -123,7 +123,7 @@ pub struct RayLanes {
 }
 
 /// [`triple_product::first`](super::triple_product::first) in every lane that is
-/// `active`: where there is a first meeting, and its parameter on the whole
+/// `active`: where there is a first intersection, and its parameter on the whole
 /// ray, which has no meaning elsewhere.
 #[inline(always)]
 #[must_use]
@@ -322,17 +322,17 @@ fn one_by_one<C: LaneCaps>(
 ) -> (LaneMask, Lanes) {
     let (mut hits, mut ts) = answers;
     for lane in (0..LANES).filter(|&lane| mask.0[lane]) {
-        let question = FirstMeeting {
+        let question = FirstIntersection {
             caps: cylinders.caps.lane(lane),
             shift: rays.shift.0[lane],
             t_min: rays.t_min.0[lane],
             t_max: rays.t_max.0[lane],
         };
         let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
-        let meeting = answer(&cylinders.axis(lane), x, d, question);
-        hits.0[lane] = meeting.is_some();
-        if let Some(meeting) = meeting {
-            ts.0[lane] = meeting.t;
+        let intersection = answer(&cylinders.axis(lane), x, d, question);
+        hits.0[lane] = intersection.is_some();
+        if let Some(intersection) = intersection {
+            ts.0[lane] = intersection.t;
         }
     }
     (hits, ts)

@@ -1,4 +1,4 @@
-//! First meetings without a branch, eight rays at once.
+//! First intersections without a branch, eight rays at once.
 //!
 //! A solid's quick solver is made of the pieces of its solver, without the exact numbers
 //! that rare cases need: it reports such a case as open, and the caller puts it to
@@ -13,18 +13,18 @@ use super::ConvexSolid;
 use super::lanes::RayLanes;
 use crate::math::{LANES, LaneMask, Lanes};
 
-/// The first meeting of a line and a solid in a range, as a quick solver finds it.
+/// The first intersection of a line and a solid in a range, as a quick solver finds it.
 #[derive(Clone, Copy, Debug)]
 pub struct Quick {
     /// Whether the answer takes exact numbers; the rest has no meaning then.
     pub is_open: bool,
-    /// Whether there is a meeting.
+    /// Whether there is an intersection.
     pub is_met: bool,
     /// Its parameter on the whole ray; without meaning if there is none.
     pub t: f64,
 }
 
-/// The range of a meeting's parameter.
+/// The range of an intersection's parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Range {
     /// Where the origin is on the whole ray.
@@ -35,7 +35,7 @@ pub struct Range {
     pub t_max: f64,
 }
 
-/// The first meetings of eight rays.
+/// The first intersections of eight rays.
 #[derive(Clone, Copy, Debug)]
 pub struct QuickLanes {
     /// Rays whose answer takes exact numbers.

@@ -76,7 +76,7 @@ pub trait Question<S: Real> {
 
 /// Asks for [`Chord::first`]. The end at which the line leaves is computed only
 /// if the one at which it enters is no hit.
-pub struct FirstMeeting<S> {
+pub struct FirstIntersection<S> {
     /// The closed ends.
     pub caps: Caps,
     /// The `t` of the whole ray where the line's is 0.
@@ -87,7 +87,7 @@ pub struct FirstMeeting<S> {
     pub t_max: S,
 }
 
-impl<S: Real> Question<S> for FirstMeeting<S> {
+impl<S: Real> Question<S> for FirstIntersection<S> {
     type Answer = Intersection<S>;
 
     #[inline]
@@ -101,8 +101,8 @@ impl<S: Real> Question<S> for FirstMeeting<S> {
             return self.of_chord(overlap.across()?);
         }
         let disks = Disks::of(&overlap.slab);
-        let meeting = |end: ChordEnd<S>, crossing| {
-            end.meeting(crossing, self.caps, self.shift, self.t_min, self.t_max)
+        let intersection = |end: ChordEnd<S>, crossing| {
+            end.intersection(crossing, self.caps, self.shift, self.t_min, self.t_max)
         };
         let (is_there, enter) = overlap.enter(&disks);
         if enter.is_open {
@@ -111,10 +111,10 @@ impl<S: Real> Question<S> for FirstMeeting<S> {
         if !is_there {
             return None;
         }
-        if let Some(entry) = meeting(enter.end, Crossing::Enter) {
+        if let Some(entry) = intersection(enter.end, Crossing::Enter) {
             return Some(entry);
         }
-        meeting(overlap.decided_leave(&disks, enter.end.t), Crossing::Leave)
+        intersection(overlap.decided_leave(&disks, enter.end.t), Crossing::Leave)
     }
 }
 

@@ -4,7 +4,7 @@
 //! at distance δ outside the tangent plane of the true surface. All that the
 //! next query computes is the exact answer for a start and a direction that
 //! are a little displaced; as the solid is convex and the direction does not
-//! point into it, there is no such meeting if δ is more than all displacements
+//! point into it, there is no such intersection if δ is more than all displacements
 //! together:
 //!
 //! - the point's own error, and the rounding of the start, `u |p|`;

@@ -44,7 +44,7 @@
 
 use glam::DVec3;
 
-use super::slab::{FirstMeeting, Question, Slab, Wall, WholeChord};
+use super::slab::{FirstIntersection, Question, Slab, Wall, WholeChord};
 use super::{Chord, Cylinder, Intersection, ties};
 use crate::math::{Real, RealVector, Wide, power_of_two, wide_cross, wide_square};
 
@@ -158,7 +158,7 @@ pub fn first(
     t_min: f64,
     t_max: f64,
 ) -> Option<Intersection> {
-    let question = FirstMeeting {
+    let question = FirstIntersection {
         caps: cylinder.caps(),
         shift,
         t_min,

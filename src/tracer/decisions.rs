@@ -30,7 +30,7 @@ impl Decisions {
     }
 }
 
-/// The first meeting of a ray with a convex solid in a range of the whole ray's `t`, decided
+/// The first intersection of a ray with a convex solid in a range of the whole ray's `t`, decided
 /// exactly. A call, so that what decides otherwise is compiled as if this were not there.
 #[cold]
 #[inline(never)]

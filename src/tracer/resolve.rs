@@ -39,7 +39,7 @@ use crate::with_solid_kind;
 /// What a query is to work out of a hit.
 #[derive(Clone, Copy)]
 pub(crate) enum Which {
-    /// The first meeting with the solid, which is at this `t`.
+    /// The first intersection with the solid, which is at this `t`.
     FirstAt(f64),
     /// This one.
     This(SurfaceHit),
@@ -47,7 +47,7 @@ pub(crate) enum Which {
 
 /// A hit in its prototype's own space.
 struct LocalHit {
-    meeting: Intersection,
+    intersection: Intersection,
     surface: SurfacePoint,
     /// `None` where no rays are spawned.
     margin: Option<SpawnMargin>,
@@ -65,8 +65,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The meeting, of which a query that only knows its `t` finds the rest by
-    /// `first`. The query went through the same operations: it is the same meeting.
+    /// The intersection, of which a query that only knows its `t` finds the rest by
+    /// `first`. The query went through the same operations: it is the same intersection.
     fn met(&self, first: impl FnOnce(f64) -> Option<SurfaceHit>) -> SurfaceHit {
         match self.which {
             Which::This(met) => met,
@@ -80,7 +80,7 @@ impl Search<'_> {
         let met = self.met(|t| solid.first(self.ray, self.decisions, self.t_min, t));
         let surface = solid.surface(self.ray, &met);
         LocalHit {
-            meeting: met.meeting,
+            intersection: met.intersection,
             surface,
             margin: self.margin(|| solid.spawn_margin(&met, &surface)),
             primitive: list.primitive(position),
@@ -185,7 +185,7 @@ pub(crate) fn resolve(
         search.on_solid(S::list(solids), position)
     });
     let LocalHit {
-        meeting,
+        intersection,
         surface,
         margin,
         primitive,
@@ -216,7 +216,7 @@ pub(crate) fn resolve(
     };
 
     Hit {
-        t: meeting.t,
+        t: intersection.t,
         point,
         error,
         normal,
@@ -225,8 +225,8 @@ pub(crate) fn resolve(
         prototype: place.prototype,
         solid: place.member.kind,
         primitive,
-        part: meeting.part,
-        crossing: meeting.crossing,
+        part: intersection.part,
+        crossing: intersection.crossing,
         instance,
         material,
         spawn_offset: margin.map_or(f64::NAN, |margin| margin.offset(point, error)),

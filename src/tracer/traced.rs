@@ -17,10 +17,10 @@ use crate::solid::{
     SurfacePoint,
 };
 
-/// A meeting with a solid.
+/// An intersection with a solid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SurfaceHit {
-    pub meeting: Intersection,
+    pub intersection: Intersection,
     /// Which of the solids that it is made of is met; 0 where it is one.
     pub leaf: u32,
     /// Whether the normal is that solid's reversed.
@@ -31,11 +31,11 @@ pub(crate) struct SurfaceHit {
 }
 
 impl SurfaceHit {
-    /// A meeting with a solid that is one.
+    /// An intersection with a solid that is one.
     #[inline(always)]
-    pub fn whole(meeting: Intersection) -> Self {
+    pub fn whole(intersection: Intersection) -> Self {
         Self {
-            meeting,
+            intersection,
             leaf: 0,
             is_reversed: false,
             rank: 0,
@@ -80,7 +80,7 @@ pub(crate) trait TracedSolid: Listed + Send + Sync {
     /// A box that contains it.
     fn bounds(&self) -> Bounds;
 
-    /// The first meetings of the `active` rays of a row, without those that
+    /// The first intersections of the `active` rays of a row, without those that
     /// [`TracedSolid::first`] has to find.
     #[inline(always)]
     fn first_in_row(&self, _: &RowOfPacket, active: LaneMask) -> QuickLanes {
@@ -93,7 +93,7 @@ pub(crate) trait TracedSolid: Listed + Send + Sync {
         QuickLanes::all_open(active)
     }
 
-    /// The first meeting of the ray with its surface in a range of the whole
+    /// The first intersection of the ray with its surface in a range of the whole
     /// ray's `t`.
     fn first(
         &self,
@@ -155,14 +155,14 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
         t_min: f64,
         t_max: f64,
     ) -> Option<SurfaceHit> {
-        let meeting = match decisions {
+        let intersection = match decisions {
             Decisions::Rounded => {
                 let from_anchor = ray.origin_from(self.anchor());
                 self.first(from_anchor, ray.direction, ray.shift, t_min, t_max)
             }
             Decisions::Exact => exact_first(self, ray, t_min, t_max),
         };
-        meeting.map(SurfaceHit::whole)
+        intersection.map(SurfaceHit::whole)
     }
 
     fn for_each_hit(
@@ -174,13 +174,13 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
         keep: impl FnMut(SurfaceHit),
     ) {
         if let Some(chord) = decisions.chord(self, ray) {
-            let meetings = chord.meetings(self.caps(), ray.shift, t_min, t_max);
-            meetings.map(SurfaceHit::whole).for_each(keep);
+            let intersections = chord.intersections(self.caps(), ray.shift, t_min, t_max);
+            intersections.map(SurfaceHit::whole).for_each(keep);
         }
     }
 
     fn surface(&self, ray: &LocalRay, met: &SurfaceHit) -> SurfacePoint {
-        let Intersection { part, t_local, .. } = met.meeting;
+        let Intersection { part, t_local, .. } = met.intersection;
         let from_anchor = ray.origin_from(self.anchor()) + ray.direction * t_local;
         self.surface_point(part, from_anchor)
     }
@@ -197,7 +197,7 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
 impl From<ComposedIntersection> for SurfaceHit {
     fn from(met: ComposedIntersection) -> Self {
         Self {
-            meeting: met.meeting,
+            intersection: met.intersection,
             leaf: met.leaf,
             is_reversed: met.is_reversed,
             rank: met.rank,
@@ -208,7 +208,7 @@ impl From<ComposedIntersection> for SurfaceHit {
 impl From<&SurfaceHit> for ComposedIntersection {
     fn from(met: &SurfaceHit) -> Self {
         Self {
-            meeting: met.meeting,
+            intersection: met.intersection,
             leaf: met.leaf,
             is_reversed: met.is_reversed,
             rank: met.rank,
@@ -241,14 +241,14 @@ impl TracedSolid for Composition {
     ) {
         let from = |anchor| ray.origin_from(anchor);
         let range = [t_min, t_max];
-        self.meetings(from, ray.direction, ray.shift, range, |met| {
+        self.intersections(from, ray.direction, ray.shift, range, |met| {
             keep(met.into())
         });
     }
 
     fn surface(&self, ray: &LocalRay, met: &SurfaceHit) -> SurfacePoint {
         self.surface(&met.into(), |anchor| {
-            ray.origin_from(anchor) + ray.direction * met.meeting.t_local
+            ray.origin_from(anchor) + ray.direction * met.intersection.t_local
         })
     }
 

@@ -34,7 +34,7 @@ fn answer(solid: TaperSolid, case: &TaperCase, caps: Caps) -> Answer {
         let x = ray.origin - solid.anchor();
         let chord = solid.chord(x, ray.direction);
         let found = chord.map_or(Vec::new(), |chord| {
-            let hits = chord.meetings(solid.caps(), 0.0, ray.t_min, ray.t_max);
+            let hits = chord.intersections(solid.caps(), 0.0, ray.t_min, ray.t_max);
             hits.collect()
         });
         Answer {
@@ -166,7 +166,7 @@ fn check(solid: TaperSolid, inputs: Inputs) {
         let wrong: Vec<u64> = [&found.wrong_hits[..], &found.wrong_parts].concat();
         let name = format!("{solid:?} {family:?} {}", inputs.name());
         println!(
-            "{name}: {} meetings, {} wrong hits, {} wrong parts, p99.9 {p999:.5} ulp, greatest {:.3}",
+            "{name}: {} intersections, {} wrong hits, {} wrong parts, p99.9 {p999:.5} ulp, greatest {:.3}",
             found.hits,
             found.wrong_hits.len(),
             found.wrong_parts.len(),
@@ -194,7 +194,7 @@ fn check(solid: TaperSolid, inputs: Inputs) {
         }
         // A family that misses shows nothing.
         if found.hits < cases() / 5 {
-            broken.push(format!("{name}: {} meetings", found.hits));
+            broken.push(format!("{name}: {} intersections", found.hits));
         }
     }
     assert!(broken.is_empty(), "{broken:#?}; seed {SEED}");
@@ -260,9 +260,9 @@ fn points_are_held_as_exact_arithmetic_says() {
     assert!(held[0] > 1000 && held[1] > 1000, "{held:?}");
 }
 
-/// From within there is one meeting ahead, from outside none or two.
+/// From within there is one intersection ahead, from outside none or two.
 #[test]
-fn count_of_meetings_agrees_with_contains() {
+fn count_of_intersections_agrees_with_contains() {
     for solid in [TaperSolid::Cone, TaperSolid::RoundedCone] {
         let mut inside = 0;
         for family in [TaperFamily::Inside, TaperFamily::Uniform, TaperFamily::Far] {
@@ -273,7 +273,9 @@ fn count_of_meetings_agrees_with_contains() {
                     TaperSolid::RoundedCone => case.rounded_cone().contains(case.ray.origin),
                 };
                 let count = answer_of(solid, &case).map_or(0, |chord| {
-                    chord.meetings(Caps::Both, 0.0, 0.0, f64::INFINITY).count()
+                    chord
+                        .intersections(Caps::Both, 0.0, 0.0, f64::INFINITY)
+                        .count()
                 });
                 assert_eq!(holds, count == 1, "{solid:?} {family:?} {index}: {count}");
                 inside += u64::from(holds);
@@ -382,7 +384,7 @@ fn lines_that_touch_the_rim_of_an_open_end_enter_and_leave_there() {
                 let truth = hits_of_any(solid, &ray);
                 let x = ray.origin - solid.anchor();
                 let found = solid.chord(x, direction).map_or(Vec::new(), |chord| {
-                    chord.meetings(caps, 0.0, 0.0, f64::INFINITY).collect()
+                    chord.intersections(caps, 0.0, 0.0, f64::INFINITY).collect()
                 });
                 let keys = |met: &Intersection| (met.part, met.crossing, met.t);
                 let found: Vec<_> = found.iter().map(keys).collect();

@@ -67,7 +67,7 @@ impl Group {
             ..
         } = asked.ray;
         triple_product::first(cylinder, from_p0, direction, asked.shift, t_min, t_max)
-            .map(|meeting| meeting.t.to_bits())
+            .map(|intersection| intersection.t.to_bits())
     }
 
     /// Fails where the lanes answer otherwise; how many hits there are.
@@ -316,7 +316,7 @@ fn verify_lanes(
         let found = is_met.then(|| answer.t.0[lane].to_bits());
         assert_eq!(
             found,
-            expected.map(|meeting| meeting.t.to_bits()),
+            expected.map(|intersection| intersection.t.to_bits()),
             "seed {SEED}, {name}, lane {lane}: {solid:?} {:?}",
             lane_of(rays, lane),
         );

@@ -131,11 +131,11 @@ fn queries_agree_with_each_other_and_with_the_exhaustive_search() {
 #[test]
 fn crossings_alternate_agree_with_contains_and_are_the_same_backwards() {
     let tracer = scene();
-    let (mut points, mut held, mut meetings) = (0_u64, 0_u64, 0);
+    let (mut points, mut held, mut intersections) = (0_u64, 0_u64, 0);
     for index in 0..rays() {
         let ray = ray(index);
         let hits = all(&tracer, &ray, 32);
-        meetings += hits.len();
+        intersections += hits.len();
         let mut inside: HashMap<_, bool> = HashMap::new();
         for hit in &hits {
             let is_inside = inside.entry(key(hit)).or_default();
@@ -179,7 +179,7 @@ fn crossings_alternate_agree_with_contains_and_are_the_same_backwards() {
             held += holding.len() as u64;
         }
     }
-    println!("{meetings} meetings, {points} points, {held} times held");
+    println!("{intersections} intersections, {points} points, {held} times held");
     assert!(held > points / 2);
 }
 

@@ -5,7 +5,7 @@
 //!
 //! The judge is exact arithmetic on the spawned ray as it is, an f64 ray like
 //! any other: outward, it must be outside of the solid it left and never meet
-//! it; inward, its first meeting with that solid must be the far side.
+//! it; inward, its first intersection with that solid must be the far side.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

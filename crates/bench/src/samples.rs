@@ -48,10 +48,10 @@ impl Formulation for Shifted {
         let answer = |problem: &Problem| {
             let Problem { cylinder, ray } = problem;
             let chord = triple_product::chord(cylinder, ray.origin - cylinder.p0(), ray.direction)?;
-            let meeting = chord.first(cylinder.caps(), 0.0, ray.t_min, ray.t_max)?;
+            let intersection = chord.first(cylinder.caps(), 0.0, ray.t_min, ray.t_max)?;
             Some(Answer {
-                t: meeting.t + self.0,
-                part: meeting.part,
+                t: intersection.t + self.0,
+                part: intersection.part,
                 normal: DVec3::Z,
             })
         };

@@ -24,7 +24,7 @@ use crate::solid::{ChordEnd, Intersection, Location};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComposedIntersection {
     /// The point, the part being that of the leaf.
-    pub meeting: Intersection,
+    pub intersection: Intersection,
     /// The operand whose surface it is, as a position in [`Composition::operands`].
     pub leaf: u32,
     /// Whether the composition is on the outer side of the leaf's surface, so that its normal
@@ -42,7 +42,7 @@ impl Composition {
     /// `origin_from` returns the ray's origin as seen from an anchor. The
     /// range, `shift` and the direction are as for
     /// [`ConvexSolid::first`](crate::solid::ConvexSolid::first).
-    pub fn meetings(
+    pub fn intersections(
         &self,
         origin_from: impl Fn(DVec3) -> DVec3,
         direction: DVec3,
@@ -57,7 +57,7 @@ impl Composition {
         });
     }
 
-    /// The first of [`Composition::meetings`].
+    /// The first of [`Composition::intersections`].
     #[must_use]
     pub fn first(
         &self,
@@ -74,7 +74,7 @@ impl Composition {
         first
     }
 
-    /// Passes the meetings to `is_enough` until it returns true.
+    /// Passes the intersections to `is_enough` until it returns true.
     fn for_each_hit(
         &self,
         origin_from: impl Fn(DVec3) -> DVec3,
@@ -105,7 +105,7 @@ impl Composition {
                 rank += 1;
                 let t = end.t + shift;
                 let met = ComposedIntersection {
-                    meeting: Intersection {
+                    intersection: Intersection {
                         t,
                         t_local: end.t,
                         part: face.part,
@@ -124,7 +124,7 @@ impl Composition {
     }
 }
 
-/// The meeting where the range of a ray starts that runs within the surface, which it has
+/// The intersection where the range of a ray starts that runs within the surface, which it has
 /// before it: with the first leaf whose surface that is. Of a ray that starts at a station, it is a
 /// face beside the stretch before, which reaches up to the station.
 fn start_within(
@@ -136,7 +136,7 @@ fn start_within(
     let faces = before.within.as_ref()?.faces.iter();
     let face = faces.min_by_key(|face| (face.leaf, line.lies_on(face.leaf) != Some(face.part)))?;
     Some(ComposedIntersection {
-        meeting: Intersection {
+        intersection: Intersection {
             t: t_min,
             t_local: t_min - shift,
             part: face.part,

@@ -254,7 +254,7 @@ impl Composition {
         from_anchor: impl FnOnce(DVec3) -> DVec3,
     ) -> SurfacePoint {
         let solid = self.leaves()[met.leaf as usize];
-        let part = met.meeting.part;
+        let part = met.intersection.part;
         let mut surface = solid.surface_point(part, from_anchor(solid.anchor()));
         if met.is_reversed {
             surface.normal = -surface.normal;

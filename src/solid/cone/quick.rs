@@ -37,7 +37,7 @@ use super::wall::{Fit, Inside, Taper};
 use crate::math::power_of_two;
 use crate::solid::quick::{End, Quick, Range};
 
-/// The first meeting of the line `p0 + x + t d`. A cone with equal radii is the
+/// The first intersection of the line `p0 + x + t d`. A cone with equal radii is the
 /// triple-product solver's, and open.
 #[inline(always)]
 pub(super) fn first(cone: &Cone, x: DVec3, d: DVec3, range: &Range) -> Quick {

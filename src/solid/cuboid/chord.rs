@@ -97,7 +97,7 @@ pub(super) fn chord(cuboid: &Cuboid, x: impl Way, d: DVec3) -> Option<Chord> {
     })
 }
 
-/// The first meeting of the line `center + x + t d`; see [`quick`](crate::solid::quick).
+/// The first intersection of the line `center + x + t d`; see [`quick`](crate::solid::quick).
 #[inline(always)]
 pub(super) fn quick_first(cuboid: &Cuboid, x: DVec3, d: DVec3, range: &Range) -> Quick {
     let [mut enter, mut leave] = [f64::NEG_INFINITY, f64::INFINITY].map(|t| End { t, slack: 0.0 });

@@ -33,7 +33,7 @@ use crate::solid::cone::quick::{QuickWall, Side};
 use crate::solid::cone::wall::{Fit, Taper};
 use crate::solid::quick::{End, Quick, Range};
 
-/// The first meeting of the line `p0 + x + t d`.
+/// The first intersection of the line `p0 + x + t d`.
 #[inline(always)]
 pub(super) fn first(solid: &RoundedCone, x: DVec3, d: DVec3, range: &Range) -> Quick {
     let taper = solid.ends.taper(Fit::Balls);

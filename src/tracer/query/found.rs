@@ -96,8 +96,9 @@ impl Found {
     /// No two hits of a ray are equal.
     #[inline]
     fn order(&self, met: &SurfaceHit, path: &InstancePath, primitive: u32) -> Ordering {
-        let by_t = met.meeting.t.partial_cmp(&self.met.meeting.t);
-        let surface = |met: &SurfaceHit| (met.rank, met.meeting.crossing, met.meeting.part);
+        let by_t = met.intersection.t.partial_cmp(&self.met.intersection.t);
+        let surface =
+            |met: &SurfaceHit| (met.rank, met.intersection.crossing, met.intersection.part);
         by_t.expect("a hit's t is a number").then_with(|| {
             (path, primitive, surface(met)).cmp(&(
                 &self.place.path,
@@ -155,9 +156,10 @@ impl QueryMode {
     pub fn bound(&self, t_max: f64) -> f64 {
         match self {
             Self::First(first) => first.as_ref().map_or(t_max, |first| first.t),
-            Self::Next(next) if next.hits.len() == next.most => {
-                next.hits.peek().map_or(t_max, |last| last.met.meeting.t)
-            }
+            Self::Next(next) if next.hits.len() == next.most => next
+                .hits
+                .peek()
+                .map_or(t_max, |last| last.met.intersection.t),
             Self::Next(_) | Self::Containing(_) => t_max,
         }
     }

@@ -67,7 +67,7 @@ fn with_open(
         return (met, t);
     }
     one_by_one(row, open, (met, t), |ray, t_min, t_max| {
-        Some(solid.first(ray, decisions, t_min, t_max)?.meeting.t)
+        Some(solid.first(ray, decisions, t_min, t_max)?.intersection.t)
     })
 }
 

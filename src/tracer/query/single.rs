@@ -101,7 +101,7 @@ impl Query {
         match &self.keep {
             QueryMode::Next(Next {
                 after: Some(after), ..
-            }) => after.met.meeting.t,
+            }) => after.met.intersection.t,
             QueryMode::First(_) | QueryMode::Next(_) | QueryMode::Containing(_) => self.t_min,
         }
     }
@@ -183,7 +183,7 @@ impl Query {
 
     /// The first point, up to `t_max`, where the ray meets a solid of the current prototype.
     #[inline(always)]
-    fn first_meeting(&self, solid: &impl TracedSolid, t_max: f64) -> Option<SurfaceHit> {
+    fn first_intersection(&self, solid: &impl TracedSolid, t_max: f64) -> Option<SurfaceHit> {
         counters::solved(1);
         solid.first(self.ray(), self.decisions, self.t_min, t_max)
     }
@@ -191,7 +191,7 @@ impl Query {
     /// Whether the ray meets a solid of the current prototype.
     #[inline(always)]
     pub fn meets<S: TracedSolid>(&self, solid: &S) -> bool {
-        self.first_meeting(solid, self.t_max).is_some()
+        self.first_intersection(solid, self.t_max).is_some()
     }
 
     /// Keeps the points where the ray meets a solid of the current prototype that are wanted.
@@ -199,9 +199,9 @@ impl Query {
     #[inline(always)]
     pub fn visit<S: TracedSolid>(&mut self, solid: &S, prototype_ref: &PrototypeRef, record: u32) {
         if let QueryMode::First(_) = self.keep {
-            if let Some(met) = self.first_meeting(solid, self.bound()) {
+            if let Some(met) = self.first_intersection(solid, self.bound()) {
                 let member = SolidSlot::new(solid.kind(), record);
-                self.offer(met.meeting.t, prototype_ref, member);
+                self.offer(met.intersection.t, prototype_ref, member);
             }
         } else {
             self.visit_all(solid, prototype_ref, record);
@@ -240,7 +240,7 @@ impl Query {
         }
     }
 
-    /// What keeps the meetings with a solid that are wanted, where all hits are asked
+    /// What keeps the intersections with a solid that are wanted, where all hits are asked
     /// for.
     fn next_of(
         &mut self,

@@ -75,12 +75,12 @@ fn agrees<S: Judged>(solid: &S, ray: &Ray, truth: Option<&TrueChord>) -> bool {
         return found.is_none() == truth.is_none();
     };
     let [enter, leave] = truth.ends();
-    let meetings = found.meetings(solid.caps(), 0.0, ray.t_min, ray.t_max);
+    let intersections = found.intersections(solid.caps(), 0.0, ray.t_min, ray.t_max);
     let hits = truth.hits(&ExactRay::new(ray));
     found.enter.part == enter.part
         && found.leave.part == leave.part
         && found.lies_on == truth.lies_on
-        && meetings
+        && intersections
             .map(|hit| (hit.part, hit.crossing))
             .eq(hits.iter().map(|hit| (hit.part, hit.crossing)))
 }

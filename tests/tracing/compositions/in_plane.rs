@@ -6,7 +6,7 @@ use cyltrace::solid::{Caps, Composition, Cone, Crossing, Location, Part, Rounded
 use glam::DVec3;
 
 use super::reference::Reference;
-use super::{at, cuboid, cylinder, meetings, meetings_in, sphere};
+use super::{at, cuboid, cylinder, intersections, intersections_in, sphere};
 use Crossing::{Enter, Leave};
 
 fn cone(p0: DVec3, p1: DVec3, radius0: f64, radius1: f64) -> Composition {
@@ -49,8 +49,8 @@ fn stack() -> Composition {
 }
 
 fn crossings(composition: &Composition, origin: DVec3, direction: DVec3) -> Vec<f64> {
-    let met = meetings_in(composition, origin, direction, [0.0, f64::INFINITY]);
-    met.iter().map(|met| met.meeting.t).collect()
+    let met = intersections_in(composition, origin, direction, [0.0, f64::INFINITY]);
+    met.iter().map(|met| met.intersection.t).collect()
 }
 
 #[test]
@@ -108,9 +108,9 @@ fn known_answers_of_rays_and_points_in_shared_planes() {
 fn parts_and_normals_are_those_of_faces_that_are_there() {
     // At the rim of a bore that ends in a cap, its cap is no face, but its wall is.
     let bore = bore();
-    let reported: Vec<_> = meetings(&bore, at(-5.0, 0.0, 2.0), DVec3::X)
+    let reported: Vec<_> = intersections(&bore, at(-5.0, 0.0, 2.0), DVec3::X)
         .iter()
-        .map(|met| (met.meeting.part, met.leaf, met.meeting.crossing))
+        .map(|met| (met.intersection.part, met.leaf, met.intersection.crossing))
         .collect();
     let expected = [
         (Part::Cap1, 0, Enter),
@@ -125,8 +125,8 @@ fn parts_and_normals_are_those_of_faces_that_are_there() {
     // Its box is not apart from that of the first.
     let apart = sphere(at(2.0, 2.0, 0.0), 1.25);
     let rest = Composition::Union(vec![Composition::Intersection(vec![first, apart]), second]);
-    let met = meetings(&rest, at(0.25, 0.5, -5.0), DVec3::Z);
-    assert_eq!((met[0].meeting.t, met[0].leaf), (6.0, 0));
+    let met = intersections(&rest, at(0.25, 0.5, -5.0), DVec3::Z);
+    assert_eq!((met[0].intersection.t, met[0].leaf), (6.0, 0));
     assert!(met[0].is_reversed);
     let surface = rest.surface(&met[0], |anchor| at(0.25, 0.5, 1.0) - anchor);
     assert_eq!(surface.normal, DVec3::NEG_Z);
@@ -138,8 +138,8 @@ fn slivers_between_surfaces_that_touch_belong_to_the_set() {
     // sphere together.
     let block = cuboid(DVec3::ZERO, at(3.0, 4.0, 1.0));
     let rest = difference(vec![block.clone(), sphere(DVec3::ZERO, 5.0)]);
-    let touch = meetings(&rest, DVec3::ZERO, at(3.0, 4.0, 0.0));
-    let touch: Vec<_> = touch.iter().map(|met| met.meeting.t).collect();
+    let touch = intersections(&rest, DVec3::ZERO, at(3.0, 4.0, 0.0));
+    let touch: Vec<_> = touch.iter().map(|met| met.intersection.t).collect();
     assert_eq!(touch, [-1.0, -1.0, 1.0, 1.0]);
     assert_eq!(rest.locate(at(3.0, 4.0, 0.0)), Location::Boundary);
     let common = Composition::Intersection(vec![block, sphere(DVec3::ZERO, 5.0)]);
@@ -162,9 +162,9 @@ fn slivers_between_surfaces_that_touch_belong_to_the_set() {
         ),
     ] {
         assert_eq!(set.locate(point), expected, "{set:?}");
-        let along = meetings(&set, at(2.0, 0.0, -3.0), DVec3::Z);
+        let along = intersections(&set, at(2.0, 0.0, -3.0), DVec3::Z);
         assert_eq!(along.len(), if expected.is_held() { 2 } else { 0 });
-        let through = meetings(&set, at(2.0, -3.0, 1.0), DVec3::Y);
+        let through = intersections(&set, at(2.0, -3.0, 1.0), DVec3::Y);
         assert_eq!(through.len(), if expected.is_held() { 2 } else { 0 });
     }
 }
@@ -190,8 +190,8 @@ fn walls_on_one_ruling_change_places_where_they_bend_alike() {
             vec![0.0, 1.0],
         ),
     ] {
-        let met = meetings(&set, origin, direction);
-        let along: Vec<_> = met.iter().map(|met| met.meeting.t).collect();
+        let met = intersections(&set, origin, direction);
+        let along: Vec<_> = met.iter().map(|met| met.intersection.t).collect();
         assert_eq!(along.len(), expected.len(), "{set:?} {along:?}");
         for (t, expected) in along.iter().zip(expected) {
             assert!((t - expected).abs() < 1e-14, "{along:?}");
@@ -237,8 +237,8 @@ fn seams_of_rounded_cones_bend_on_one_side() {
         assert_eq!(set.locate(point), expected, "{set:?} {point}");
     }
     let ends = difference(vec![capsule(), wall()]);
-    let along = meetings(&ends, at(1.0, 0.0, -3.0), DVec3::Z);
-    let along: Vec<_> = along.iter().map(|met| met.meeting.t).collect();
+    let along = intersections(&ends, at(1.0, 0.0, -3.0), DVec3::Z);
+    let along: Vec<_> = along.iter().map(|met| met.intersection.t).collect();
     assert_eq!(along, [3.0, 3.0, 7.0, 7.0]);
 }
 
@@ -300,7 +300,7 @@ fn solid_tree(model: u64) -> Composition {
         let set = tree(&mut random, 1 + model as u32 % 3);
         let is_met = |index: &u64| {
             let (through, direction) = line(&mut Random::new(72, *index));
-            !meetings(&set, through, direction).is_empty()
+            !intersections(&set, through, direction).is_empty()
         };
         if (0..100).filter(is_met).count() >= 10 {
             return set;
@@ -349,10 +349,10 @@ fn compare(name: &str, composition: &Composition, seed: u64) -> [u64; 3] {
         };
         judged += 1;
         let show = || format!("{name}: {composition:?}\n{origin} {direction}\n{expected:?}");
-        let found = meetings(composition, origin, direction);
+        let found = intersections(composition, origin, direction);
         let reported: Vec<_> = found
             .iter()
-            .map(|met| (met.meeting.t, met.meeting.crossing))
+            .map(|met| (met.intersection.t, met.intersection.crossing))
             .collect();
         let is_same = reported.len() == expected.len()
             && reported
@@ -361,8 +361,8 @@ fn compare(name: &str, composition: &Composition, seed: u64) -> [u64; 3] {
                 .all(|(one, other)| one.1 == other.1 && (one.0 - other.0).abs() < 1e-9);
         assert!(is_same, "{}\nfound {reported:?}", show());
         for one in &found {
-            let point = origin + direction * one.meeting.t;
-            let part = one.meeting.part;
+            let point = origin + direction * one.intersection.t;
+            let part = one.intersection.part;
             let surface = composition.surface(one, |anchor| point - anchor);
             assert!(
                 reference.has_face(point, one.leaf, part, surface.normal),
@@ -374,7 +374,7 @@ fn compare(name: &str, composition: &Composition, seed: u64) -> [u64; 3] {
         met += found.len() as u64;
         let pairs = found.windows(2);
         touches += pairs
-            .filter(|pair| pair[0].meeting.t == pair[1].meeting.t)
+            .filter(|pair| pair[0].intersection.t == pair[1].intersection.t)
             .count() as u64;
         // Points of the line, as stated.
         let t = below(&mut random, 17) - 8.0;
@@ -401,7 +401,7 @@ fn compare_models(first: u64) {
         add(&format!("model {model}"), &set, 1_000 + model);
     }
     let [judged, met, touches] = sums;
-    println!("{judged} rays judged, {met} meetings, {touches} touches");
+    println!("{judged} rays judged, {met} intersections, {touches} touches");
     assert!(met > judged / 2 && touches > judged / 100);
 }
 

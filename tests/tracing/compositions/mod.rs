@@ -39,7 +39,7 @@ fn turned_cuboid(center: DVec3, half_widths: DVec3, orientation: Orientation) ->
     Composition::Solid(cuboid.into())
 }
 
-fn meetings_in(
+fn intersections_in(
     composition: &Composition,
     origin: DVec3,
     direction: DVec3,
@@ -47,7 +47,7 @@ fn meetings_in(
 ) -> Vec<ComposedIntersection> {
     let mut all = Vec::new();
     let from = |anchor| origin - anchor;
-    composition.meetings(from, direction, 0.0, range, |met| all.push(met));
+    composition.intersections(from, direction, 0.0, range, |met| all.push(met));
     let first = composition.first(from, direction, 0.0, range);
     assert_eq!(
         first,
@@ -57,22 +57,22 @@ fn meetings_in(
     all
 }
 
-fn meetings(
+fn intersections(
     composition: &Composition,
     origin: DVec3,
     direction: DVec3,
 ) -> Vec<ComposedIntersection> {
-    meetings_in(composition, origin, direction, ALL)
+    intersections_in(composition, origin, direction, ALL)
 }
 
-/// What is told of meetings in a table.
-fn told(meetings: &[ComposedIntersection]) -> Vec<(f64, Crossing, Part, u32)> {
-    let all = meetings.iter();
+/// What is told of intersections in a table.
+fn told(intersections: &[ComposedIntersection]) -> Vec<(f64, Crossing, Part, u32)> {
+    let all = intersections.iter();
     all.map(|met| {
         (
-            met.meeting.t,
-            met.meeting.crossing,
-            met.meeting.part,
+            met.intersection.t,
+            met.intersection.crossing,
+            met.intersection.part,
             met.leaf,
         )
     })
@@ -92,7 +92,7 @@ fn drilled_block() -> Composition {
 fn drilled_block_is_met_as_it_looks() {
     let block = drilled_block();
     assert_eq!(block.kind(), SolidKind::Difference);
-    let across = meetings(&block, at(-5.0, 0.0, 0.5), DVec3::X);
+    let across = intersections(&block, at(-5.0, 0.0, 0.5), DVec3::X);
     let expected = [
         (3.0, Enter, Part::XMin, 0),
         (4.0, Leave, Part::Side, 1),
@@ -103,7 +103,7 @@ fn drilled_block_is_met_as_it_looks() {
     let normals: Vec<_> = across
         .iter()
         .map(|met| {
-            let on_ray = at(-5.0, 0.0, 0.5) + DVec3::X * met.meeting.t_local;
+            let on_ray = at(-5.0, 0.0, 0.5) + DVec3::X * met.intersection.t_local;
             let surface = block.surface(met, |anchor| on_ray - anchor);
             assert_eq!(surface.point, on_ray);
             surface.normal
@@ -111,14 +111,14 @@ fn drilled_block_is_met_as_it_looks() {
         .collect();
     assert_eq!(normals, [DVec3::NEG_X, DVec3::X, DVec3::NEG_X, DVec3::X]);
     // Down the hole, also along its wall's rim; beside it.
-    assert_eq!(meetings(&block, at(0.2, 0.3, 9.0), DVec3::NEG_Z), []);
-    let beside = meetings(&block, at(1.5, 0.0, 9.0), DVec3::NEG_Z);
+    assert_eq!(intersections(&block, at(0.2, 0.3, 9.0), DVec3::NEG_Z), []);
+    let beside = intersections(&block, at(1.5, 0.0, 9.0), DVec3::NEG_Z);
     let expected = [(8.0, Enter, Part::ZMax, 0), (10.0, Leave, Part::ZMin, 0)];
     assert_eq!(told(&beside), expected);
     // In at the mouth and out through the wall.
-    let slanted = meetings(&block, at(0.0, 0.0, 2.0), at(1.0, 0.0, -1.5));
+    let slanted = intersections(&block, at(0.0, 0.0, 2.0), at(1.0, 0.0, -1.5));
     assert_eq!(told(&slanted)[0], (1.0, Enter, Part::Side, 1));
-    // Ranges choose of the same meetings.
+    // Ranges choose of the same intersections.
     let origin = at(-5.0, 0.0, 0.5);
     for (range, expected) in [
         ([3.5, 9.0], &across[1..]),
@@ -126,7 +126,7 @@ fn drilled_block_is_met_as_it_looks() {
         ([4.5, 5.5], &across[..0]),
         ([6.0, 6.0], &across[2..3]),
     ] {
-        assert_eq!(meetings_in(&block, origin, DVec3::X, range), expected);
+        assert_eq!(intersections_in(&block, origin, DVec3::X, range), expected);
     }
 }
 
@@ -170,12 +170,12 @@ fn points_are_where_the_operations_say() {
 }
 
 #[test]
-fn tangents_are_two_meetings_also_of_holes() {
+fn tangents_are_two_intersections_also_of_holes() {
     let pipe = Composition::Difference(vec![
         cylinder(DVec3::ZERO, DVec3::Z * 8.0, 3.0),
         cylinder(DVec3::ZERO, DVec3::Z * 8.0, 1.0),
     ]);
-    let touched = told(&meetings(&pipe, at(-10.0, 1.0, 4.0), DVec3::X));
+    let touched = told(&intersections(&pipe, at(-10.0, 1.0, 4.0), DVec3::X));
     let half = 8.0_f64.sqrt();
     let expected = [
         (10.0 - half, Enter, Part::Side, 0),
@@ -184,22 +184,25 @@ fn tangents_are_two_meetings_also_of_holes() {
         (10.0 + half, Leave, Part::Side, 0),
     ];
     assert_eq!(touched, expected);
-    let outside = told(&meetings(&pipe, at(-10.0, 3.0, 4.0), DVec3::X));
+    let outside = told(&intersections(&pipe, at(-10.0, 3.0, 4.0), DVec3::X));
     let expected = [(10.0, Enter, Part::Side, 0), (10.0, Leave, Part::Side, 0)];
     assert_eq!(outside, expected);
     // Of a union too, but not where the other part is.
     let (ball, block) = (sphere(DVec3::ZERO, 1.0), cuboid(DVec3::X * 5.0, DVec3::ONE));
     let union = Composition::Union(vec![ball.clone(), block]);
-    let touched = told(&meetings(&union, at(-2.0, 0.0, 1.0), DVec3::X));
+    let touched = told(&intersections(&union, at(-2.0, 0.0, 1.0), DVec3::X));
     assert_eq!(
         touched[..2],
         [(2.0, Enter, Part::Side, 0), (2.0, Leave, Part::Side, 0)]
     );
     let hidden = Composition::Union(vec![ball.clone(), cuboid(DVec3::ZERO, DVec3::splat(2.0))]);
-    assert_eq!(meetings(&hidden, at(-4.0, 0.0, 1.0), DVec3::X).len(), 2);
+    assert_eq!(
+        intersections(&hidden, at(-4.0, 0.0, 1.0), DVec3::X).len(),
+        2
+    );
     // A point of an intersection that is touched by one and inside of the other.
     let common = Composition::Intersection(vec![cuboid(DVec3::ZERO, DVec3::splat(2.0)), ball]);
-    let touched = told(&meetings(&common, at(-4.0, 0.0, 1.0), DVec3::X));
+    let touched = told(&intersections(&common, at(-4.0, 0.0, 1.0), DVec3::X));
     assert_eq!(
         touched,
         [(4.0, Enter, Part::Side, 1), (4.0, Leave, Part::Side, 1)]
@@ -223,14 +226,14 @@ fn intersection_with_an_empty_box_is_empty() {
         for direction in [DVec3::X, DVec3::Y, DVec3::ONE, at(-0.0625, 1.375, 1.375)] {
             for empty in [&apart, &both] {
                 assert_eq!(
-                    meetings(empty, origin, direction),
+                    intersections(empty, origin, direction),
                     [],
                     "{origin} {direction}"
                 );
             }
-            let alone = meetings(&ball(), origin, direction).len();
+            let alone = intersections(&ball(), origin, direction).len();
             for solid in [&beside, &bitten] {
-                let found = meetings(solid, origin, direction);
+                let found = intersections(solid, origin, direction);
                 assert_eq!(found.len(), alone, "{origin} {direction}");
             }
         }
@@ -257,7 +260,7 @@ fn nothing_of_no_length_is_left() {
     ] {
         for direction in [DVec3::X, at(1.0, 0.1, 0.03), at(1.0, 0.0, 1e-9)] {
             assert_eq!(
-                meetings(&empty, at(-5.0, 0.25, 0.5), direction),
+                intersections(&empty, at(-5.0, 0.25, 0.5), direction),
                 [],
                 "{empty:?}"
             );
@@ -270,14 +273,14 @@ fn nothing_of_no_length_is_left() {
     );
     // Two blocks side by side are one.
     let union = Composition::Union(vec![block(), beside()]);
-    let through = told(&meetings(&union, at(-5.0, 0.25, 0.5), DVec3::X));
+    let through = told(&intersections(&union, at(-5.0, 0.25, 0.5), DVec3::X));
     assert_eq!(
         through,
         [(4.0, Enter, Part::XMin, 0), (8.0, Leave, Part::XMax, 1)]
     );
     // And what is left of them without the one is the other.
     let rest = Composition::Difference(vec![union, block()]);
-    let through = told(&meetings(&rest, at(-5.0, 0.25, 0.5), DVec3::X));
+    let through = told(&intersections(&rest, at(-5.0, 0.25, 0.5), DVec3::X));
     assert_eq!(through.len(), 2);
     assert_eq!((through[0].0, through[1].0), (6.0, 8.0));
 }
@@ -289,8 +292,8 @@ fn line_within_a_face_follows_the_sets() {
     let through = cuboid(DVec3::ZERO, at(0.5, 0.5, 9.0));
     let (origin, direction) = (at(-4.0, 0.0, 1.0), DVec3::X);
     let spans = |composition: &Composition| {
-        let all = meetings(composition, origin, direction);
-        all.iter().map(|met| met.meeting.t).collect::<Vec<_>>()
+        let all = intersections(composition, origin, direction);
+        all.iter().map(|met| met.intersection.t).collect::<Vec<_>>()
     };
     assert_eq!(spans(&block()), [3.0, 5.0]);
     // What stands upon the face takes nothing of it; a hole does.
@@ -302,8 +305,8 @@ fn line_within_a_face_follows_the_sets() {
     assert_eq!(spans(&drilled), [3.0, 3.5, 4.5, 5.0]);
     // From within the face the ray meets it where it starts.
     for (start, expected) in [(3.25, vec![3.25, 3.5, 4.5, 5.0]), (4.0, vec![4.5, 5.0])] {
-        let found = meetings_in(&drilled, origin, direction, [start, 9.0]);
-        let found: Vec<_> = found.iter().map(|met| met.meeting.t).collect();
+        let found = intersections_in(&drilled, origin, direction, [start, 9.0]);
+        let found: Vec<_> = found.iter().map(|met| met.intersection.t).collect();
         assert_eq!(found, expected);
     }
 }

@@ -4,7 +4,7 @@ use cyltrace::math::{Orientation, Random};
 use cyltrace::solid::{ComposedIntersection, Composition, Crossing};
 use glam::DVec3;
 
-use super::{at, cylinder, meetings, turned_cuboid};
+use super::{at, cylinder, intersections, turned_cuboid};
 use Crossing::{Enter, Leave};
 use test_support::trees::{draw_solid, draw_tree, holds};
 
@@ -24,7 +24,7 @@ struct Figures {
     cases: u64,
     points: u64,
     inside: u64,
-    meetings: usize,
+    intersections: usize,
     most: usize,
     films: u64,
 }
@@ -53,33 +53,35 @@ fn run(is_coarse: bool, is_turned: bool, stream: u64) -> Figures {
 
 fn check(tree: &Composition, origin: DVec3, direction: DVec3, figures: &mut Figures) {
     let show = || format!("{tree:?}\n{origin:?} {direction:?}");
-    let all = meetings(tree, origin, direction);
+    let all = intersections(tree, origin, direction);
     // Entries and exits alternate, in order, numbered.
     for (position, met) in all.iter().enumerate() {
         let crossing = if position % 2 == 0 { Enter } else { Leave };
-        assert_eq!(met.meeting.crossing, crossing, "{}", show());
+        assert_eq!(met.intersection.crossing, crossing, "{}", show());
         assert_eq!(met.rank as usize, position + 1, "{}", show());
     }
     assert!(all.len().is_multiple_of(2), "{}", show());
     assert!(
-        all.is_sorted_by(|one, other| one.meeting.t <= other.meeting.t),
+        all.is_sorted_by(|one, other| one.intersection.t <= other.intersection.t),
         "{}",
         show()
     );
     figures.films += all
         .windows(2)
-        .filter(|pair| (pair[1].meeting.t - pair[0].meeting.t) * direction.length() < 1e-11)
+        .filter(|pair| {
+            (pair[1].intersection.t - pair[0].intersection.t) * direction.length() < 1e-11
+        })
         .count() as u64;
     // The other way round it is the same.
-    let reversed = meetings(tree, origin, -direction);
+    let reversed = intersections(tree, origin, -direction);
     let turned: Vec<_> = reversed
         .iter()
         .rev()
-        .map(|met| (-met.meeting.t, met.meeting.part, met.leaf))
+        .map(|met| (-met.intersection.t, met.intersection.part, met.leaf))
         .collect();
     let forward: Vec<_> = all
         .iter()
-        .map(|met| (met.meeting.t, met.meeting.part, met.leaf))
+        .map(|met| (met.intersection.t, met.intersection.part, met.leaf))
         .collect();
     assert_eq!(forward, turned, "{}", show());
     // The crossings have the bits of the leaves.
@@ -91,7 +93,7 @@ fn check(tree: &Composition, origin: DVec3, direction: DVec3, figures: &mut Figu
             ends.extend([chord.enter.t, chord.leave.t]);
         }
     }
-    let of_leaves = |met: &ComposedIntersection| ends.contains(&met.meeting.t);
+    let of_leaves = |met: &ComposedIntersection| ends.contains(&met.intersection.t);
     assert!(all.iter().all(of_leaves), "{}", show());
     // Between any two ends the ray is where exact membership says.
     ends.sort_by(f64::total_cmp);
@@ -102,7 +104,7 @@ fn check(tree: &Composition, origin: DVec3, direction: DVec3, figures: &mut Figu
         );
         if length > THIN {
             let point = origin + direction * t;
-            let passed = all.iter().filter(|met| met.meeting.t < t).count();
+            let passed = all.iter().filter(|met| met.intersection.t < t).count();
             assert_eq!(passed % 2 == 1, holds(tree, point), "{}\nat {t}", show());
             assert_eq!(passed % 2 == 1, tree.contains(point), "{}\nat {t}", show());
             figures.points += 1;
@@ -110,17 +112,17 @@ fn check(tree: &Composition, origin: DVec3, direction: DVec3, figures: &mut Figu
         }
     }
     figures.cases += 1;
-    figures.meetings += all.len();
+    figures.intersections += all.len();
     figures.most = figures.most.max(all.len());
 }
 
 fn print(name: &str, figures: &Figures) {
     println!(
-        "{name}: {} cases, {} points ({} inside), {} meetings, at most {} a ray, {} films",
+        "{name}: {} cases, {} points ({} inside), {} intersections, at most {} a ray, {} films",
         figures.cases,
         figures.points,
         figures.inside,
-        figures.meetings,
+        figures.intersections,
         figures.most,
         figures.films
     );
@@ -157,9 +159,9 @@ fn mouth_of_a_turned_bore_is_open() {
         let down = at(random.uniform(-9.0, 9.0), random.uniform(-9.0, 9.0), -1.0);
         let (through, direction) = (place(mouth), turn.to_world(down));
         let far = random.log_uniform(0.01, 1e3);
-        let met = meetings(&drilled, through - direction * far, direction);
-        for meeting in &met {
-            let from_mouth = (meeting.meeting.t - far) * direction.length();
+        let met = intersections(&drilled, through - direction * far, direction);
+        for intersection in &met {
+            let from_mouth = (intersection.intersection.t - far) * direction.length();
             assert!(
                 from_mouth.abs() > 1e-3,
                 "{from_mouth:e} {offset} {direction}"

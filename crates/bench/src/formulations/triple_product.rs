@@ -16,7 +16,7 @@ use glam::DVec3;
 
 use super::adapter::Solver;
 use cyltrace::math::{RayOf, Real, RealVector};
-use cyltrace::solid::slab::FirstMeeting;
+use cyltrace::solid::slab::FirstIntersection;
 use cyltrace::solid::triple_product::{Axis, StatedAxis, answer};
 use cyltrace::solid::{Caps, Cylinder, Part, surface_point};
 
@@ -155,8 +155,8 @@ impl<S: Real> Solver<S> for TripleProductPrepared {
 
 /// Asks for the first hit in the ray's range.
 #[inline(always)]
-pub(super) fn first_of<S: Real>(caps: Caps, ray: &RayOf<S>) -> FirstMeeting<S> {
-    FirstMeeting {
+pub(super) fn first_of<S: Real>(caps: Caps, ray: &RayOf<S>) -> FirstIntersection<S> {
+    FirstIntersection {
         caps,
         shift: S::ZERO,
         t_min: ray.t_min,

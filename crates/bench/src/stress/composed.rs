@@ -86,7 +86,7 @@ impl Verdict {
         let from = |anchor| ray.origin - anchor;
         let range = [ray.t_min, ray.t_max];
         let mut all = Vec::new();
-        composition.meetings(from, ray.direction, 0.0, range, |met| all.push(met));
+        composition.intersections(from, ray.direction, 0.0, range, |met| all.push(met));
         let first = composition.first(from, ray.direction, 0.0, range);
         let size = size_of(composition);
         let mut verdict = Self {
@@ -96,23 +96,23 @@ impl Verdict {
         };
         let judge = |met: &ComposedIntersection, hit: &ComposedHit| {
             let answer = TrueAnswer::of_composed(hit);
-            let error = answer.error_of(met.meeting.t) * ray.direction.length();
+            let error = answer.error_of(met.intersection.t) * ray.direction.length();
             let is_here = error.abs() <= SAME_POINT * size;
             (is_here, is_face(composition, ray, met, &hit.faces), answer)
         };
         match (&first, witness.hits.first()) {
-            (Some(met), _) if !met.meeting.t.is_finite() => verdict.is_not_finite = true,
+            (Some(met), _) if !met.intersection.t.is_finite() => verdict.is_not_finite = true,
             (Some(met), Some(hit)) => {
                 let (is_here, is_face, answer) = judge(met, hit);
                 verdict.is_wrong_hit = !is_here;
                 verdict.is_wrong_part = is_here && !is_face;
-                verdict.first = is_here.then_some((answer, met.meeting.t));
+                verdict.first = is_here.then_some((answer, met.intersection.t));
             }
             (met, hit) => verdict.is_wrong_hit = met.is_some() != hit.is_some(),
         }
         let is_same = |(met, hit): (&ComposedIntersection, &ComposedHit)| {
             let (is_here, is_face, _) = judge(met, hit);
-            is_here && is_face && met.meeting.crossing == hit.crossing
+            is_here && is_face && met.intersection.crossing == hit.crossing
         };
         verdict.is_wrong_crossing =
             all.len() != witness.hits.len() || !all.iter().zip(&witness.hits).all(is_same);
@@ -142,9 +142,9 @@ fn is_face(
     met: &ComposedIntersection,
     faces: &[Face],
 ) -> bool {
-    let named = |face: &&Face| face.leaf == met.leaf && face.part == met.meeting.part;
+    let named = |face: &&Face| face.leaf == met.leaf && face.part == met.intersection.part;
     faces.iter().filter(named).any(|face| {
-        let at = |anchor| (ray.origin - anchor) + ray.direction * met.meeting.t;
+        let at = |anchor| (ray.origin - anchor) + ray.direction * met.intersection.t;
         let surface = composition.surface(met, at);
         // At an apex any normal is as good.
         face.normal

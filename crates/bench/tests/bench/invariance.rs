@@ -89,7 +89,7 @@ impl Sayings {
             (t(hit.t), t(rounded), hit.part, hit.crossing)
         });
         Self {
-            triple_product: meetings(problem)
+            triple_product: intersections(problem)
                 .iter()
                 .map(|one| (t(one.t), one.part, one.crossing))
                 .collect(),
@@ -99,11 +99,12 @@ impl Sayings {
     }
 }
 
-fn meetings(problem: &Problem) -> Vec<Intersection> {
+fn intersections(problem: &Problem) -> Vec<Intersection> {
     let Problem { cylinder, ray } = problem;
     let chord = triple_product::chord(cylinder, ray.origin - cylinder.p0(), ray.direction);
-    let meetings = chord.map(|chord| chord.meetings(cylinder.caps(), 0.0, ray.t_min, ray.t_max));
-    meetings.into_iter().flatten().collect()
+    let intersections =
+        chord.map(|chord| chord.intersections(cylinder.caps(), 0.0, ray.t_min, ray.t_max));
+    intersections.into_iter().flatten().collect()
 }
 
 fn answer(formulation: &str, problem: &Problem) -> Option<Answer> {
@@ -290,7 +291,7 @@ impl Judged {
     /// Holds the library's promise about the first hit, where it gives one.
     fn new(problem: Problem, index: u64, inputs: Inputs, what: &str) -> Self {
         let witness = Witness::new(problem.into(), index, inputs);
-        let found = meetings(&problem);
+        let found = intersections(&problem);
         if witness.is_decided() {
             let case = || format!("{what}, case {index}: {}", to_bits(&problem));
             let truth = witness.truth.as_ref();

@@ -40,10 +40,15 @@ pub fn run(case: &ComposedCase) -> anyhow::Result<()> {
     }
     let from = |anchor| ray.origin - anchor;
     let range = [ray.t_min, ray.t_max];
-    composition.meetings(from, ray.direction, 0.0, range, |met| {
-        let part = format!("{} {}", met.leaf, met.meeting.part.name());
-        let meeting = met.meeting;
-        push("solver", meeting.crossing.name(), meeting.t, vec![part]);
+    composition.intersections(from, ray.direction, 0.0, range, |met| {
+        let part = format!("{} {}", met.leaf, met.intersection.part.name());
+        let intersection = met.intersection;
+        push(
+            "solver",
+            intersection.crossing.name(),
+            intersection.t,
+            vec![part],
+        );
     });
 
     let mut located = Table::new(&["point", "oracle", "solver"], 3);
