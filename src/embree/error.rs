@@ -156,7 +156,7 @@ pub(super) unsafe extern "C" fn keep_message(
 /// `step` says what it was to do. `device` is alive, or null right after
 /// creating one failed.
 pub(super) fn check(device: sys::RTCDevice, step: &'static str) -> Result<(), Error> {
-    // SAFETY: invariant 1; null stands for the error of creating a device.
+    // SAFETY: invariant 1; null means the error of creating a device.
     let code = unsafe { sys::rtcGetDeviceError(device) };
     if code == sys::RTC_ERROR_NONE {
         return Ok(());

@@ -1,4 +1,4 @@
-//! The instruction sets Embree can be held to.
+//! The instruction sets Embree can be limited to.
 
 use std::fmt;
 use std::str::FromStr;
@@ -54,20 +54,20 @@ impl MaxIsa {
     }
 
     /// The greatest one this processor has, which is what Embree uses unless
-    /// it is held to less.
+    /// it is limited to less.
     #[must_use]
     pub fn best() -> Option<Self> {
         Self::available().pop()
     }
 
-    /// The name of the one in use where Embree is held to `limit`, which is none
+    /// The name of the one in use where Embree is limited to `limit`, which is none
     /// when it is above the processor's best.
     #[must_use]
     pub fn name_in_use(limit: Option<Self>) -> &'static str {
         Self::in_use(limit).map_or("unknown", Self::name)
     }
 
-    /// The one in use where Embree is held to `limit`; `None` where its code goes
+    /// The one in use where Embree is limited to `limit`; `None` where its code goes
     /// by no name of these.
     pub(super) fn in_use(limit: Option<Self>) -> Option<Self> {
         Self::lesser(limit, Self::best())

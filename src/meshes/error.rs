@@ -99,7 +99,7 @@ pub enum MeshFileError {
         written_endings()
     )]
     Format {
-        /// The file as asked for.
+        /// The file as requested.
         path: PathBuf,
     },
     /// The format is only read.

@@ -26,7 +26,7 @@ pub use reading::remarks::Made;
 /// says whether to go on.
 pub type Progress<'a> = dyn FnMut(u64) -> ControlFlow<()> + 'a;
 
-/// So many vertices or triangles are written at once: some 100 kB of a large mesh,
+/// This many vertices or triangles are written at once: some 100 kB of a large mesh,
 /// which is millions of them for a ball of 4096 sides.
 const AT_ONCE: usize = 4096;
 

@@ -64,7 +64,7 @@ impl Plan {
     /// Counts what the meshes of a scene come to.
     ///
     /// # Errors
-    /// When there are no meshes with so many sides, or solids that are composed of others.
+    /// When there are no meshes with this many sides, or solids that are composed of others.
     pub fn new(scene: &Scene, segments: u32, fit: Fit) -> Result<Self, MeshFileError> {
         if !(LEAST_SEGMENTS..=GREATEST_SEGMENTS).contains(&segments) {
             return Err(MeshFileError::Segments { segments });
@@ -156,7 +156,7 @@ impl Plan {
     }
 }
 
-/// What a prototype comes to. The description holds no cycles.
+/// What a prototype comes to. The description contains no cycles.
 fn whole(
     scene: &Scene,
     index: PrototypeIndex,

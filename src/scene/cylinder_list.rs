@@ -109,7 +109,7 @@ impl CylinderRecord32 {
 #[derive(Clone, Debug)]
 pub struct CylinderList {
     kept: Kept,
-    /// The positions in the order of the primitive numbers, once it was asked for.
+    /// The positions in the order of the primitive numbers, once it was requested.
     by_primitive: OnceLock<Vec<u32>>,
 }
 
@@ -209,9 +209,9 @@ impl CylinderList {
         Ok(())
     }
 
-    /// Makes room for exactly so many more, where memory allows it.
+    /// Makes room for exactly this many more, where memory allows it.
     pub(super) fn reserve(&mut self, more: usize) {
-        // What cannot be had now is asked for again by `push`.
+        // What cannot be had now is requested again by `push`.
         let _ = match &mut self.kept {
             Kept::F64(records) => Arc::make_mut(records).try_reserve_exact(more),
             Kept::F32(rounded) => Arc::make_mut(&mut rounded.records).try_reserve_exact(more),

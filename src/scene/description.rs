@@ -10,7 +10,7 @@ use super::origins::Origins;
 use super::solid_lists::Solids;
 use crate::solid::{AnySolid, Caps, Cylinder};
 
-/// A whole scene. What it holds has been checked when it was loaded.
+/// A whole scene. What it contains has been checked when it was loaded.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// All prototypes; the first is the root, the scene itself. Prototypes
@@ -30,7 +30,7 @@ pub struct Scene {
     pub sky: Option<Sky>,
     /// Linear RGB seen where a camera ray misses and there is no sky.
     pub background: DVec3,
-    /// Rows of tables left out because `degenerate = "skip"` was asked for.
+    /// Rows of tables left out because `degenerate = "skip"` was requested.
     pub skipped_rows: u64,
     /// Notes on the files for the user, such as columns that are not read.
     pub notes: Vec<String>,

@@ -18,7 +18,7 @@ pub enum SceneError {
         /// What the operating system says.
         source: io::Error,
     },
-    /// A file of another kind stands where a scene file is needed.
+    /// A file of another kind is where a scene file is needed.
     #[error("{}: this is {what}; a scene is a TOML file{purpose}, such as:\n\n{example}", path.display())]
     NotAScene {
         /// The file.

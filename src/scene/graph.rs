@@ -25,7 +25,7 @@ impl Node<'_> {
         !self.prototype.solids.is_empty()
     }
 
-    /// Why it holds no solids, where rows were left out; all of them then.
+    /// Why it contains no solids, where rows were left out; all of them then.
     fn emptied(&self) -> String {
         match self.skipped {
             0 => String::new(),

@@ -1,7 +1,7 @@
 //! The scene as the user states it, in f64, and the files it is read from.
 //!
 //! [`load`] reads a scene file in TOML (`docs/scene-file.md`) in three steps:
-//! `document` holds the keys as they stand there, with their places; the
+//! `document` contains the keys as written, with their places; the
 //! entries are lowered one kind a file (`solids`, with their `pose`,
 //! `set_operations`, the `formats` of files, `placing`, `scatter`,
 //! `camera`, `settings`), streaming the rows of tables, which `table` reads and

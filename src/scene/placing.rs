@@ -81,7 +81,7 @@ impl Placements {
         table.note_unread(&layout.all());
         let mut reach = Reach::default();
         let before = self.list.len();
-        // What cannot be had is asked for again, row by row.
+        // What cannot be had is requested again, row by row.
         let _ = self.list.try_reserve_exact(table.most_rows());
         while let Some(row) = table.next_row(size_of::<Placement>())? {
             let parent_from_child = layout.placement(&row).map_err(|fault| row.refused(fault))?;

@@ -44,7 +44,7 @@ pub(super) struct Scatter {
 }
 
 impl Scatter {
-    /// What holds for all items.
+    /// What applies to all items.
     pub fn reach(&self) -> Reach {
         // A grid's last item is at most (√count + 1)/2 spacings away on each
         // axis, a disk's at most √(count/π).
@@ -102,7 +102,7 @@ impl Scatter {
     }
 }
 
-/// The side of the least square that holds `count` items.
+/// The side of the least square that contains `count` items.
 fn columns(count: u32) -> u32 {
     let side = count.isqrt();
     if side * side == count { side } else { side + 1 }

@@ -61,7 +61,7 @@ impl SceneFile {
     }
 
     /// At least what the prototypes will hold, in their order: tables are
-    /// counted by their lines, lattices by their beams, and what cannot be read holds
+    /// counted by their lines, lattices by their beams, and what cannot be read contains
     /// nothing. No record is made, so that a scene which is too large can be refused.
     #[must_use]
     pub fn contents(&self) -> Vec<ExpectedCounts> {

@@ -1,4 +1,4 @@
-//! The keys of solids in a scene file, as they stand there.
+//! The keys of solids in a scene file, as written.
 
 use serde::Deserialize;
 use toml::Spanned;

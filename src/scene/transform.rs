@@ -49,7 +49,7 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// What holds for either placement.
+    /// What applies to either placement.
     pub fn union(self, other: Self) -> Self {
         Self {
             stretch: self.stretch.max(other.stretch),

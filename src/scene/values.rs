@@ -1,4 +1,4 @@
-//! The kinds of values that a scene file holds, checked while they are read,
+//! The kinds of values that a scene file contains, checked while they are read,
 //! so that an error points at the value itself.
 //!
 //! serde's own types are too lenient here: derived structs also accept arrays,

@@ -20,7 +20,7 @@
 //! in the length of `x × d`, u = 2^-53, and a rounding of `x` another `u |x| |d|`; its square and that of the radius round by
 //! a few u of themselves. Where that leaves the sign of `D` open, or displaces the sum
 //! `|x·d| + √D` too much, as for lines that graze the ball, `D` is computed from exact
-//! numbers: so its sign, which is all that tells a hit from a miss, is that of the
+//! numbers: so its sign, which is all that distinguishes a hit from a miss, is that of the
 //! exact `D` always. (For an origin `k` radii away the relative error of `D` is some
 //! `k u`, but `√D` is a k-th of that sum.)
 //!

@@ -30,7 +30,7 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// [`ConvexSolid::exact_first`] too, for a ray whose origin f64 has.
     const QUICK_IS_EXACT: bool = true;
 
-    /// A box that holds it, rounded outward.
+    /// A box that contains it, rounded outward.
     fn bounds(&self) -> Bounds;
 
     /// The point that the solver counts from.
@@ -174,7 +174,7 @@ impl Location {
         }
     }
 
-    /// Whether the closed solid holds the point.
+    /// Whether the closed solid contains the point.
     #[must_use]
     pub fn is_held(self) -> bool {
         self != Self::Outside

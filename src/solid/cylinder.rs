@@ -183,7 +183,7 @@ impl Cylinder {
         Cone::from_valid(self.p0, self.p1, self.radius, self.radius, self.caps)
     }
 
-    /// The least box that holds the solid, rounded outward by a few ulps.
+    /// The least box that contains the solid, rounded outward by a few ulps.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         let reach = disk_reach(self.p1 - self.p0, self.radius);

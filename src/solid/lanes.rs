@@ -1,7 +1,7 @@
 //! Eight rays against a cylinder, or a ray against eight cylinders.
 //!
 //! A lane is solved by the very code of `triple_product.rs` and `slab.rs`, so it
-//! holds the bits of [`triple_product::first`](super::triple_product::first). What
+//! has the bits of [`triple_product::first`](super::triple_product::first). What
 //! is here is the order: a loop over the lanes for the lines, one for the ends at
 //! which they enter if any reaches its wall, one for the ends at which they leave
 //! if any is inside and not settled. The bodies are calls that are inlined, with
@@ -106,7 +106,7 @@ impl LaneCaps for MixedCaps {
     }
 }
 
-/// Eight rays as seen from the `p0` of their cylinders, and what is asked of
+/// Eight rays as seen from the `p0` of their cylinders, and what is computed of
 /// them.
 #[derive(Clone, Copy, Debug)]
 pub struct RayLanes {
@@ -258,7 +258,7 @@ impl<C: LaneCaps> CylinderLanes<C> {
     }
 }
 
-/// An axis that, asked for exact products, notes that it was.
+/// An axis that notes whether exact products were requested.
 #[derive(Clone, Copy)]
 pub(super) struct LaneAxis<'a> {
     stated: StatedAxis<f64>,
@@ -311,7 +311,7 @@ pub(super) fn certainly_misses(
     line.w * line.w > 8.0 * rr * line.nn + roundings
 }
 
-/// `answers` with those of the scalar solver where `mask` holds.
+/// `answers` with those of the scalar solver where `mask` is set.
 #[cold]
 #[inline(never)]
 fn one_by_one<C: LaneCaps>(

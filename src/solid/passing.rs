@@ -4,7 +4,7 @@
 //! narrowly. For those the bounds that solvers keep of every term are not needed, nor
 //! is any root or branch: so a row of rays is tested at once.
 //!
-//! A line passes by a ball of radius `r` iff `|l| > r |d|`, `l = x × d`, with `x`
+//! A line misses a ball of radius `r` iff `|l| > r |d|`, `l = x × d`, with `x`
 //! counted from its center; by a disk with the normal `n` iff `|P| > r |v|`, `P = n × l`,
 //! `v = n·d` (`disk.rs`); and by a cone's wall, both nappes, iff `E < 0` of (4) in
 //! `cone/wall.rs`, which is `√τ |w| > |k|` with `τ = (β + Δ²) / |a|²`. What is computed
@@ -76,7 +76,7 @@ impl Line {
         }
     }
 
-    /// Whether it certainly passes by the ball about the origin. Says nothing if not,
+    /// Whether it certainly misses the ball about the origin. Says nothing if not,
     /// as for what is not finite.
     #[inline(always)]
     pub fn passes_ball(&self, radius: f64) -> bool {
@@ -84,7 +84,7 @@ impl Line {
         (beside > LEAST) & is_above(beside, radius * radius * self.dd, self.dd * self.xx)
     }
 
-    /// Whether it certainly passes by the disk about the origin across a normal, which
+    /// Whether it certainly misses the disk about the origin across a normal, which
     /// is not zero. Says nothing if not.
     #[inline(always)]
     pub fn passes_disk(&self, normal: DVec3, radius: f64) -> bool {
@@ -108,7 +108,7 @@ impl Line {
         [p.dot(p), rr * (slope * slope), sizes]
     }
 
-    /// Whether it certainly passes by the wall on both sides of the apex. Says nothing
+    /// Whether it certainly misses the wall on both sides of the apex. Says nothing
     /// if not.
     #[inline(always)]
     pub fn passes_wall(&self, taper: &Taper) -> bool {

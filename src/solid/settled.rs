@@ -7,7 +7,7 @@
 //! the exact one; if not, `exact` decides. The bounds cover the roundings of `a = p1 - p0` and
 //! `x = o - p0` too, so that this is true for any f64 numbers.
 //!
-//! The check stands beside the solver and computes the same numbers again. Bounds within
+//! The check is beside the solver and computes the same numbers again. Bounds within
 //! the solver cost its other users 3 to 20 % of the time of a traversal, also where they were
 //! compiled away: its numbers had to stay in registers for them.
 //!

@@ -55,13 +55,13 @@ pub trait Wall<S: Real> {
     }
 }
 
-/// A slab and a wall: a chord of which an end is computed when asked for.
+/// A slab and a wall: a chord of which an end is computed when requested.
 pub struct Overlap<S, W> {
     slab: Slab<S>,
     wall: W,
 }
 
-/// What is asked of a chord. A type, not a closure: its methods are inlined,
+/// What is computed of a chord. A type, not a closure: its methods are inlined,
 /// so that nothing of the chord has to be kept in memory.
 pub trait Question<S: Real> {
     /// What is answered if there is a chord.

@@ -17,7 +17,7 @@
 //!
 //! **Other solids than cylinders.** What is displaced, counted in units of u times
 //! `|o| + |anchor| + size`: the origin as seen from the anchor, 2; an axis, 1; a
-//! difference of radii, 1; the sign of `x·d`, by which the roots are told apart, 3. All
+//! difference of radii, 1; the sign of `x·d`, by which the roots are distinguished, 3. All
 //! else is decided on these numbers exactly: whether the line meets the solid, and the
 //! sign of each `t`, which has a relative error. Together 7, and so within the
 //! cylinder's bound. The wall of a rounded cone has a normal that may be turned by more

@@ -73,7 +73,7 @@ pub(super) const LEAST_SQUARED_SINE: f64 = 1.0 / 16.0;
 const LEAST_CONSTANT_TERM: f64 = power_of_two(-20);
 
 /// What the solver reads of a cylinder: its axis `a`, its radius, and products
-/// of them that may be kept or computed when asked for.
+/// of them that may be kept or computed when requested.
 pub trait Axis<S: Real>: Copy {
     /// `a = p1 - p0`.
     fn a(&self) -> S::Vector;
@@ -175,7 +175,7 @@ pub fn chord(cylinder: &Cylinder, from_p0: DVec3, direction: DVec3) -> Option<Ch
     answer(&StatedAxis::of(cylinder), from_p0, direction, WholeChord)
 }
 
-/// The answer to what is asked of that chord, for any form of the cylinder and
+/// The answer to what is computed of that chord, for any form of the cylinder and
 /// either precision. `None` if there is no chord.
 #[inline(always)]
 pub fn answer<S: Real, A: Axis<S>, Q: Question<S>>(

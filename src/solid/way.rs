@@ -29,7 +29,7 @@ pub(super) trait Way: Copy + Debug {
     fn is_rounded(&self) -> bool;
 }
 
-/// A way that f64 holds.
+/// A way that f64 represents.
 impl Way for DVec3 {
     #[inline(always)]
     fn rounded(&self) -> DVec3 {
@@ -112,7 +112,7 @@ pub struct RayOrigin {
 }
 
 impl RayOrigin {
-    /// A point that f64 holds.
+    /// A point that f64 represents.
     #[must_use]
     pub fn at(point: DVec3) -> Self {
         Self {

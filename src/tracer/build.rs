@@ -25,7 +25,7 @@ pub enum TracerError {
         GREATEST_CONDITION
     )]
     Condition {
-        /// The prototype that holds the placement; empty for the root.
+        /// The prototype that contains the placement; empty for the root.
         prototype: String,
         /// The placement's number in it.
         placement: usize,
@@ -87,7 +87,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Visits a prototype after all that it places. The description holds no
+    /// Visits a prototype after all that it places. The description contains no
     /// cycles, and scene files no more than [`GREATEST_DEPTH`] levels.
     fn visit(
         &mut self,

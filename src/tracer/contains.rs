@@ -2,7 +2,7 @@
 //!
 //! The point is asked about as a ray that is nothing but its origin: `t` from 0 to
 //! 0. So it goes down through placements by the very operations of a ray's origin,
-//! and Embree is only asked for candidates. None is lost: a solid that holds the point
+//! and Embree only finds candidates. None is lost: a solid that contains the point
 //! has it in its box, at `t = 0` of the ray, and that a ray is not kept from a box in
 //! which it has a point is what `frame` promises of all rays (`docs/derivations.md`,
 //! section 4: the point is below 4 in the frame, so that f32 rounds it by at most
@@ -22,7 +22,7 @@ use crate::math::Ray;
 use crate::scene::PrototypeIndex;
 use crate::solid::SolidKind;
 
-/// A solid that holds a point. Ordered by the instance path, then by the
+/// A solid that contains a point. Ordered by the instance path, then by the
 /// primitive.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Containing {
@@ -30,7 +30,7 @@ pub struct Containing {
     pub instance: Vec<u32>,
     /// The solid's number within its prototype.
     pub primitive: u32,
-    /// The prototype that holds the solid.
+    /// The prototype that contains the solid.
     pub prototype: PrototypeIndex,
     /// The kind of solid.
     pub solid: SolidKind,
@@ -45,7 +45,7 @@ impl Tracer {
     /// answer is exact. Through placements the point is rounded as the origin of a ray.
     ///
     /// Of a scene that was built for a view ([`Options::view`](super::Options::view))
-    /// it is known only what holds points in that.
+    /// it is known only what contains points in that.
     #[must_use]
     pub fn contains(&self, point: DVec3) -> Vec<Containing> {
         self.containing(point, Prototype::search)

@@ -5,7 +5,7 @@
 //! **Embree's tree.** A tree over n primitives has nodes of 4 children (128
 //! bytes, SSE) or 8 (256 bytes, from AVX on) and a leaf of 16 bytes a primitive.
 //! A node of b children replaces b subtrees by one, so a full tree has
-//! (n - 1)/(b - 1) nodes. Real ones are less full, as the last level holds
+//! (n - 1)/(b - 1) nodes. Real ones are less full, as the last level contains
 //! what is left over; how much depends on n and on where the primitives lie.
 //! Measured as `Device::memory_bytes`, with Embree 3.13.5, SSE2, AVX2 and
 //! AVX-512, on random boxes in a cube, on a plane, along a line, and so large
@@ -102,7 +102,7 @@ pub struct MemoryEstimate {
 }
 
 impl MemoryEstimate {
-    /// The estimate for a scene that holds so much, built whole and held to
+    /// The estimate for a scene that contains this much, built whole and limited to
     /// `max_isa`, as [`Options`](super::Options) are.
     #[must_use]
     pub fn of(contents: &[ExpectedCounts], layout: Layout, max_isa: Option<MaxIsa>) -> Self {
@@ -187,7 +187,7 @@ fn is_wide(max_isa: Option<MaxIsa>) -> bool {
     in_use.is_some_and(|isa| isa >= MaxIsa::Avx)
 }
 
-/// The bytes of Embree's tree over so many primitives.
+/// The bytes of Embree's tree over this many primitives.
 fn tree_bytes(primitives: u64, is_wide: bool) -> u64 {
     if primitives == 0 {
         return 0;
@@ -271,7 +271,7 @@ mod tests {
         Boxes(boxes.collect())
     }
 
-    /// The bytes that Embree holds of a scene, and held at most.
+    /// The bytes that Embree uses for a scene, and used at most.
     fn measured(max_isa: MaxIsa, boxes: Boxes) -> (u64, u64) {
         let options = DeviceOptions {
             max_isa: Some(max_isa),

@@ -16,7 +16,7 @@ pub struct FirstHit {
 }
 
 impl FirstHit {
-    /// The prototype that holds the solid.
+    /// The prototype that contains the solid.
     #[must_use]
     pub fn prototype(&self) -> PrototypeIndex {
         self.nearest.place.prototype

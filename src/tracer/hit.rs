@@ -21,7 +21,7 @@ pub struct Hit {
     pub u: f64,
     /// Axial position from `p0` to `p1`, in [0, 1].
     pub v: f64,
-    /// The prototype that holds the solid.
+    /// The prototype that contains the solid.
     pub prototype: PrototypeIndex,
     /// The kind of solid.
     pub solid: SolidKind,

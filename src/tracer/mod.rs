@@ -307,7 +307,7 @@ impl Tracer {
 }
 
 /// How far from the middle of a scene a ray may start, in sizes of the scene's box:
-/// 2^100. From there f64 tells apart only points 2^47 scenes apart on a ray, and the
+/// 2^100. From there f64 distinguishes only points 2^47 scenes apart on a ray, and the
 /// double-double step that brings the ray near (`frame`) has 2^-6 of the scene left.
 const GREATEST_DISTANCE: f64 = power_of_two(100);
 

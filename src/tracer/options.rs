@@ -18,7 +18,7 @@ pub struct Options {
     /// When prototypes are built.
     pub build: BuildTime,
     /// Whether hits, misses and parts are decided as exact arithmetic on the numbers of a
-    /// prototype's space does, for any f64 numbers, and not only where f32 holds them.
+    /// prototype's space does, for any f64 numbers, and not only where f32 represents them.
     /// Then open cylinders that share their ends leave no seam between them. Tracing takes longer
     /// (`docs/performance.md`). Set operations decide by rounded numbers always, and
     /// so does whether one ball of a rounded cone contains the other.
@@ -68,7 +68,7 @@ pub enum BuildTime {
     /// When a ray first reaches the prototype. What no ray reaches takes neither
     /// time nor memory.
     ///
-    /// Should Embree refuse then, which is for want of memory, the query panics: it
+    /// Should Embree refuse then, which is for lack of memory, the query panics: it
     /// has no way to answer with an error. Prototypes below the root are reached
     /// in a callback of Embree's, where a panic ends the process with its message.
     #[default]

@@ -22,7 +22,7 @@ pub struct Statistics {
     pub instances: u128,
     /// Placements that are instances of Embree's own, of what is built.
     pub embree_instances: u64,
-    /// Memory that Embree holds.
+    /// Memory that Embree uses.
     pub embree_bytes: usize,
     /// Memory of the records of solids and placements.
     pub records_bytes: usize,

@@ -10,7 +10,7 @@ use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 /// touched cost nothing.
 const STACK_BYTES: usize = 8 << 20;
 
-/// A pool of as many threads as asked for, or as the machine has, whose
+/// A pool of as many threads as requested, or as the machine has, whose
 /// stacks hold the deepest nesting of placements.
 ///
 /// # Errors

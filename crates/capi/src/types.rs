@@ -148,7 +148,7 @@ pub struct CyltraceHit {
     pub is_hit: u32,
     /// Which fields beyond `t` are valid: a sum of `CYLTRACE_VALID_...`.
     pub valid_fields: u32,
-    /// The prototype that holds the solid; 0 is the scene itself.
+    /// The prototype that contains the solid; 0 is the scene itself.
     pub prototype: u32,
     /// The solid's number in its prototype.
     pub primitive: u32,

@@ -7,7 +7,7 @@ use cyltrace::scene::{Scene, Sky, Sun};
 /// The sun of a scene that states no light: from the left of an automatic
 /// frame, behind the viewer, 45 degrees high, slightly warm. With the sky
 /// below, a surface of reflectance 0.8 that faces it comes out just at white,
-/// and the default material, 0.5, stands out against a light background.
+/// and the default material, 0.5, is visible against a light background.
 const DEFAULT_SUN: (DVec3, DVec3, f64) = (
     DVec3::new(-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2),
     DVec3::new(1.0, 0.92, 0.8),

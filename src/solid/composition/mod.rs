@@ -132,7 +132,7 @@ impl Composition {
         leaves
     }
 
-    /// The memory that it holds beside itself.
+    /// The memory that it takes beside itself.
     #[must_use]
     pub fn heap_bytes(&self) -> usize {
         match self {
@@ -144,7 +144,7 @@ impl Composition {
         }
     }
 
-    /// A box that holds it: of a union the box of all boxes, of an intersection what
+    /// A box that contains it: of a union the box of all boxes, of an intersection what
     /// is in all of them, of a difference the first. [`Bounds::EMPTY`] where that
     /// shows that nothing is left.
     #[must_use]

@@ -12,7 +12,7 @@
 //! and of the root `s` what it adds to that sum: for an origin `k` sizes away the
 //! relative error of `E` is some `k u`, but `s` is a k-th of `|B|`. So an error of
 //! `E` that leaves the sign certain will do if it displaces the sum by less than
-//! [`GOOD_FROM_AFAR`] of it, and for a line that certainly passes by, any.
+//! [`GOOD_FROM_AFAR`] of it, and for a line that certainly misses, any.
 //!
 //! `x` and `a` may be rounded differences ([`Way`]). That adds u to the first, third and
 //! fourth of these bounds and 2 u to the second, so that errors are below twice the

@@ -8,7 +8,7 @@
 //! β |m + t n|² <= (g + t h)²,   g = r0 |a|² + Δ (x·a),   h = Δ s           (1)
 //! ```
 //!
-//! and `g + t h >= 0`, which tells its nappe from the other. `β = |a|²` is the cone
+//! and `g + t h >= 0`, which distinguishes its nappe from the other. `β = |a|²` is the cone
 //! through the rims of the disks of radius `r0` and `r1` (its radius at height
 //! `y` is `r0 + Δ y / |a|²`); `β = |a|² - Δ²` is the cone that touches the balls of
 //! these radii. Divided by `β`, (1) is `A t² + 2 B t + C <= 0` with
@@ -39,7 +39,7 @@
 //! `A` is positive for a line that is steeper to the axis than the wall: it is
 //! inside of one nappe between the roots. It is negative for one that is less
 //! steep, which is inside of both nappes all the way from a root, and zero for one
-//! parallel to a line of the wall; `h` tells which of the half-lines is on the nappe
+//! parallel to a line of the wall; `h` says which of the half-lines is on the nappe
 //! of the solid.
 //!
 //! Each of `A`, `B`, `C` and `E` is a difference. `rounded.rs` says when rounded
@@ -58,7 +58,7 @@ use crate::solid::way::Way;
 pub(in crate::solid) enum Fit {
     /// That through the rims of two disks.
     Disks,
-    /// That which touches two balls, of which neither holds the other.
+    /// That which touches two balls, of which neither contains the other.
     Balls,
 }
 

@@ -9,7 +9,7 @@
 //!
 //! so for `t` from one of `-(h_i + f_i·x) / f_i·d` and `(h_i - f_i·x) / f_i·d` to
 //! the other, the near and the far plane. The chord reaches from the greatest near
-//! `t` to the least far one. Where `f_i·d` is zero the axis either holds the whole
+//! `t` to the least far one. Where `f_i·d` is zero the axis either contains the whole
 //! line or none of it.
 //!
 //! Each numerator and denominator is a height over a plane, which `linear.rs`

@@ -21,7 +21,7 @@ use crate::math::power_of_two;
 /// 16 u, doubled for the roundings of the sums.
 const ROUNDINGS: f64 = power_of_two(-48);
 
-/// Whether the line `center + x + t d` certainly passes by. Says nothing if not, as for
+/// Whether the line `center + x + t d` certainly misses. Says nothing if not, as for
 /// what is not finite.
 #[inline(always)]
 pub(super) fn rejects(cuboid: &Cuboid, x: DVec3, d: DVec3) -> bool {

@@ -156,7 +156,7 @@ pub(super) struct Ends {
     pub lies_on: Option<Part>,
 }
 
-/// A decision, or nothing; the outer `None` stands for uncertainty.
+/// A decision, or nothing; the outer `None` means uncertainty.
 pub(super) type Certain<T> = Option<T>;
 
 impl<N: Number> Terms<N> {

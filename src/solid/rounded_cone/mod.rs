@@ -23,7 +23,7 @@ use crate::math::Bounds;
 ///
 /// It is what a ball sweeps whose radius changes evenly on its way from `p0` to
 /// `p1`: two spheres and the cone that touches both, with no edge between them.
-/// Where one ball holds the other, it is that ball. A radius may be zero, and the
+/// Where one ball contains the other, it is that ball. A radius may be zero, and the
 /// centers may coincide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundedCone {
@@ -189,7 +189,7 @@ impl ConvexSolid for RoundedCone {
         } = self.ends;
         let balls = ball::locate(p0, radius0, point).max(ball::locate(p1, radius1, point));
         // The disks at the seams are inside of the balls but for their rims, so that
-        // the first need not be asked for; and where one ball holds the other, no
+        // the first need not be requested; and where one ball contains the other, no
         // height is beyond it and not beyond the other.
         if balls == Location::Inside
             || !point.is_finite()

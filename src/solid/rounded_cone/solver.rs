@@ -2,12 +2,12 @@
 //!
 //! With `a = p1 - p0` and `Δ = r1 - r0`, the touching cone's wall (`cone/wall.rs`,
 //! with `β = |a|² - Δ²`) meets the balls in two circles, the seams, and belongs to
-//! the hull between them (`cone/heights.rs`). If `β <= 0` one ball holds the other
+//! the hull between them (`cone/heights.rs`). If `β <= 0` one ball contains the other
 //! and is the hull.
 //!
 //! A line enters the hull where it enters the wall, if that is between the seams;
 //! otherwise it enters on a sphere, and the first entry into a ball is that. It
-//! leaves alike. The disks at the seams are within the balls and never asked for.
+//! leaves alike. The disks at the seams are within the balls and never requested.
 //!
 //! **No gap at a seam.** Whether the line meets a ball or the infinite wall and on
 //! which side of a seam are decided exactly, from the same numbers. So a line that
@@ -96,7 +96,7 @@ fn between_seams(heights: &Heights<impl Way, impl Way>, root: Root, t: f64) -> O
 }
 
 impl RoundedCone {
-    /// The cone that touches both balls; `None` if one holds the other.
+    /// The cone that touches both balls; `None` if one contains the other.
     pub(in crate::solid) fn taper(&self) -> Option<Taper> {
         let taper = self.ends.taper(Fit::Balls);
         (taper.beta() > 0.0).then_some(taper)

@@ -15,7 +15,7 @@
 //! by `2 u |a|` and the sums round by `u (|q| + |a| + R)`. `r0 + v Δ` rounds by 3 u
 //! R; `n` is unit to 8 u. `outward` is off the perpendicular by 6 u, and `√β / |a|`
 //! is off by up to `u |a| / √β` of 1, since `a` is rounded: both turn `n` by an angle
-//! δ, which moves q along the sphere that the hull holds, so off the surface by δ² R/2
+//! δ, which moves q along the sphere that the hull contains, so off the surface by δ² R/2
 //! at most. If `√β < √u |a|`, the turn is below 2 √u, otherwise below `√u`. So
 //! δ² / 2 is below 4 u. Together `u (|q| + 4 |a| + 16 R)`; 5 and 20 are counted. On a
 //! sphere it is `u (|q| + 6 R)`.

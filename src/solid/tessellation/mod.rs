@@ -18,12 +18,12 @@
 //!    turned polyline along their middles.
 //!
 //! A side between two corners of the polyline is a trapezoid, hence flat. The plane of
-//! a circumscribed one holds a segment that touches the meridian and is square to
+//! a circumscribed one contains a segment that touches the meridian and is square to
 //! the meridian's plane: it touches the solid, which is convex, so that the mesh
-//! holds the solid. The inscribed one is the hull of points of the solid, and in it.
+//! contains the solid. The inscribed one is the hull of points of the solid, and in it.
 //! Both but for roundings, and but for disks that are not there.
 //!
-//! For convex bodies, one of which holds the other, how far a point of the outer can
+//! For convex bodies, one of which contains the other, how far a point of the outer can
 //! be from the inner is how far any point of either surface can be from the other
 //! surface; without its disks, a wall and its mesh are that far apart at each height.
 //! So [`deviation_of`], the sum of both steps, is by how much a mesh may be off the

@@ -139,7 +139,7 @@ impl Profile {
     }
 }
 
-/// How many vertices and triangles so many rings and poles come to.
+/// How many vertices and triangles this many rings and poles come to.
 pub(super) fn turned_size(rings: u64, poles: u64, segments: u32) -> (u64, u64) {
     let segments = u64::from(segments);
     (

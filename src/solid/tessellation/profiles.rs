@@ -16,7 +16,7 @@
 //! one is that circle, `δ = θ / m`. The circumscribed one touches the arc there for
 //! the last time, half a step beyond its last ring, `δ = θ / (m + 1/2)`: then the last
 //! corners of both arcs are on the line of the wall, and the segment between them
-//! touches both balls. A radius of zero is a pole on that line. Where one ball holds the
+//! touches both balls. A radius of zero is a pole on that line. Where one ball contains the
 //! other, it is that ball.
 //!
 //! m is the least number with `θ / m <= 2π/N`, so that δ <= 2π/3.
@@ -150,7 +150,7 @@ struct Arc {
 }
 
 impl Arc {
-    /// So many rings, a step from one to the next.
+    /// This many rings, a step from one to the next.
     fn new(
         center: DVec3,
         radius: f64,

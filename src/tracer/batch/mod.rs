@@ -28,7 +28,7 @@ const LEAST_COSINE: f64 = 0.99;
 /// Fewer rays than this are traced one by one, and enter one by one.
 const LEAST_RAYS: usize = 4;
 
-/// A description of so many bytes, which has about as many in Embree's tree, is
+/// A description of this many bytes, which has about as many in Embree's tree, is
 /// thought to stay in the caches of a core, of which recent ones have 1 to 2 MB.
 const GREATEST_CACHED: usize = 1 << 21;
 

@@ -22,12 +22,12 @@ const LEAST_RAYS: usize = 64;
 const GREATEST_GROUP: usize = 1 << 15;
 
 /// The most rays that are ordered together if all go the same way: they need
-/// no more than that for packets to be full of neighbours, and so many fit the
+/// no more than that for packets to be full of neighbours, and this many fit the
 /// nearest caches.
 const GREATEST_ALIKE: usize = 1 << 10;
 
 /// The bits of a coordinate across a direction. It trades a pass of sorting for
-/// cells that tell apart the rays of neighbouring pixels in a whole picture.
+/// cells that distinguish the rays of neighbouring pixels in a whole picture.
 const BITS_ACROSS: u32 = 12;
 
 /// Rays that are ordered together.

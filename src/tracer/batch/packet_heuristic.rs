@@ -2,12 +2,12 @@
 
 use super::normalized::NormalizedRays;
 
-/// A packet's callback takes about as long as so many of a single ray: it solves
+/// A packet's callback takes about as long as this many of a single ray: it solves
 /// two rows of eight lanes, and Embree moves sixteen lanes about. Measured
 /// on sticks and trees; `docs/performance.md`.
 const PACKET_CALLBACK: u32 = 1;
 
-/// After a packet that did not pay, so many times as many rays are traced one by
+/// After a packet that did not pay, this many times as many rays are traced one by
 /// one before the next is tried.
 const PAUSE: u32 = 7;
 

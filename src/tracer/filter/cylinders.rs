@@ -67,7 +67,7 @@
 //! 50 v Y B³ = 2^-9.3 B³ and gets 2^-10 (B² + 1) B², which is at least 2^-9 B³. (7) is wrong
 //! by up to 2^-12 B and gets `MARGIN` B². They move a surface by less than a unit.
 //!
-//! A ray that stands for others up to 256 away passes the axis within r0 and their
+//! A ray that means others up to 256 away passes the axis within r0 and their
 //! distance. `Y` is 768 for it: 131 (10 v Y)² = 2^-15.1 is still below the square of the margin.
 
 use glam::DVec3;

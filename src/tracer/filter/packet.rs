@@ -1,7 +1,7 @@
 //! The rays of a packet at a block.
 //!
 //! Rays that go together have most solids of a block in common that they miss. So the first
-//! stands for all, about as thick as they are apart, and only what that may pass through is put
+//! means all, about as thick as they are apart, and only what that may pass through is put
 //! to each of them.
 //!
 //! With `o` and `d` the first one's, a point of another ray `o' + T d'` is off from that of the

@@ -17,12 +17,12 @@
 //! |x + T d|² <= r²,        T = min(max(-x·d, start), end)                            (2)
 //! ```
 //!
-//! A ray that stands for others passes `c` within `r` and their distance.
+//! A ray that means others passes `c` within `r` and their distance.
 //!
 //! # Roundings
 //!
 //! Products and sums of f32 have a relative error of v = 2^-24; every length is below
-//! `Y` = 768, that to a ray which stands for others 256 away, and those of `d` are 1 to within 4 v. `x` is rounded by v Y, √3 times in
+//! `Y` = 768, that to a ray which means others 256 away, and those of `d` are 1 to within 4 v. `x` is rounded by v Y, √3 times in
 //! all. The computed `T` is off by up to 10 v Y from where the distance is least: 2 for `x` and
 //! `d`, 4 for the product, 4 for the length of `d`. The point `x + T d` is then rounded twice a
 //! component, 4 v Y. The least distance is that of a point that is moved by no more than

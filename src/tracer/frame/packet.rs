@@ -201,7 +201,7 @@ impl Kernel for Enter<'_> {
     }
 }
 
-/// Eight rays and what is asked of them.
+/// Eight rays and what is computed of them.
 struct RowOfRays {
     origin: LaneVectors,
     direction: LaneVectors,

@@ -8,7 +8,7 @@ use crate::solid::RayOrigin;
 /// A ray in a prototype's own space.
 ///
 /// Its points are `base + origin + (t - shift) * direction` for the `t` of the
-/// ray that was asked for.
+/// ray that was requested.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LocalRay {
     pub origin: DVec3,
@@ -88,7 +88,7 @@ impl Window {
     }
 
     /// The length of the f32 ray up to `end`, counted from the nearest point.
-    /// The 2^-30 stands for the roundings, which are below 2^-48 in the frame;
+    /// The 2^-30 covers the roundings, which are below 2^-48 in the frame;
     /// the factor for that to f32, which takes at most 2^-24 off.
     #[inline(always)]
     pub(super) fn length_to(&self, end: f64) -> f32 {

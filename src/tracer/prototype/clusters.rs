@@ -1,4 +1,4 @@
-//! An order of boxes in which every run of so many is near together.
+//! An order of boxes in which every run of this many is near together.
 //!
 //! A block of cylinders is one primitive to Embree, so a ray that meets the
 //! block's box pays for all of them: what counts is the boxes' surface. The
@@ -97,7 +97,7 @@ impl Bin {
     }
 }
 
-/// The best split of more items than one block holds; with nothing to choose
+/// The best split of more items than one block contains; with nothing to choose
 /// by, in the middle.
 fn split(items: &[Item], size: usize) -> Split {
     let mut best = (f32::INFINITY, 0, items.len() / 2);

@@ -15,7 +15,7 @@ use crate::tracer::frame::FAR;
 /// hits in proportion to the distance of the ray's origin from the child's. The
 /// origin is at most `√3` [`FAR`] units of the prototype's frame from the center, or
 /// the ray was moved nearer; a unit is at most the radius of the prototype's
-/// reach, which in turn holds the displacements:
+/// reach, which in turn contains the displacements:
 ///
 /// ```text
 /// reach <= radius + √3 max (displacement · (√3 FAR reach + offset))

@@ -69,7 +69,7 @@ impl Sight {
     }
 
     /// A `t` that is not behind the entry into the ball; `None` if the ray
-    /// passes by it.
+    /// misses it.
     pub fn enters(&self, ball: &Ball) -> Option<f64> {
         let way = ball.center - self.origin;
         let radius = ball.radius + SLACK * (way.abs().max_element() + ball.radius);

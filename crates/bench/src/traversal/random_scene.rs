@@ -218,7 +218,7 @@ mod tests {
     #[test]
     fn thickets_are_met_as_often_as_sticks() {
         const SEED: u64 = 12;
-        // So many that their density is even within a few per cent.
+        // This many that their density is even within a few per cent.
         const COUNT: usize = 20_000;
         let expected = 0.1 * std::f64::consts::PI / 4.0 * 8.0 / length_of(COUNT);
         let of_sticks = met(&sticks(COUNT, SEED), SEED);

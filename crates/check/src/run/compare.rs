@@ -25,7 +25,7 @@ use crate::verdict::seen::{Scratch, Seen};
 use crate::verdict::surface::LocalRay;
 use crate::verdict::truth;
 
-/// One ray in so many goes to the oracle, which takes some milliseconds.
+/// One ray in this many goes to the oracle, which takes some milliseconds.
 const RAYS_A_TRUTH: u64 = 1000;
 
 /// Checks an intersector of a scene.

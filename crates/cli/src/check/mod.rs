@@ -44,7 +44,7 @@ const PICTURE_WIDTH: u32 = 320;
 /// Sides of the meshes in the pictures: few enough to see the difference.
 const PICTURE_SEGMENTS: u32 = 16;
 
-/// Runs the check. The exit code is 0 if it holds.
+/// Runs the check. The exit code is 0 if it passes.
 pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
     let common = &arguments.common;
     let page_path = arguments.report.as_ref().map(|dir| dir.join("index.html"));

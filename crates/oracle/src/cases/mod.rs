@@ -32,7 +32,7 @@ use glam::DVec3;
 /// What the numbers of a case are rounded to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Inputs {
-    /// Numbers that f32 holds.
+    /// Numbers that f32 represents.
     F32,
     /// Full f64 numbers.
     F64,

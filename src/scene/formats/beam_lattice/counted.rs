@@ -1,6 +1,6 @@
 //! The number of solids of a beam lattice, before any is made.
 //!
-//! The model is read for it and forgotten: an object stands in the file once and may be
+//! The model is read for it and forgotten: an object is in the file once and may be
 //! placed many times, so that only the model as a whole says how many solids there will be.
 
 use std::collections::BTreeSet;

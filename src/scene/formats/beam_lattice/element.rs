@@ -165,7 +165,7 @@ impl<'a, 'input> Element<'a, 'input> {
         self.node.attribute((namespace, name)).map(str::trim)
     }
 
-    /// The namespace that a prefix stands for.
+    /// The namespace that a prefix means.
     pub fn namespace(&self, prefix: &str) -> Option<&'a str> {
         self.node.lookup_namespace_uri(Some(prefix))
     }

@@ -31,7 +31,7 @@ const CAPS: [(&str, Cap); 3] = [
 /// A part of a cone between two vertices.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beam {
-    /// Where it stands in the file, in bytes.
+    /// Where it is in the file, in bytes.
     pub place: usize,
     /// The numbers of its vertices.
     pub vertices: [usize; 2],

@@ -8,15 +8,15 @@
 //! ball of the end's radius for `sphere`, the outer half of that ball for
 //! `hemisphere`. All beams and balls of a lattice are united. So a frustum is a
 //! [`Cylinder`] or, where its radii differ, a [`Cone`], and at each vertex there is one
-//! [`Sphere`]: of all the balls there the greatest, which holds the others. (A rounded
+//! [`Sphere`]: of all the balls there the greatest, which contains the others. (A rounded
 //! cone is another solid: its flank touches its balls, a beam's goes through the
 //! circles at its vertices.)
 //!
 //! **Half a ball** is the whole one to the union wherever its other half is inside the
 //! frustum, whose radius is nowhere less than the end's: at the end where the beam is
 //! not thicker than at the other, if the beam is at least as long as that radius.
-//! Where it is not, it is the intersection of the ball with a cylinder that stands on
-//! the end and is wider and higher than the half; unless the ball at the vertex holds
+//! Where it is not, it is the intersection of the ball with a cylinder that begins at
+//! the end and is wider and higher than the half; unless the ball at the vertex contains
 //! it anyway.
 
 #[cfg_attr(not(feature = "three-mf"), path = "no_archive.rs")]

@@ -53,7 +53,7 @@ pub(super) struct Placed {
     pub places: Vec<Similarity>,
 }
 
-/// What a file holds, in its own unit.
+/// What a file contains, in its own unit.
 pub(super) struct Model {
     /// The unit, in micrometers.
     pub unit: f64,

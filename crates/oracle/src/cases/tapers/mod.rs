@@ -49,7 +49,7 @@ pub enum TaperFamily {
     NearEqual,
     /// 1e3 to 1e6 radii long.
     TinyTaper,
-    /// 1e-6 to 1e-2 radii long; of balls, one nearly holds the other.
+    /// 1e-6 to 1e-2 radii long; of balls, one nearly contains the other.
     HugeTaper,
     /// Seen from 1e2 to 1e7 radii away.
     Far,
