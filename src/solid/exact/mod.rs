@@ -7,7 +7,7 @@
 //!
 //! 1. the triple-product solver in f64, with a certificate (`certificate`): if every
 //!    quantity that it compared clears the bound of its rounding, the answer
-//!    is;
+//!    is certain;
 //! 2. the decisions of `decide` in double-double with a running error bound
 //!    (`bounded`), 106 bits, enough for all but true ties;
 //! 3. the same decisions in binary numbers of any length (`dashu`), which
