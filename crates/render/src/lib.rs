@@ -1,6 +1,6 @@
 //! From a scene to a picture: camera, samples, light and image files.
 //!
-//! [`render`] makes a [`Film`] of linear colours, [`Output`] writes it. The
+//! [`render`] makes a [`Film`] of linear colours, `cyltrace_output::Output` writes it. The
 //! same scene, settings and seed give the same bytes for any number of
 //! threads.
 
