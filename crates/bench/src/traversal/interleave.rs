@@ -50,7 +50,7 @@ impl Workers {
 
 impl Workers {
     /// Runs `work` on parts of `0..count`, each of which starts at a multiple
-    /// of [`TILE`], and adds up what it answers.
+    /// of `TILE`, and adds up the results.
     pub fn share(&self, count: usize, work: impl Fn(Range<usize>) -> u64 + Sync) -> u64 {
         if self.threads == 1 {
             return work(0..count);

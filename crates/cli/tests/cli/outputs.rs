@@ -81,15 +81,15 @@ fn output_that_is_an_input_refused_with_both_names() {
         ),
         (
             format!("{trace} -o places.csv"),
-            ["-o \"places.csv\"", "\"places.csv\": it is"],
+            ["-o \"places.csv\"", "\"places.csv\" and would"],
         ),
         (
             format!("{trace} -o h.csv --json tree.csv"),
-            ["--json", "\"tree.csv\": it is"],
+            ["--json", "\"tree.csv\" and would"],
         ),
         (
             format!("{trace} -o neuron.swc"),
-            ["-o", "\"neuron.swc\": it is"],
+            ["-o", "\"neuron.swc\" and would"],
         ),
         (
             "info scene.toml --json scene.toml".into(),
@@ -97,7 +97,7 @@ fn output_that_is_an_input_refused_with_both_names() {
         ),
         (
             "info scene.toml --json neuron.swc".into(),
-            ["--json", "\"neuron.swc\": it is"],
+            ["--json", "\"neuron.swc\" and would"],
         ),
         (
             "render scene.toml -o a.png --json tree.csv".into(),
