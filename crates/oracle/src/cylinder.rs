@@ -299,6 +299,12 @@ impl Problem {
     }
 }
 
+/// The panic where a part of a cylinder is expected and another is given.
+#[cold]
+pub(crate) fn not_of_a_cylinder(part: Part) -> ! {
+    unreachable!("a cylinder has no part {}", part.name())
+}
+
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
@@ -389,10 +395,4 @@ mod tests {
             side(1.5)
         );
     }
-}
-
-/// The panic where a part of a cylinder is expected and another is given.
-#[cold]
-pub(crate) fn not_of_a_cylinder(part: Part) -> ! {
-    unreachable!("a cylinder has no part {}", part.name())
 }
