@@ -243,7 +243,7 @@ impl Case {
     fn new(nest: &Nest, witness: &Tracer, number: u64) -> Self {
         let mut random = Random::new(SEED, 10_000 + number);
         let ray = nest.ray(&mut random);
-        let point = (number % 4 == 0).then(|| nest.point(&mut random));
+        let point = number.is_multiple_of(4).then(|| nest.point(&mut random));
         let bundle = match number % 8 {
             0 => nest.bundle(&mut random),
             _ => Vec::new(),
