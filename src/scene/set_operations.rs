@@ -86,7 +86,9 @@ fn operand(source: &Source, keys: &Spanned<Keys<OperandKeys>>) -> Result<Composi
         .chain(nested.map(|(operation, keys)| Stated::Nested(operation, keys)))
         .collect();
     let [stated] = stated.as_slice() else {
-        let names: Vec<&str> = SolidKind::all().map(SolidKind::name).collect();
+        // A disk has no inside.
+        let kinds = SolidKind::all().filter(|&kind| kind != SolidKind::Disk);
+        let names: Vec<&str> = kinds.map(SolidKind::name).collect();
         return Err(source.error_with_help(
             place,
             format!("an operand is one solid, and this states {}", stated.len()),
