@@ -3,8 +3,10 @@
 
 use std::collections::HashMap;
 
+use rayon::prelude::*;
+
 use super::cylinder_list::Records;
-use super::description::{PrototypeIndex, Scene};
+use super::description::{Prototype, PrototypeIndex, Scene};
 use super::solid_lists::{SolidList, Stored};
 use crate::solid::{Composition, SolidCounts, SolidKind};
 use crate::with_solid_kind;
@@ -71,6 +73,23 @@ pub(super) fn placed_counts(
         .collect();
     placed.sort_unstable_by_key(|placed| placed.of);
     placed
+}
+
+impl Prototype {
+    /// How often it places each of the others, in their order. Runs on the rayon pool that
+    /// this is called in.
+    #[must_use]
+    pub fn placed(&self) -> Vec<PlacedCount> {
+        /// Placements that a thread counts at a time.
+        const SHARE: usize = 1 << 16;
+        let shares = self.placements.par_chunks(SHARE).map(|share| {
+            let runs = share.chunk_by(|one, next| one.of == next.of);
+            placed_counts(runs.map(|run| (run[0].of, run.len() as u64)))
+        });
+        let shares: Vec<_> = shares.collect();
+        let counts = shares.iter().flatten();
+        placed_counts(counts.map(|placed| (placed.of, placed.count)))
+    }
 }
 
 impl ExpectedCounts {

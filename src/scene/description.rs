@@ -1,14 +1,11 @@
 //! The validated description of a scene: everything `tracer` and `render` need,
 //! nothing of the files it came from.
 
-use glam::{DAffine3, DVec3};
-use rayon::prelude::*;
-
-use super::contents::{PlacedCount, placed_counts};
 use super::cylinder_list::Records;
 use super::origins::Origins;
 use super::solid_lists::Solids;
 use crate::solid::{AnySolid, Caps, Cylinder};
+use glam::{DAffine3, DVec3};
 
 /// A whole scene. What it contains has been checked when it was loaded.
 #[derive(Clone, Debug)]
@@ -95,21 +92,6 @@ impl Prototype {
     #[must_use]
     pub fn single(&self, primitive: u32) -> Option<AnySolid> {
         self.solids.find_simple(primitive)
-    }
-
-    /// How often it places each of the others, in their order. Runs on the rayon pool that
-    /// this is called in.
-    #[must_use]
-    pub fn placed(&self) -> Vec<PlacedCount> {
-        /// Placements that a thread counts at a time.
-        const SHARE: usize = 1 << 16;
-        let shares = self.placements.par_chunks(SHARE).map(|share| {
-            let runs = share.chunk_by(|one, next| one.of == next.of);
-            placed_counts(runs.map(|run| (run[0].of, run.len() as u64)))
-        });
-        let shares: Vec<_> = shares.collect();
-        let counts = shares.iter().flatten();
-        placed_counts(counts.map(|placed| (placed.of, placed.count)))
     }
 }
 
