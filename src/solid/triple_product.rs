@@ -148,7 +148,8 @@ impl<S: Real> Axis<S> for StatedAxis<S> {
 /// is where it is on the whole ray, as in [`Chord::first`]. `direction` has a
 /// largest component between 2^-100 and 2^100 in size; with the range of
 /// [`Cylinder`] nothing then overflows. A non-finite argument is a miss.
-#[inline]
+// Always inlined: callbacks are compiled for several instruction sets, and it is their loop.
+#[inline(always)]
 #[must_use]
 pub fn first(
     cylinder: &Cylinder,

@@ -282,7 +282,8 @@ impl Certifier<'_> {
             return Some(None);
         }
         (t.above(self.ray.t_min) & t.below(self.ray.t_max)).then_some(Some(ExactHit {
-            t: t.value,
+            // A zero is positive, as from exact numbers.
+            t: t.value + 0.0,
             t_error: t.error * MARGIN,
             part,
             crossing,

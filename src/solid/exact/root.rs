@@ -106,8 +106,10 @@ pub(super) fn rounded_on_line<S: Target>(
     at: At,
 ) -> S {
     let terms = Terms::<Bounded>::new(cylinder, x, direction);
-    in_double_double(&terms, at)
-        .unwrap_or_else(|| in_long_numbers(&Terms::new(cylinder, x, direction), at))
+    let t: S = in_double_double(&terms, at)
+        .unwrap_or_else(|| in_long_numbers(&Terms::new(cylinder, x, direction), at));
+    // A zero is positive, whichever difference it is of.
+    t + S::ZERO
 }
 
 /// The numerator and denominator of the parameter, the root left to `root`.

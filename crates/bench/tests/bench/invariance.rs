@@ -342,9 +342,12 @@ fn assert_promised(
                 );
             }
         }
-        // With numbers of full length these are within roundings of a tangent,
-        // and of the start of their range.
-        let is_open = matches!(family, Family::Tangent | Family::SurfaceIn);
+        // With numbers of full length these are within roundings of a tangent, of the
+        // start of their range, and of a rim.
+        let is_open = matches!(
+            family,
+            Family::Tangent | Family::SurfaceIn | Family::ExactRim
+        );
         assert!(
             decided > ORACLE_CASES * 9 / 10 || (is_open && inputs == Inputs::F64),
             "{what}, {} {}: only {decided} cases are promised",
