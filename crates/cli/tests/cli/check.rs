@@ -306,7 +306,7 @@ fn arguments_that_do_not_fit_are_refused() {
         ),
         (&["--replay", "1:2:3"], "CLASS:INDEX"),
         (&["--replay", "foo"], "CLASS:INDEX"),
-        (&["--mesh", "scene.toml"], ".obj or .ply"),
+        (&["--mesh", "scene.toml"], ".obj, .ply or .stl"),
         (
             &[
                 "--rays", "rays.csv", "--hits", "hits.csv", "--json", "hits.csv",
