@@ -153,7 +153,7 @@ fn command_writes_a_row_for_each_family_inputs_and_formulation() {
     let text = std::fs::read_to_string(folder.path().join("figures.json")).expect("figures");
     let figures: Value = serde_json::from_str(&text).expect("JSON");
     let rows = figures["families"].as_array().expect("rows");
-    assert_eq!(rows.len(), 20 * 2 * 2);
+    assert_eq!(rows.len(), Family::ALL.len() * 2 * 2);
     let keys = [
         "name",
         "inputs",
