@@ -1,5 +1,4 @@
 //! The program as users run it, in a folder of its own.
-#![allow(dead_code, reason = "each test uses some of it")]
 
 use std::fs;
 use std::path::Path;
