@@ -65,8 +65,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The intersection, of which a query that only knows its `t` finds the rest by
-    /// `first`. The query went through the same operations: it is the same intersection.
+    /// The intersection. `first` computes it for a query that knows only its `t`, by the same
+    /// operations as the query: it is the same intersection.
     fn met(&self, first: impl FnOnce(f64) -> Option<SurfaceHit>) -> SurfaceHit {
         match self.which {
             Which::This(met) => met,

@@ -187,8 +187,8 @@ impl Accuracy {
         families * contenders + rounds.rounds
     }
 
-    /// Measures all contenders: errors on `cases`, of which the first family is the
-    /// ordinary one, and times on the ordinary cases `timed`.
+    /// Measures all contenders: errors on `cases`, whose first family is the ordinary one,
+    /// and times on the ordinary cases `timed`.
     /// `after_step` is called as often as [`Accuracy::steps`] says.
     ///
     /// # Panics

@@ -58,7 +58,7 @@ use crate::solid::way::Way;
 pub(in crate::solid) enum Fit {
     /// That through the rims of two disks.
     Disks,
-    /// That which touches two balls, of which neither contains the other.
+    /// The one that touches two balls; neither contains the other.
     Balls,
 }
 

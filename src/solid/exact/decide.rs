@@ -187,7 +187,7 @@ impl<N: Number> Terms<N> {
         Some(Some(self.in_order(ends, lies_on)?))
     }
 
-    /// The disk that is met first, going along the axis.
+    /// The ends at the disks in their order along the line.
     fn in_order(&self, [cap0, cap1]: [End; 2], lies_on: Option<Part>) -> Certain<Ends> {
         let (enter, leave) = match self.yd.sign()? {
             Greater => (cap0, cap1),
@@ -231,8 +231,8 @@ impl<N: Number> Terms<N> {
         let p0 = ya.times(nn).minus(&mn.times(yd));
         let p1 = p0.minus(&aa.times(nn));
         let forward = yd.sign()? == Greater;
-        // How the point at a root lies to the disk that is met first (Less is
-        // outside of the solid) and to the one that is met last.
+        // How the point at a root lies to the first disk along the line (Less is
+        // outside of the solid) and to the last.
         let to_first = |root| {
             if forward {
                 self.at_root(&p0, yd, root)

@@ -7,7 +7,7 @@
 //! coefficient, and the unit axis rounded to u. Its slope at the root is
 //! `2 |d| sin r √g`, with the angle to the axis and the gap g
 //! (`docs/derivations.md`, section 2); the discriminant's own roundings add as
-//! much again. A disk's plane is met with an error of `u size` along the axis.
+//! much again. The plane of a disk is off by `u size` along the axis.
 //! Hence, with a factor for counts of roundings,
 //!
 //! ```text

@@ -144,8 +144,8 @@ pub(crate) struct Scaled {
 /// Points and vectors are in the solid's own space. Bounds in f64 count 8 roundings for
 /// products and sums, each of [`UNIT`](taper::UNIT); NaN fails.
 pub(crate) trait ConvexShape {
-    /// The two ends, of which the first is the solid's anchor. The solid's middle is halfway
-    /// between them.
+    /// The two ends. The first is the solid's anchor; the solid's middle is halfway between
+    /// them.
     fn end_points(&self) -> [DVec3; 2];
 
     /// The axis; of balls and disks about two points, the vector between them.
