@@ -9,7 +9,8 @@
 //! The surface is a closed set and a rim belongs to the cap. Where the cap is
 //! absent, its rim is still the edge of the wall: such an end is a hit of the
 //! side. A ray that runs *within* the surface (in a cap's plane, or along the
-//! wall) touches it all the way; its least `t` may be the start of the range.
+//! wall) touches it all the way; the start of its range is a hit if it lies between
+//! the ends.
 
 use super::{Caps, Crossing, Part};
 use crate::math::Real;
@@ -101,9 +102,9 @@ impl<S: Real> Chord<S> {
             .intersection(Crossing::Leave, caps, shift, t_min, t_max)
     }
 
-    /// Whether `t` is behind the entry and not behind the exit.
+    /// Whether `t` is between the entry and the exit. At the exit, the exit is the hit.
     fn holds(&self, t: S) -> bool {
-        self.enter.t < t && t <= self.leave.t
+        self.enter.t < t && t < self.leave.t
     }
 }
 
@@ -237,5 +238,20 @@ mod tests {
         assert_eq!(chord.first(Caps::Both, 0.0, 0.0, 9.0).unwrap().t, 1.0);
         assert_eq!(chord.first(Caps::P1, 0.0, 2.0, 9.0), None);
         assert_eq!(chord.first(Caps::Both, 0.0, 3.5, 9.0), None);
+    }
+
+    #[test]
+    fn ray_along_the_wall_from_its_end_hits_the_cap_there() {
+        let mut chord = chord((1.0, Part::Cap0), (3.0, Part::Cap1));
+        chord.lies_on = Some(Part::Side);
+        chord.leave.on_rim = true;
+        let parts = |caps, t_min| {
+            let hits = chord.intersections(caps, 0.0, t_min, 9.0);
+            hits.map(|hit| (hit.t, hit.part)).collect::<Vec<_>>()
+        };
+        let ends = [(2.0, Part::Side), (3.0, Part::Cap1)];
+        assert_eq!(parts(Caps::Both, 2.0), ends);
+        assert_eq!(parts(Caps::Both, 3.0), ends[1..]);
+        assert_eq!(parts(Caps::P0, 3.0), [(3.0, Part::Side)]);
     }
 }

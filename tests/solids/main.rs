@@ -7,4 +7,5 @@ mod flat;
 mod lanes;
 mod passing_lines;
 mod pose;
+mod start_of_range;
 mod tessellation;

@@ -36,7 +36,7 @@ impl TrueChord {
 
     /// All points in the ray's range where it meets the surface, in order. A
     /// tangent is two at the same parameter. A ray within the surface touches it
-    /// all the way: the start of its range counts as an entry before it.
+    /// all the way: the start of its range counts as an entry if it lies between them.
     #[must_use]
     pub fn hits(&self, ray: &ExactRay) -> Vec<TrueHit> {
         let is_in_range = |end: &TrueEnd| {
@@ -46,7 +46,7 @@ impl TrueChord {
         let start_of_range = self.lies_on.filter(|_| {
             ray.t_min <= ray.t_max
                 && self.enter.t.cmp_f64(ray.t_min) == Ordering::Less
-                && self.leave.t.cmp_f64(ray.t_min) != Ordering::Less
+                && self.leave.t.cmp_f64(ray.t_min) == Ordering::Greater
         });
         let mut hits = Vec::new();
         if let Some(part) = start_of_range {

@@ -55,7 +55,7 @@ pub(super) fn hits(
     let entry = match lies_on.filter(|part| has(*part)) {
         Some(part)
             if enter.t.cmp_f64(ray.t_min) == Ordering::Less
-                && leave.t.cmp_f64(ray.t_min) != Ordering::Less
+                && leave.t.cmp_f64(ray.t_min) == Ordering::Greater
                 && ray.t_min <= ray.t_max =>
         {
             Some(TrueHit {

@@ -322,7 +322,7 @@ impl<N: Number> Case<'_, N> {
         if let Some(part) = ends.lies_on
             && self.part_there(part).is_some()
             && self.compare(ends.enter.at, t_min)? == Less
-            && self.compare(ends.leave.at, t_min)? != Less
+            && self.compare(ends.leave.at, t_min)? == Greater
         {
             return Some(Some(Decision {
                 at: At::Start,
