@@ -139,12 +139,11 @@ pub fn first<C: LaneCaps>(
         let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
         let line = Line::rounded(&axis, x, d);
         let is_near_axis = line.is_near_axis(&axis, d);
-        let is_grazing = ties::is_grazing(&axis, &line);
-        let is_unsure = is_near_axis & !certainly_misses(&axis, x, d, &line);
-        let is_hopeful = active.0[lane] & !is_near_axis & (line.discriminant >= 0.0);
+        let is_apart = active.0[lane] & is_near_axis & !certainly_misses(&axis, x, d, &line);
+        let is_wanted = active.0[lane] & !is_near_axis & (line.discriminant >= 0.0);
         lines.set(lane, &line);
-        apart.0[lane] = (active.0[lane] & is_unsure) | (is_hopeful & is_grazing);
-        wanted.0[lane] = is_hopeful & !is_grazing;
+        apart.0[lane] = is_apart;
+        wanted.0[lane] = is_wanted;
     }
     let (mut hits, mut t) = (LaneMask::splat(false), Lanes::splat(0.0));
     if wanted.any() {
@@ -153,28 +152,31 @@ pub fn first<C: LaneCaps>(
         for lane in 0..LANES {
             let is_unsettled = Cell::new(false);
             let overlap = overlap(cylinders, rays, &lines, lane, &is_unsettled);
-            let (is_inside, RoundedEnd { end, is_open }) =
-                overlap.enter(&Disks::of(overlap.slab()));
+            let disks = Disks::of(overlap.slab());
+            let (is_inside, RoundedEnd { end, is_open }) = overlap.enter(&disks);
+            // Asked here of both ends: the next loop need not compute the bound again.
+            let is_open = is_open | overlap.is_leave_open(&disks);
+            let (nn, discriminant) = (lines.nn.0[lane], lines.discriminant.0[lane]);
+            let is_grazing = ties::is_grazing(&cylinders.axis(lane), nn, discriminant);
             let is_met = cylinders.is_met(rays, lane, &end);
             let is_inside = wanted.0[lane] & is_inside;
             enter.0[lane] = end.t;
             t.0[lane] = end.t + rays.shift.0[lane];
             hits.0[lane] = is_inside & is_met;
             rest.0[lane] = is_inside & !is_met;
-            let is_apart = is_open | overlap.is_across() | is_unsettled.get();
+            let is_apart = is_open | is_grazing | overlap.is_across() | is_unsettled.get();
             apart.0[lane] |= wanted.0[lane] & is_apart;
         }
         if rest.any() {
             for lane in 0..LANES {
                 let is_unsettled = Cell::new(false);
                 let overlap = overlap(cylinders, rays, &lines, lane, &is_unsettled);
-                let RoundedEnd { end, is_open } =
-                    overlap.leave(&Disks::of(overlap.slab()), enter.0[lane]);
+                let end = overlap.leave(&Disks::of(overlap.slab()), enter.0[lane]);
                 let is_met = rest.0[lane] & cylinders.is_met(rays, lane, &end);
                 let exit = end.t + rays.shift.0[lane];
                 t.0[lane] = if is_met { exit } else { t.0[lane] };
                 hits.0[lane] |= is_met;
-                apart.0[lane] |= rest.0[lane] & (is_open | is_unsettled.get());
+                apart.0[lane] |= rest.0[lane] & is_unsettled.get();
             }
         }
     }

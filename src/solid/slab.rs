@@ -41,8 +41,11 @@ pub trait Wall<S: Real> {
     /// The `t` at which it goes out.
     fn leave(&self) -> S;
 
-    /// The square of a bound of the rounding of `y` at either end. With zero, the default,
-    /// no end is open.
+    /// Whether it decides at rims. If not, no end is open, and rims are where the rounded
+    /// `y` is a plane's.
+    const DECIDES_RIMS: bool = false;
+
+    /// The square of a bound of the rounding of `y` at either end.
     #[inline(always)]
     fn squared_rounding(&self, _slab: &Slab<S>) -> S {
         S::ZERO
@@ -150,7 +153,7 @@ impl<S: Real> Question<S> for WholeChord {
     }
 }
 
-/// An end of the overlap by rounded numbers.
+/// The end at which a line enters, by rounded numbers.
 pub(super) struct RoundedEnd<S> {
     /// The end.
     pub end: ChordEnd<S>,
@@ -224,12 +227,20 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
         self.slab.slope == S::ZERO
     }
 
+    /// Whether a height over either plane is that plane's, for a wall that leaves it at that.
+    #[inline(always)]
+    fn is_rim(&self, height: S, plane: S) -> bool {
+        !W::DECIDES_RIMS && height == plane
+    }
+
     /// Whether a height over either plane may be on its other side.
     #[inline(always)]
     fn is_near_plane(&self, height: S) -> bool {
+        if !W::DECIDES_RIMS {
+            return false;
+        }
         let other = height - self.slab.height;
-        let least = self.wall.squared_rounding(&self.slab);
-        (height * height < least) | (other * other < least)
+        at_most(height * height, other * other) < self.wall.squared_rounding(&self.slab)
     }
 
     /// Whether the line enters the solid, and where.
@@ -241,7 +252,7 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
         let is_open = self.is_near_plane(height);
         if height > S::ZERO {
             // At the far disk's height it is a single point, where the wall ends.
-            let on_rim = height == slab.height;
+            let on_rim = self.is_rim(height, slab.height);
             let part = if on_rim { disks.far_part() } else { Part::Side };
             let end = ChordEnd { t, part, on_rim };
             (height <= slab.height, RoundedEnd { end, is_open })
@@ -252,7 +263,7 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
                 t: at_most(if at_disk < t { t } else { at_disk }, leave),
                 part: disks.near_part(),
                 // A line that leaves where it enters only touches the rim.
-                on_rim: (height == S::ZERO) | (to_leave == S::ZERO),
+                on_rim: self.is_rim(height, S::ZERO) | self.is_rim(to_leave, S::ZERO),
             };
             let is_open = is_open | self.is_near_plane(to_leave);
             (to_leave >= S::ZERO, RoundedEnd { end, is_open })
@@ -263,22 +274,28 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
     #[inline(always)]
     fn decided_leave(&self, disks: &Disks<S>, enter: S) -> ChordEnd<S> {
         let leave = self.leave(disks, enter);
-        if leave.is_open
+        if self.is_leave_open(disks)
             && let Some(chord) = self.wall.exact_chord()
         {
             return chord.leave.not_before(enter);
         }
-        leave.end
+        leave
+    }
+
+    /// Whether the end at which the line leaves is open.
+    #[inline(always)]
+    pub(super) fn is_leave_open(&self, disks: &Disks<S>) -> bool {
+        W::DECIDES_RIMS && self.is_near_plane(self.slab.beyond_near(disks, self.wall.leave()))
     }
 
     /// The same by rounded numbers.
     #[inline(always)]
-    pub(super) fn leave(&self, disks: &Disks<S>, enter: S) -> RoundedEnd<S> {
+    pub(super) fn leave(&self, disks: &Disks<S>, enter: S) -> ChordEnd<S> {
         let slab = &self.slab;
         let t = self.wall.leave();
         let height = slab.beyond_near(disks, t);
         let end = if height < slab.height {
-            let on_rim = height == S::ZERO;
+            let on_rim = self.is_rim(height, S::ZERO);
             let part = if on_rim {
                 disks.near_part()
             } else {
@@ -293,15 +310,12 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
             ChordEnd {
                 t: at_most(slab.at(disks.far), t),
                 part: disks.far_part(),
-                on_rim: (height == slab.height) | (to_enter == slab.height),
+                on_rim: self.is_rim(height, slab.height) | self.is_rim(to_enter, slab.height),
             }
         };
-        RoundedEnd {
-            // At an edge the two may come out in the wrong order by a rounding, and of a line
-            // almost across the axis by any amount.
-            end: end.not_before(enter),
-            is_open: self.is_near_plane(height),
-        }
+        // At an edge the two may come out in the wrong order by a rounding, and of a line
+        // almost across the axis by any amount.
+        end.not_before(enter)
     }
 }
 

@@ -35,24 +35,18 @@ const LEAST_GAP: f64 = power_of_two(-14);
 /// `k² / g` of a line that is neither near the axis nor grazes the wall, or more.
 pub(super) const ORDINARY_DISPLACEMENT: f64 = 1.0 / (LEAST_SQUARED_SINE * LEAST_GAP);
 
-/// Whether the line is next to a tangent of the wall.
+/// Whether a line, by its `|n|²` and `D`, is next to a tangent of the wall.
 #[inline(always)]
-pub(super) fn is_grazing<S: Real>(axis: &impl Axis<S>, line: &Line<S>) -> bool {
-    line.discriminant < S::from_f64(LEAST_GAP) * reach(axis, line)
-}
-
-/// `radius² |n|²`.
-#[inline(always)]
-fn reach<S: Real>(axis: &impl Axis<S>, line: &Line<S>) -> S {
-    axis.radius() * axis.radius() * line.nn
+pub(super) fn is_grazing<S: Real>(axis: &impl Axis<S>, nn: S, discriminant: S) -> bool {
+    discriminant < S::from_f64(LEAST_GAP) * (axis.radius() * axis.radius() * nn)
 }
 
 /// `k² / g` of any line, or more.
 #[inline(always)]
 pub(super) fn displacement<S: Real>(axis: &impl Axis<S>, d: S::Vector, line: &Line<S>) -> S {
-    if line.is_near_axis(axis, d) | is_grazing(axis, line) {
-        let sizes = axis.aa() * d.dot(d);
-        return rare_displacement(sizes, line.nn, reach(axis, line), line.discriminant);
+    if line.is_near_axis(axis, d) | is_grazing(axis, line.nn, line.discriminant) {
+        let (sizes, rr) = (axis.aa() * d.dot(d), axis.radius() * axis.radius());
+        return rare_displacement(sizes, line.nn, rr * line.nn, line.discriminant);
     }
     S::from_f64(ORDINARY_DISPLACEMENT)
 }
@@ -72,9 +66,6 @@ fn rare_displacement<S: Real>(sizes: S, nn: S, reach: S, discriminant: S) -> S {
 /// The square of (1), of the square of its last two factors.
 #[inline(always)]
 pub(super) fn squared_rounding<S: Real>(displacement: S, squared_sizes: S) -> S {
-    if !S::DECIDES_TIES {
-        return S::ZERO;
-    }
     S::from_f64(ROUNDING) * displacement * squared_sizes
 }
 

@@ -377,6 +377,8 @@ impl<S: Real, A: Axis<S>> Wall<S> for Roots<S, A> {
         root.numerator / root.denominator
     }
 
+    const DECIDES_RIMS: bool = S::DECIDES_TIES;
+
     #[inline(always)]
     fn squared_rounding(&self, slab: &Slab<S>) -> S {
         let squared_sizes = self.m.dot(self.m)
