@@ -15,12 +15,13 @@
 //! from exact products, so that it has all its bits although it is a difference of
 //! nearly equal numbers. What is left is the rounding of the entries of `M'`, each
 //! by at most u of itself: every entry of `M'ᵀ M' - I` is below
-//! `2 u Σ |m_ki| |m_kj| <= 2 u`, after any number of turns. Where `E` is zero, as
-//! for quarter turns, nothing is changed at all.
+//! `2 u Σ |m_ki| |m_kj| <= 2 u`, after any number of turns, and its Frobenius norm at most
+//! 6 u. The norm of `M Mᵀ - I` is the same. Where `E` is zero, as for quarter turns, nothing
+//! is changed at all.
 
 use glam::{DMat3, DVec3};
 
-use super::{DoubleDouble, rotation, sin_cos_degrees, unit};
+use super::{DoubleDouble, UNIT_ROUNDOFF, frobenius_norm, rotation, sin_cos_degrees, unit};
 
 /// The way an object is turned about its own center.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +40,29 @@ impl Orientation {
     pub const IDENTITY: Self = Self {
         world_from_object: DMat3::IDENTITY,
     };
+
+    /// The orientation of an object with these axes in the world, taken as exact numbers;
+    /// `None` unless they are right-handed and as orthonormal as those of every orientation:
+    /// the Frobenius norm of `Mᵀ M - I` is at most 6 · 2^-53.
+    ///
+    /// ```
+    /// use cyltrace::math::Orientation;
+    ///
+    /// let turned = Orientation::IDENTITY.rotated_x(30.0).rotated_z(20.0);
+    /// let [x, y, z] = [0, 1, 2].map(|axis| turned.world_from_object().col(axis));
+    /// assert_eq!(Orientation::from_axes(x, y, z), Some(turned));
+    /// assert_eq!(Orientation::from_axes(x, y, z * 1.001), None);
+    /// ```
+    #[must_use]
+    pub fn from_axes(x: DVec3, y: DVec3, z: DVec3) -> Option<Self> {
+        /// 6 u, and what is of the order of u².
+        const MOST: f64 = 6.0 * UNIT_ROUNDOFF * (1.0 + 1e-12);
+        let world_from_object = DMat3::from_cols(x, y, z);
+        // Comparisons with NaN are false.
+        let is_orthonormal = frobenius_norm(&residual(&world_from_object)) <= MOST;
+        (is_orthonormal && world_from_object.determinant() > 0.0)
+            .then_some(Self { world_from_object })
+    }
 
     /// Turned on about the world's x axis, right-handed. Multiples of 90 degrees
     /// are exact.
@@ -155,6 +179,11 @@ fn finite_sin_cos(degrees: f64) -> (f64, f64) {
 
 /// The step that the head of this file derives.
 fn orthonormal(matrix: DMat3) -> DMat3 {
+    matrix - matrix * (residual(&matrix) * 0.5)
+}
+
+/// `Mᵀ M - I` from exact products.
+fn residual(matrix: &DMat3) -> DMat3 {
     let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
     let off = |i: usize, j: usize| {
         let (a, b) = (columns[i], columns[j]);
@@ -165,17 +194,17 @@ fn orthonormal(matrix: DMat3) -> DMat3 {
             .high
     };
     let (xy, yz, zx) = (off(0, 1), off(1, 2), off(2, 0));
-    let residual = DMat3::from_cols(
+    DMat3::from_cols(
         DVec3::new(off(0, 0), xy, zx),
         DVec3::new(xy, off(1, 1), yz),
         DVec3::new(zx, yz, off(2, 2)),
-    );
-    matrix - matrix * (residual * 0.5)
+    )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Random;
 
     #[test]
     fn quarter_turns_are_exact_and_right_handed() {
@@ -193,6 +222,26 @@ mod tests {
         // y to z about x, z to -z about y; z is where it is about z.
         assert_eq!(several.to_world(DVec3::Y), DVec3::NEG_Z);
         assert_eq!(several.to_object(DVec3::NEG_Z), DVec3::Y);
+    }
+
+    #[test]
+    fn axes_of_turned_objects_are_an_orientation_and_others_are_not() {
+        let mut random = Random::new(31, 0);
+        let mut turned = Orientation::IDENTITY;
+        for case in 0..20_000 {
+            turned = turned.rotated(random.direction(), random.uniform(-400.0, 400.0));
+            for turned in [turned, turned.inverse()] {
+                let frame = turned.world_from_object;
+                let (x, y, z) = (frame.x_axis, frame.y_axis, frame.z_axis);
+                assert_eq!(Orientation::from_axes(x, y, z), Some(turned), "case {case}");
+                assert_eq!(Orientation::from_axes(y, x, z), None, "case {case}");
+                let longer = x * (1.0 + 8.0 * f64::EPSILON);
+                assert_eq!(Orientation::from_axes(longer, y, z), None, "case {case}");
+            }
+        }
+        for wrong in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY, DVec3::MAX] {
+            assert_eq!(Orientation::from_axes(wrong, DVec3::Y, DVec3::Z), None);
+        }
     }
 
     #[test]

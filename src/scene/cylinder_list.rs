@@ -371,6 +371,9 @@ impl SolidList for CylinderList {
         self.push(record).map_err(|error| error.to_string())
     }
 
+    /// Cylinders may have any order.
+    fn sort(&mut self) {}
+
     /// Gives back the memory that no cylinder uses, if it is more than an
     /// eighth: records are aligned, so that giving back is to copy them, with
     /// both there for a while.

@@ -241,11 +241,12 @@ pub(super) struct InstanceTableKeys {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct InstanceColumns {
-    pub position: ThreeColumns,
+    pub position: Option<ThreeColumns>,
     pub axis: Option<ThreeColumns>,
     pub degrees: Option<Spanned<ColumnKey>>,
     pub quaternion: Option<List<Spanned<ColumnKey>, 4>>,
     pub scale: Option<Spanned<ColumnOrList<3>>>,
+    pub matrix: Option<List<List<Spanned<ColumnKey>, 4>, 3>>,
 }
 
 /// `[[scatter]]`

@@ -26,7 +26,7 @@ use super::solid_keys::{CompositionKeys, SolidTable};
 use super::solids::SolidKeys;
 use super::source::Source;
 use super::transform::GREATEST_ENTRY;
-use super::values::{Keys, NumberOrList};
+use super::values::{Keys, NumberOrList, Whole};
 use crate::for_each_solid;
 
 /// Reads a scene file and the tables it names, and checks everything.
@@ -174,6 +174,7 @@ impl Loader<'_> {
         for (operation, tables) in body.operations() {
             self.add_compositions(&mut solids, operation, tables)?;
         }
+        self.sort(&mut solids)?;
 
         let mut placements = Placements::default();
         let mut placement_origins = Origins::default();
@@ -184,7 +185,7 @@ impl Loader<'_> {
             let first = placements.list.len() as u32;
             placements.add_table(self.tables, keys, self.placed(&keys.of)?)?;
             let end = placements.list.len() as u32;
-            placement_origins.add(keys.file.get_ref(), true, first, end);
+            placement_origins.add(keys.file.get_ref().as_str().into(), Some(0), first, end);
         }
         let scatters = body.scatter.iter().map(|Keys(keys)| {
             let of = self.placed(&keys.of)?;
@@ -218,9 +219,9 @@ impl Loader<'_> {
             materials: self.materials,
         };
         for file in body.files() {
-            let first = solids.numbers();
+            solids.begin_file(file.file().get_ref(), file.has_rows());
             file.add(&context, solids)?;
-            solids.came_from(file.file().get_ref(), file.has_rows(), first);
+            solids.end_file();
         }
         Ok(())
     }
@@ -234,6 +235,7 @@ impl Loader<'_> {
         for Keys(keys) in tables {
             let solid = keys.solid(self.source)?;
             let material = self.materials.find(self.source, keys.material())?;
+            self.number(solids, keys.primitive())?;
             let pushed = solids.push_any(&solid, material);
             pushed.map_err(|refusal| self.refused(keys.place(), &refusal))?;
         }
@@ -250,10 +252,37 @@ impl Loader<'_> {
         for Keys(keys) in tables {
             let solid = operation.of(self.source, keys)?;
             let material = self.materials.find(self.source, keys.material())?;
+            self.number(solids, keys.primitive())?;
             let pushed = solids.push_composition(solid, material);
             pushed.map_err(|refusal| self.refused(keys.of().span(), &refusal))?;
         }
         Ok(())
+    }
+
+    /// Continues the primitive numbers from the one that a solid's table states.
+    fn number(
+        &self,
+        solids: &mut SolidCollector,
+        key: Option<&Spanned<Whole>>,
+    ) -> Result<(), SceneError> {
+        key.map_or(Ok(()), |key| {
+            let numbered = solids.number_from(key.get_ref().0, key.span());
+            numbered.map_err(|refusal| self.refused(key.span(), &refusal))
+        })
+    }
+
+    /// Puts solids with stated numbers in order.
+    fn sort(&self, solids: &mut SolidCollector) -> Result<(), SceneError> {
+        let Some(place) = solids.numbered_at.take() else {
+            return Ok(());
+        };
+        solids.solids.sort().map_err(|number| {
+            self.source.error_with_help(
+                place,
+                format!("two solids have the primitive number {number}: numbers must differ"),
+                "a solid without the key has the number after that of the solid before it",
+            )
+        })
     }
 
     /// That the solid at a place is not added.

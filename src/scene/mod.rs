@@ -27,6 +27,7 @@ mod error;
 mod formats;
 mod graph;
 mod hit_table;
+mod instance_rows;
 mod limits;
 mod lines;
 mod load;

@@ -157,10 +157,14 @@ impl NamedTable<'_> {
     }
 }
 
-/// The most rows of a table; 0 of one that cannot be read. One whose columns have numbers
-/// may have no header.
-pub(super) fn table_rows(source: &Source, file: &Spanned<String>, columns: &ThreeColumns) -> u64 {
-    let is_numbered = matches!(columns.0[0].get_ref(), ColumnKey::Number(_));
+/// The most rows of a table, one of whose columns is `column`; 0 of one that cannot be read.
+/// One whose columns have numbers may have no header.
+pub(super) fn table_rows(
+    source: &Source,
+    file: &Spanned<String>,
+    column: Option<&ColumnKey>,
+) -> u64 {
+    let is_numbered = matches!(column, Some(ColumnKey::Number(_)));
     rows(source, file) + u64::from(is_numbered)
 }
 

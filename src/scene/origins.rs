@@ -1,5 +1,7 @@
 //! The files that solids and placements come from, for messages about single ones.
 
+use std::sync::Arc;
+
 /// What the entries of a prototype come from, in runs of consecutive numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Origins {
@@ -10,9 +12,9 @@ pub struct Origins {
 #[derive(Clone, Debug)]
 struct Run {
     first: u32,
-    file: String,
-    /// Whether each row is an entry, also those that were skipped.
-    is_table: bool,
+    file: Arc<str>,
+    /// The row of the first, from 0, where each row is an entry, also those that were skipped.
+    first_row: Option<u32>,
     count: u32,
 }
 
@@ -26,12 +28,13 @@ pub struct Origin<'a> {
 }
 
 impl Origins {
-    /// Adds the entries from `first` up to `end` that come from a file.
-    pub(super) fn add(&mut self, file: &str, is_table: bool, first: u32, end: u32) {
+    /// Adds the entries from `first` up to `end` that come from a file, in a table from the
+    /// row `first_row` on.
+    pub(super) fn add(&mut self, file: Arc<str>, first_row: Option<u32>, first: u32, end: u32) {
         self.runs.push(Run {
             first,
-            file: file.to_owned(),
-            is_table,
+            file,
+            first_row,
             count: end - first,
         });
     }
@@ -43,7 +46,7 @@ impl Origins {
         let run = runs.find(|run| (run.first..run.first + run.count).contains(&number))?;
         Some(Origin {
             file: &run.file,
-            row: run.is_table.then(|| number - run.first + 1),
+            row: run.first_row.map(|row| row + (number - run.first) + 1),
         })
     }
 }
@@ -55,13 +58,15 @@ mod tests {
     #[test]
     fn entries_have_the_rows_of_their_table() {
         let mut origins = Origins::default();
-        origins.add("twigs.csv", true, 2, 5);
-        origins.add("cell.swc", false, 5, 9);
+        origins.add("twigs.csv".into(), Some(0), 2, 5);
+        origins.add("cell.swc".into(), None, 5, 9);
+        origins.add("twigs.csv".into(), Some(3), 20, 22);
         assert_eq!(origins.of(1), None);
         let row = |file, row| Some(Origin { file, row });
         assert_eq!(origins.of(2), row("twigs.csv", Some(1)));
         assert_eq!(origins.of(4), row("twigs.csv", Some(3)));
         assert_eq!(origins.of(5), row("cell.swc", None));
         assert_eq!(origins.of(9), None);
+        assert_eq!(origins.of(21), row("twigs.csv", Some(5)));
     }
 }

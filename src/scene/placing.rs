@@ -8,17 +8,17 @@ use rayon::prelude::*;
 use toml::Spanned;
 
 use super::description::{Placement, PrototypeIndex};
-use super::document::{InstanceColumns, InstanceKeys, InstanceTableKeys};
+use super::document::{InstanceKeys, InstanceTableKeys};
 use super::error::SceneError;
-use super::named_table::{NamedTable, TableKeys, Tables, keys_of};
+use super::instance_rows::Layout;
+use super::named_table::{TableKeys, Tables};
 use super::pose;
 use super::scatter::Scatter;
 use super::settings::vector;
 use super::source::Source;
-use super::table::{Column, ColumnKey, Fault, Row};
-use super::transform::{Reach, checked, quaternion_rotation};
-use super::values::{ColumnOrList, Keys, NumberOrList};
-use crate::math::{rotation, sin_cos_degrees, unit};
+use super::transform::{Reach, checked};
+use super::values::{Keys, NumberOrList};
+use crate::math::{rotation, sin_cos_degrees};
 
 /// The placements of one prototype.
 #[derive(Default)]
@@ -195,142 +195,4 @@ fn composed(source: &Source, keys: &InstanceKeys) -> Result<DAffine3, SceneError
     }
     let translation = keys.translate.as_ref().map_or(DVec3::ZERO, vector);
     Ok(DAffine3::from_mat3_translation(matrix, translation))
-}
-
-impl InstanceColumns {
-    /// All columns that are stated.
-    fn all(&self) -> Vec<ColumnKey> {
-        let threes = [Some(&self.position), self.axis.as_ref()];
-        let threes = threes.into_iter().flatten().flat_map(|three| &three.0);
-        let four = self.quaternion.iter().flat_map(|four| &four.0);
-        let mut all = keys_of(threes.chain(&self.degrees).chain(four));
-        match self.scale.as_ref().map(Spanned::get_ref) {
-            None => {}
-            Some(ColumnOrList::One(key)) => all.push(key.clone()),
-            Some(ColumnOrList::Many(keys)) => all.extend(keys.iter().cloned()),
-        }
-        all
-    }
-}
-
-/// Where a placement's numbers are in a row.
-struct Layout {
-    position: [Column; 3],
-    turn: Turn,
-    scale: Scale,
-}
-
-enum Turn {
-    None,
-    About { axis: [Column; 3], degrees: Column },
-    Quaternion([Column; 4]),
-}
-
-enum Scale {
-    None,
-    One(Column),
-    Three([Column; 3]),
-}
-
-impl Layout {
-    fn new(
-        source: &Source,
-        table: &NamedTable,
-        columns: &Spanned<Keys<InstanceColumns>>,
-    ) -> Result<Self, SceneError> {
-        let names = &columns.get_ref().0;
-        let position = table.three(&names.position)?;
-        let turn = match (&names.axis, &names.degrees, &names.quaternion) {
-            (None, None, None) => Turn::None,
-            (Some(axis), Some(degrees), None) => Turn::About {
-                axis: table.three(axis)?,
-                degrees: table.column(degrees)?,
-            },
-            (None, None, Some(quaternion)) => {
-                let [x, y, z, w] = &quaternion.0;
-                Turn::Quaternion([
-                    table.column(x)?,
-                    table.column(y)?,
-                    table.column(z)?,
-                    table.column(w)?,
-                ])
-            }
-            _ => {
-                return Err(source.error(
-                    columns.span(),
-                    "columns must name both axis and degrees, or quaternion, or none of them",
-                ));
-            }
-        };
-        let scale = match &names.scale {
-            None => Scale::None,
-            Some(scale) => {
-                let column = |key| table.column_at(key, scale.span());
-                match scale.get_ref() {
-                    ColumnOrList::One(key) => Scale::One(column(key)?),
-                    ColumnOrList::Many([x, y, z]) => {
-                        Scale::Three([column(x)?, column(y)?, column(z)?])
-                    }
-                }
-            }
-        };
-        Ok(Self {
-            position,
-            turn,
-            scale,
-        })
-    }
-
-    /// All columns that are read.
-    fn all(&self) -> Vec<Column> {
-        let mut all = self.position.to_vec();
-        match self.turn {
-            Turn::None => {}
-            Turn::About { axis, degrees } => {
-                all.extend(axis);
-                all.push(degrees);
-            }
-            Turn::Quaternion(columns) => all.extend(columns),
-        }
-        match self.scale {
-            Scale::None => {}
-            Scale::One(column) => all.push(column),
-            Scale::Three(columns) => all.extend(columns),
-        }
-        all
-    }
-
-    /// The placement of a row.
-    fn placement(&self, row: &Row) -> Result<DAffine3, Fault> {
-        let scale = match &self.scale {
-            Scale::None => DVec3::ONE,
-            Scale::One(column) => DVec3::splat(row.number(*column)?),
-            Scale::Three(columns) => DVec3::from(row.numbers(*columns)?),
-        };
-        let turn = match &self.turn {
-            Turn::None => DMat3::IDENTITY,
-            Turn::About { axis, degrees } => {
-                let direction = unit(DVec3::from(row.numbers(*axis)?)).ok_or_else(|| {
-                    row.error(
-                        Some(axis[0]),
-                        "the rotation axis is zero: it needs a direction, of any length",
-                    )
-                })?;
-                rotation(direction, sin_cos_degrees(row.number(*degrees)?))
-            }
-            Turn::Quaternion(columns) => {
-                quaternion_rotation(row.numbers(*columns)?).ok_or_else(|| {
-                    row.error(
-                        Some(columns[0]),
-                        "the quaternion is zero: it needs a direction, of any length",
-                    )
-                })?
-            }
-        };
-        let position = DVec3::from(row.numbers(self.position)?);
-        Ok(DAffine3::from_mat3_translation(
-            turn * DMat3::from_diagonal(scale),
-            position,
-        ))
-    }
 }

@@ -77,7 +77,7 @@ impl SceneFile {
             let tables = body.instance_table.iter();
             let tables = tables.map(|Keys(keys)| {
                 let Keys(columns) = keys.columns.get_ref();
-                let rows = table_rows(&self.source, &keys.file, &columns.position);
+                let rows = table_rows(&self.source, &keys.file, columns.all().first());
                 (of(&keys.of), rows)
             });
             let mut placed: Vec<_> = single.chain(tables).collect();

@@ -101,7 +101,7 @@ fn operand(source: &Source, keys: &Spanned<Keys<OperandKeys>>) -> Result<Composi
     match stated {
         Stated::Solid(keys) => closed(source, keys),
         Stated::Nested(operation, keys) => {
-            without_material(source, *keys)?;
+            check_part(source, *keys)?;
             operation.of(source, keys)
         }
     }
@@ -116,7 +116,7 @@ enum Stated<'a> {
 /// A solid that has an inside.
 fn closed(source: &Source, stated: &Spanned<&dyn SolidKeys>) -> Result<Composition, SceneError> {
     let keys = *stated.get_ref();
-    without_material(source, keys)?;
+    check_part(source, keys)?;
     let solid = keys.solid(source)?;
     if solid.is_closed() {
         return Ok(Composition::Solid(solid));
@@ -136,13 +136,16 @@ fn closed(source: &Source, stated: &Spanned<&dyn SolidKeys>) -> Result<Compositi
     })
 }
 
-/// That a part of a set operation has no material of its own.
-fn without_material<T: SolidTable + ?Sized>(source: &Source, keys: &T) -> Result<(), SceneError> {
-    match keys.material() {
-        None => Ok(()),
-        Some(material) => Err(source.error(
-            material.span(),
-            "a set operation has one material: state it beside of, not in its parts",
-        )),
+/// That a part of a set operation has no material or number of its own.
+fn check_part<T: SolidTable + ?Sized>(source: &Source, keys: &T) -> Result<(), SceneError> {
+    let wrong = |place, what| {
+        let message =
+            format!("a set operation has one {what}: state it beside of, not in its parts");
+        Err(source.error(place, message))
+    };
+    match (keys.material(), keys.primitive()) {
+        (None, None) => Ok(()),
+        (Some(material), _) => wrong(material.span(), "material"),
+        (None, Some(primitive)) => wrong(primitive.span(), "primitive number"),
     }
 }

@@ -13,7 +13,7 @@ use super::limits::{GREATEST_PIXELS, GREATEST_SAMPLES};
 use super::names::{quoted, suggestion};
 use super::source::Source;
 use super::values::{Keys, Number, Whole};
-use crate::math::{sin_cos_degrees, unit};
+use crate::math::{power_of_two, sin_cos_degrees, unit};
 
 /// Most pixels across and down.
 const GREATEST_SIDE: u32 = 65_536;
@@ -63,7 +63,7 @@ fn sun(source: &Source, keys: &SunKeys) -> Result<Sun, SceneError> {
                     "direction excludes elevation_degrees and azimuth_degrees: state one or the others",
                 ));
             }
-            unit(vector(direction)).ok_or_else(|| {
+            unit_or_same(vector(direction)).ok_or_else(|| {
                 source.error(
                     direction.span(),
                     "the sun's direction is zero: it must point towards the sun",
@@ -91,6 +91,22 @@ fn sun(source: &Source, keys: &SunKeys) -> Result<Sun, SceneError> {
         color: color(source, keys.color.as_ref(), DEFAULT_SUN_COLOR)?,
         strength: strength(source, keys.strength.as_ref(), DEFAULT_SUN_STRENGTH)?,
     })
+}
+
+/// The unit vector along a vector. One whose length is 1 to within roundings is its own, so
+/// that the direction of a scene survives a file.
+fn unit_or_same(vector: DVec3) -> Option<DVec3> {
+    match is_unit(vector) {
+        true => Some(vector),
+        false => unit(vector),
+    }
+}
+
+/// Whether the square of a vector's length is within 2^-49 of 1, 16 u. A direction from angles
+/// has components of 3 roundings, one from [`unit`] a length of 3 roundings, and the square has
+/// two more: 8 u.
+fn is_unit(vector: DVec3) -> bool {
+    (vector.length_squared() - 1.0).abs() <= power_of_two(-49)
 }
 
 /// The picture's size.

@@ -1,6 +1,8 @@
 //! Gathers the solids of one prototype, and gives them their primitive numbers.
 
 use std::borrow::Borrow;
+use std::ops::Range;
+use std::sync::Arc;
 
 use toml::Spanned;
 
@@ -27,8 +29,10 @@ const F64_HELP: &str = "records = \"f64\", the default, keeps every number as it
 #[derive(Default)]
 pub(super) struct SolidCollector {
     pub solids: Solids,
-    /// How many primitive numbers are given away.
-    numbers: u32,
+    /// The next primitive number.
+    next: u32,
+    /// Where the scene file first states a primitive number.
+    pub numbered_at: Option<Range<usize>>,
     /// Rows that were left out, though they have a number.
     pub skipped: u64,
     /// At least the size of every coordinate of a point of the solids.
@@ -37,6 +41,16 @@ pub(super) struct SolidCollector {
     pub notes: Vec<String>,
     /// The files that they come from.
     pub origins: Origins,
+    /// The file that is being read.
+    file: Option<File>,
+}
+
+/// A file that is being read, and the solids of it that have consecutive numbers so far.
+struct File {
+    name: Arc<str>,
+    /// The row of the first, in a table.
+    first_row: Option<u32>,
+    first: u32,
 }
 
 /// What the solids of an entry have in common.
@@ -51,6 +65,8 @@ pub(super) struct Look {
 pub(super) enum Refusal {
     /// No primitive number is left.
     Numbers,
+    /// A primitive number that is stated is too large.
+    Number(u64),
     /// Rounded to f32 it is no solid of its kind, for this reason.
     Rounded { kind: SolidKind, error: String },
 }
@@ -62,6 +78,13 @@ impl Refusal {
             Self::Numbers => {
                 let most = u32::MAX;
                 (format!("a prototype holds at most {most} primitives"), None)
+            }
+            Self::Number(number) => {
+                let most = u32::MAX - 1;
+                (
+                    format!("primitive is {number}: it must be at most {most}"),
+                    None,
+                )
             }
             Self::Rounded { kind, error } => (
                 format!("rounded to f32 this is no {kind}: {error}"),
@@ -80,7 +103,7 @@ impl Refusal {
         let (message, help) = self.message();
         match self {
             Self::Numbers => source.error(file.span(), message),
-            Self::Rounded { .. } => row(message, help),
+            Self::Number(_) | Self::Rounded { .. } => row(message, help),
         }
     }
 }
@@ -104,17 +127,28 @@ impl SolidCollector {
         }
     }
 
-    /// How many primitive numbers are given away.
-    pub fn numbers(&self) -> u32 {
-        self.numbers
+    /// Takes the next primitive number.
+    fn number(&mut self) -> Result<u32, Refusal> {
+        let number = self.next;
+        // The greatest u32 is left out: Embree's mark for "no primitive".
+        self.next = number.checked_add(1).ok_or(Refusal::Numbers)?;
+        Ok(number)
     }
 
-    /// The next primitive number.
-    fn number(&mut self) -> Result<u32, Refusal> {
-        let number = self.numbers;
-        // The greatest u32 is left out: Embree's mark for "no primitive".
-        self.numbers = number.checked_add(1).ok_or(Refusal::Numbers)?;
-        Ok(number)
+    /// Continues the primitive numbers from one that the scene file states at a place.
+    pub fn number_from(&mut self, number: u64, place: Range<usize>) -> Result<(), Refusal> {
+        self.numbered_at.get_or_insert(place);
+        let known = u32::try_from(number).ok().filter(|&known| known < u32::MAX);
+        let known = known.ok_or(Refusal::Number(number))?;
+        if known != self.next {
+            let file = self.end_run();
+            self.next = known;
+            self.file = file.map(|file| File {
+                first: known,
+                ..file
+            });
+        }
+        Ok(())
     }
 
     /// Adds a solid.
@@ -168,9 +202,31 @@ impl SolidCollector {
         }
     }
 
-    /// Records that the numbers from `first` on come from a file.
-    pub fn came_from(&mut self, file: &str, is_table: bool, first: u32) {
-        self.origins.add(file, is_table, first, self.numbers);
+    /// Begins with the solids of a file. `has_rows` is true of a table.
+    pub fn begin_file(&mut self, name: &str, has_rows: bool) {
+        self.file = Some(File {
+            name: name.into(),
+            first_row: has_rows.then_some(0),
+            first: self.next,
+        });
+    }
+
+    /// Ends with the solids of a file.
+    pub fn end_file(&mut self) {
+        self.end_run();
+    }
+
+    /// Records what the solids with consecutive numbers come from, and returns the file as it
+    /// continues with others.
+    fn end_run(&mut self) -> Option<File> {
+        let file = self.file.take()?;
+        let (first, end) = (file.first, self.next);
+        if first < end {
+            let name = Arc::clone(&file.name);
+            self.origins.add(name, file.first_row, first, end);
+        }
+        let first_row = file.first_row.map(|row| row + (end - first));
+        Some(File { first_row, ..file })
     }
 
     /// Leaves a row out; it keeps its primitive number.
@@ -213,7 +269,7 @@ mod tests {
     #[test]
     fn primitive_numbers_that_run_out_are_refused() {
         let mut solids = SolidCollector {
-            numbers: u32::MAX - 1,
+            next: u32::MAX - 1,
             ..SolidCollector::default()
         };
         let cylinder = Cylinder::new(DVec3::ZERO, DVec3::X, 1.0, Caps::Both).expect("valid");

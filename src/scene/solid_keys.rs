@@ -5,7 +5,7 @@ use toml::Spanned;
 
 use super::document::Triple;
 use super::solids::{SceneSolid, SolidKeys};
-use super::values::{Keys, Number};
+use super::values::{Keys, Number, Whole};
 use crate::for_each_solid;
 
 /// How an object is turned and moved.
@@ -28,6 +28,7 @@ pub(super) struct RotationKeys {
 /// What every solid's table has.
 pub(super) trait SolidTable {
     fn material(&self) -> Option<&Spanned<String>>;
+    fn primitive(&self) -> Option<&Spanned<Whole>>;
     fn pose(&self) -> PoseKeys<'_>;
 }
 
@@ -41,6 +42,7 @@ macro_rules! solid_table {
         pub(in crate::scene) struct $name {
             $($key: $kind,)*
             material: Option<toml::Spanned<String>>,
+            primitive: Option<toml::Spanned<$crate::scene::values::Whole>>,
             rotate_x: Option<$crate::scene::values::Number>,
             rotate_y: Option<$crate::scene::values::Number>,
             rotate_z: Option<$crate::scene::values::Number>,
@@ -51,6 +53,10 @@ macro_rules! solid_table {
         impl $crate::scene::solid_keys::SolidTable for $name {
             fn material(&self) -> Option<&toml::Spanned<String>> {
                 self.material.as_ref()
+            }
+
+            fn primitive(&self) -> Option<&toml::Spanned<$crate::scene::values::Whole>> {
+                self.primitive.as_ref()
             }
 
             fn pose(&self) -> $crate::scene::solid_keys::PoseKeys<'_> {

@@ -77,6 +77,9 @@ pub trait SolidList: Clone + Debug + Default + Send + Sync {
     /// When the list keeps rounded numbers and these are no solid: why not.
     fn push(&mut self, record: SolidRecord<Self::Solid>) -> Result<(), String>;
 
+    /// Sorts the solids by their numbers, if the list is kept in that order.
+    fn sort(&mut self);
+
     /// Gives back the memory that no record uses.
     fn trim(&mut self);
 
@@ -118,6 +121,10 @@ impl<S: Clone + Debug + Send + Sync> SolidList for Vec<SolidRecord<S>> {
     fn push(&mut self, record: SolidRecord<S>) -> Result<(), String> {
         Vec::push(self, record);
         Ok(())
+    }
+
+    fn sort(&mut self) {
+        self.sort_by_key(|record| record.primitive);
     }
 
     fn trim(&mut self) {
@@ -296,6 +303,24 @@ impl Solids {
         };
         let lists = SolidKind::LISTS.iter().map(of_list);
         lists.fold(Bounds::EMPTY, |sum, bounds| sum.union(&bounds))
+    }
+
+    /// Puts the lists in order after solids were added in another.
+    ///
+    /// # Errors
+    /// When two solids have the same number: the number.
+    pub(super) fn sort(&mut self) -> Result<(), u32> {
+        let mut numbers = Vec::with_capacity(self.len());
+        for &kind in SolidKind::LISTS {
+            with_solid_kind!(kind, S => {
+                let list = S::list_mut(self);
+                list.sort();
+                numbers.extend((0..list.len()).map(|position| list.primitive(position)));
+            });
+        }
+        numbers.par_sort_unstable();
+        let twice = numbers.windows(2).find(|pair| pair[0] == pair[1]);
+        twice.map_or(Ok(()), |pair| Err(pair[0]))
     }
 
     /// Gives back the memory that no record uses.

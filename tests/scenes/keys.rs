@@ -18,7 +18,7 @@ const LATTICE: &str = "<resources><object id=\"1\"><mesh><vertices><vertex x=\"0
      <vertex x=\"0\" y=\"0\" z=\"9\"/></vertices><b:beamlattice radius=\"1\" minlength=\"0\"><b:beams>\
      <b:beam v1=\"0\" v2=\"1\"/></b:beams></b:beamlattice></mesh></object></resources>\
      <build><item objectid=\"1\"/></build>";
-const FILES: [(&str, &str); 4] = [
+const FILES: [(&str, &str); 5] = [
     (
         "tree.csv",
         "startX,startY,startZ,endX,endY,endZ,axisX,axisY,axisZ,length,radius,diameter\n\
@@ -28,6 +28,10 @@ const FILES: [(&str, &str); 4] = [
         "placements.csv",
         "x,y,z,ax,ay,az,angle,s,qx,qy,qz,qw,sx,sy,sz\n\
          1,2,3,0,0,5,90,2,0,0,3,3,2,2,2\n4,5,6,1,0,0,180,-1,7,0,0,0,-1,-1,-1\n",
+    ),
+    (
+        "matrices.csv",
+        "xx,xy,xz,x,yx,yy,yz,y,zx,zy,zz,z\n0,-1,0,1,1,0,0.5,2,0,0,2,3\n1,0,0,0,0,1,0,0,0,0,-1,0\n",
     ),
     ("no_header.csv", "0;0;0;0;0;2,5;0,5\n"),
     (

@@ -8,5 +8,6 @@ mod nesting;
 mod real_data;
 mod sample_scenes;
 mod solids;
+mod stated_exactly;
 mod tessellate;
 mod tessellate_kinds;

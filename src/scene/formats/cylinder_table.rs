@@ -42,6 +42,7 @@ pub(in crate::scene) struct CylinderColumns {
     length: Option<Spanned<ColumnKey>>,
     radius: Option<Spanned<ColumnKey>>,
     diameter: Option<Spanned<ColumnKey>>,
+    primitive: Option<Spanned<ColumnKey>>,
 }
 
 impl SolidFormat for CylinderTableKeys {
@@ -61,7 +62,7 @@ impl SolidFile for CylinderTableKeys {
 
     fn count(&self, source: &Source, records: Records, solids: &mut ExpectedSolids) {
         let Keys(columns) = self.columns.get_ref();
-        let rows = table_rows(source, &self.file, &columns.p0);
+        let rows = table_rows(source, &self.file, Some(columns.p0.0[0].get_ref()));
         solids.add(SolidKind::Cylinder, rows, records);
     }
 
@@ -78,24 +79,44 @@ impl SolidFile for CylinderTableKeys {
         let mut table = context.tables.open(table, &columns.get_ref().0.all())?;
         let layout = Layout::new(source, &table, columns)?;
         table.note_unread(&layout.all());
-        let before = solids.numbers();
+        let mut is_empty = true;
         solids.solids.cylinders.reserve(table.most_rows());
         while let Some(row) = table.next_row(size_of::<CylinderRecord>())? {
-            match layout.cylinder(&row, look.caps) {
-                Ok(cylinder) => solids.push(cylinder, look.material),
-                Err(Fault::Degenerate { .. }) if degenerate == Degenerate::Skip => solids.skip(),
+            is_empty = false;
+            let numbered = match layout.primitive {
+                None => Ok(()),
+                Some(column) => solids.number_from(number(&row, column)?, columns.span()),
+            };
+            let added = match layout.cylinder(&row, look.caps) {
+                Ok(cylinder) => numbered.and_then(|()| solids.push(cylinder, look.material)),
+                Err(Fault::Degenerate { .. }) if degenerate == Degenerate::Skip => {
+                    numbered.and_then(|()| solids.skip())
+                }
                 Err(fault) => return Err(row.refused_with_help(fault, Some(SKIP_HELP))),
-            }
-            .map_err(|refusal| {
+            };
+            added.map_err(|refusal| {
                 refusal.in_row(source, &self.file, |message, help| {
                     row.error_with_help(None, message, help)
                 })
             })?;
         }
-        if solids.numbers() == before {
+        if is_empty {
             return Err(source.error(self.file.span(), "the table has a header but no rows"));
         }
         Ok(())
+    }
+}
+
+/// The primitive number in a row.
+fn number(row: &Row, column: Column) -> Result<u64, SceneError> {
+    let number = row.number(column).map_err(|fault| row.refused(fault))?;
+    match number >= 0.0 && number.fract() == 0.0 {
+        // A number beyond u64 becomes the greatest, which is refused.
+        true => Ok(number as u64),
+        false => {
+            let message = format!("primitive is {number}: it must be a whole number, 0 or more");
+            Err(row.error(Some(column), message))
+        }
     }
 }
 
@@ -104,7 +125,7 @@ impl CylinderColumns {
     fn all(&self) -> Vec<ColumnKey> {
         let threes = [Some(&self.p0), self.p1.as_ref(), self.axis.as_ref()];
         let threes = threes.into_iter().flatten().flat_map(|three| &three.0);
-        let ones = [&self.length, &self.radius, &self.diameter];
+        let ones = [&self.length, &self.radius, &self.diameter, &self.primitive];
         keys_of(threes.chain(ones.into_iter().flatten()))
     }
 }
@@ -116,6 +137,7 @@ struct Layout {
     radius: Column,
     /// What to multiply the radius column with: 1, or 1/2 for a diameter.
     factor: f64,
+    primitive: Option<Column>,
 }
 
 /// How a row states the second endpoint.
@@ -152,6 +174,11 @@ impl Layout {
             end,
             radius: table.column(radius)?,
             factor,
+            primitive: names
+                .primitive
+                .as_ref()
+                .map(|key| table.column(key))
+                .transpose()?,
         })
     }
 
@@ -166,6 +193,7 @@ impl Layout {
             }
         }
         all.push(self.radius);
+        all.extend(self.primitive);
         all
     }
 

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use glam::DVec3;
+use toml::Spanned;
 
 use super::{SceneSolid, SolidKeys, with_span};
 use crate::math::Orientation;
@@ -13,6 +14,7 @@ use crate::scene::settings::vector;
 use crate::scene::solid_keys::solid_table;
 use crate::scene::solid_lists::{SolidRecord, Stored};
 use crate::scene::source::Source;
+use crate::scene::values::{List, Number};
 use crate::solid::{AnySolid, Cuboid, CuboidError};
 
 solid_table! {
@@ -20,6 +22,7 @@ solid_table! {
     CuboidKeys {
         center: Option<Triple>,
         half_widths: Triple,
+        axes: Option<Spanned<List<List<Number, 3>, 3>>>,
     }
 }
 
@@ -44,7 +47,21 @@ impl SolidKeys for CuboidKeys {
 
     fn unmoved(&self, source: &Source) -> Result<AnySolid, SceneError> {
         let center = self.center.as_ref().map_or(DVec3::ZERO, vector);
-        let cuboid = Cuboid::new(center, vector(&self.half_widths), Orientation::IDENTITY);
+        let orientation = self.axes.as_ref().map(|axes| {
+            let [x, y, z] = axes
+                .get_ref()
+                .0
+                .map(|List(axis)| DVec3::from(axis.map(|number| number.0)));
+            Orientation::from_axes(x, y, z).ok_or_else(|| {
+                source.error_with_help(
+                    axes.span(),
+                    "the axes are not orthonormal and right-handed to within the roundings of f64",
+                    "rotate_x, rotate_y, rotate_z and rotate turn a cuboid by degrees",
+                )
+            })
+        });
+        let orientation = orientation.transpose()?.unwrap_or_default();
+        let cuboid = Cuboid::new(center, vector(&self.half_widths), orientation);
         with_span(source, cuboid, |error| match (error, &self.center) {
             (CuboidError::Center { .. }, Some(center)) => center.span(),
             _ => self.half_widths.span(),
