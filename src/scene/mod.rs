@@ -13,6 +13,8 @@
 //! `solid_lists` the other kinds; `aimed_camera` aims the camera. The result is a [`Scene`] that needs no
 //! further checks and knows nothing of files.
 //!
+//! [`save`] writes a scene as such files.
+//!
 //! `number_table` and `hit_table` read what else comes as tables: rays, points, and the
 //! hits of another program.
 
@@ -38,6 +40,7 @@ mod origins;
 mod placing;
 mod pose;
 mod regular_file;
+mod save;
 mod scatter;
 mod scene_file;
 mod scene_stats;
@@ -69,6 +72,7 @@ pub use limits::*;
 pub use load::load;
 pub use number_table::{NumberColumns, NumberRow, NumberTable};
 pub use origins::{Origin, Origins};
+pub use save::{SaveError, save};
 pub use scene_file::SceneFile;
 pub use scene_stats::SceneStats;
 pub use solid_lists::{CompositionRecord, Listed, SolidList, SolidRecord, Solids, Stored};

@@ -26,6 +26,13 @@ const DEFAULT_SKY: Sky = Sky {
     strength: 1.0,
 };
 
+/// The names of the integrators.
+pub(super) const INTEGRATORS: [(&str, Integrator); 3] = [
+    ("sun", Integrator::Sun),
+    ("normal", Integrator::Normal),
+    ("ao", Integrator::Ao),
+];
+
 /// Everything that shines.
 pub(super) struct Lights {
     pub sun: Option<Sun>,
@@ -105,7 +112,7 @@ fn unit_or_same(vector: DVec3) -> Option<DVec3> {
 /// Whether the square of a vector's length is within 2^-49 of 1, 16 u. A direction from angles
 /// has components of 3 roundings, one from [`unit`] a length of 3 roundings, and the square has
 /// two more: 8 u.
-fn is_unit(vector: DVec3) -> bool {
+pub(super) fn is_unit(vector: DVec3) -> bool {
     (vector.length_squared() - 1.0).abs() <= power_of_two(-49)
 }
 
@@ -128,11 +135,6 @@ pub(super) fn film(source: &Source, keys: &FilmKeys) -> Result<Film, SceneError>
 
 /// What `render` computes.
 pub(super) fn render(source: &Source, keys: &RenderKeys) -> Result<RenderSettings, SceneError> {
-    const INTEGRATORS: [(&str, Integrator); 3] = [
-        ("sun", Integrator::Sun),
-        ("normal", Integrator::Normal),
-        ("ao", Integrator::Ao),
-    ];
     Ok(RenderSettings {
         integrator: match &keys.integrator {
             Some(word) => source.choose("integrator", word, &INTEGRATORS)?,

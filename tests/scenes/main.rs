@@ -7,6 +7,7 @@ mod lattices;
 mod nesting;
 mod real_data;
 mod sample_scenes;
+mod save;
 mod solids;
 mod stated_exactly;
 mod tessellate;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use toml::Spanned;
 
 use super::{SceneSolid, SolidKeys, with_span};
@@ -10,6 +10,7 @@ use crate::math::Orientation;
 use crate::scene::document::Triple;
 use crate::scene::error::SceneError;
 use crate::scene::pose::RigidMotion;
+use crate::scene::save::Entry;
 use crate::scene::settings::vector;
 use crate::scene::solid_keys::solid_table;
 use crate::scene::solid_lists::{SolidRecord, Stored};
@@ -37,6 +38,16 @@ impl SceneSolid for Cuboid {
     fn moved(&self, motion: &RigidMotion) -> Result<Self, CuboidError> {
         let orientation = motion.orientation(self.orientation());
         Self::new(motion.point(self.center()), self.half_widths(), orientation)
+    }
+
+    fn state(&self, entry: &mut Entry) {
+        entry.vector("center", self.center());
+        entry.vector("half_widths", self.half_widths());
+        let axes = self.orientation().world_from_object();
+        let bits = |axes: DMat3| axes.to_cols_array().map(f64::to_bits);
+        if bits(axes) != bits(DMat3::IDENTITY) {
+            entry.rows("axes", axes.to_cols_array_2d());
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use crate::scene::cylinder_list::CylinderList;
 use crate::scene::document::Triple;
 use crate::scene::error::SceneError;
 use crate::scene::pose::RigidMotion;
+use crate::scene::save::Entry;
 use crate::scene::settings::vector;
 use crate::scene::solid_keys::solid_table;
 use crate::scene::solid_lists::Stored;
@@ -37,6 +38,13 @@ impl SceneSolid for Cylinder {
     fn moved(&self, motion: &RigidMotion) -> Result<Self, CylinderError> {
         let [p0, p1] = [self.p0(), self.p1()].map(|end| motion.point(end));
         Self::new(p0, p1, self.radius(), self.caps())
+    }
+
+    fn state(&self, entry: &mut Entry) {
+        entry.vector("p0", self.p0());
+        entry.vector("p1", self.p1());
+        entry.number("radius", self.radius());
+        entry.caps(self.caps());
     }
 }
 

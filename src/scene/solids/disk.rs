@@ -8,6 +8,7 @@ use super::{SceneSolid, SolidKeys, with_span};
 use crate::scene::document::Triple;
 use crate::scene::error::SceneError;
 use crate::scene::pose::RigidMotion;
+use crate::scene::save::Entry;
 use crate::scene::settings::vector;
 use crate::scene::solid_keys::solid_table;
 use crate::scene::solid_lists::{SolidRecord, Stored};
@@ -35,6 +36,12 @@ impl SceneSolid for Disk {
     fn moved(&self, motion: &RigidMotion) -> Result<Self, DiskError> {
         let normal = motion.direction(self.normal());
         Self::new(motion.point(self.center()), normal, self.radius())
+    }
+
+    fn state(&self, entry: &mut Entry) {
+        entry.vector("center", self.center());
+        entry.vector("normal", self.normal());
+        entry.number("radius", self.radius());
     }
 }
 

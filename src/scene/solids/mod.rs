@@ -16,6 +16,7 @@ use toml::Spanned;
 
 use super::error::SceneError;
 use super::pose::{Motion, RigidMotion};
+use super::save::Entry;
 use super::solid_keys::SolidTable;
 use super::source::Source;
 use crate::solid::{AnySolid, Caps, ConvexSolid};
@@ -30,6 +31,9 @@ pub(super) trait SceneSolid: ConvexSolid + Into<AnySolid> {
 
     /// The solid where a motion takes it.
     fn moved(&self, motion: &RigidMotion) -> Result<Self, Self::Error>;
+
+    /// States the solid without a pose.
+    fn state(&self, entry: &mut Entry);
 }
 
 /// The table of one kind of solid.
@@ -53,14 +57,16 @@ pub(super) trait SolidKeys: SolidTable {
     }
 }
 
+/// The names of closed ends.
+pub(super) const CAPS: [(&str, Caps); 4] = [
+    ("none", Caps::None),
+    ("p0", Caps::P0),
+    ("p1", Caps::P1),
+    ("both", Caps::Both),
+];
+
 /// Which ends are closed.
 pub(super) fn caps(source: &Source, word: Option<&Spanned<String>>) -> Result<Caps, SceneError> {
-    const CAPS: [(&str, Caps); 4] = [
-        ("none", Caps::None),
-        ("p0", Caps::P0),
-        ("p1", Caps::P1),
-        ("both", Caps::Both),
-    ];
     word.map_or(Ok(Caps::default()), |word| {
         source.choose("caps", word, &CAPS)
     })

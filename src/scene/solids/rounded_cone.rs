@@ -9,6 +9,7 @@ use super::{SceneSolid, SolidKeys, with_span};
 use crate::scene::document::Triple;
 use crate::scene::error::SceneError;
 use crate::scene::pose::RigidMotion;
+use crate::scene::save::Entry;
 use crate::scene::settings::vector;
 use crate::scene::solid_keys::solid_table;
 use crate::scene::solid_lists::{SolidRecord, Stored};
@@ -37,6 +38,13 @@ impl SceneSolid for RoundedCone {
     fn moved(&self, motion: &RigidMotion) -> Result<Self, RoundedConeError> {
         let [p0, p1] = [self.p0(), self.p1()].map(|end| motion.point(end));
         Self::new(p0, p1, self.radius0(), self.radius1())
+    }
+
+    fn state(&self, entry: &mut Entry) {
+        entry.vector("p0", self.p0());
+        entry.vector("p1", self.p1());
+        entry.number("radius0", self.radius0());
+        entry.number("radius1", self.radius1());
     }
 }
 

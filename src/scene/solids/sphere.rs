@@ -8,6 +8,7 @@ use super::{SceneSolid, SolidKeys, with_span};
 use crate::scene::document::Triple;
 use crate::scene::error::SceneError;
 use crate::scene::pose::RigidMotion;
+use crate::scene::save::Entry;
 use crate::scene::settings::vector;
 use crate::scene::solid_keys::solid_table;
 use crate::scene::solid_lists::{SolidRecord, Stored};
@@ -33,6 +34,11 @@ impl SceneSolid for Sphere {
 
     fn moved(&self, motion: &RigidMotion) -> Result<Self, SphereError> {
         Self::new(motion.point(self.center()), self.radius())
+    }
+
+    fn state(&self, entry: &mut Entry) {
+        entry.vector("center", self.center());
+        entry.number("radius", self.radius());
     }
 }
 

@@ -1,0 +1,92 @@
+//! What a scene file states of the picture: camera, film, lights and materials.
+
+use super::text::Text;
+use super::{SaveError, check_names};
+use crate::scene::defaults;
+use crate::scene::description::{Camera, Frame, Projection, Scene};
+use crate::scene::settings::{INTEGRATORS, is_unit};
+
+pub(super) fn state(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
+    text.top().vector("background", scene.background);
+    camera(text, &scene.camera);
+
+    let mut film = text.table("[film]");
+    film.whole("width", scene.film.width);
+    film.whole("height", scene.film.height);
+
+    let mut render = text.table("[render]");
+    for (name, integrator) in INTEGRATORS {
+        if integrator == scene.render.integrator {
+            render.text("integrator", name);
+        }
+    }
+    render.whole("spp", scene.render.spp);
+
+    lights(text, scene)?;
+    materials(text, scene)?;
+    text.check()
+}
+
+fn camera(text: &mut Text, camera: &Camera) {
+    let mut entry = text.table("[camera]");
+    match camera.projection {
+        Projection::Perspective { fov_degrees } => {
+            entry.text("type", "perspective");
+            entry.number("fov_degrees", fov_degrees);
+        }
+        Projection::Orthographic { height } => {
+            entry.text("type", "orthographic");
+            if let Some(height) = height {
+                entry.number("height", height);
+            }
+        }
+    }
+    match camera.frame {
+        Frame::Auto => entry.text("frame", "auto"),
+        Frame::LookAt {
+            position,
+            look_at,
+            up,
+        } => {
+            entry.vector("position", position);
+            entry.vector("look_at", look_at);
+            entry.vector("up", up);
+        }
+    }
+}
+
+fn lights(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
+    if let Some(sun) = scene.sun {
+        if !is_unit(sun.direction) {
+            return Err(SaveError::SunDirection {
+                length: sun.direction.length(),
+            });
+        }
+        let mut entry = text.table("[sun]");
+        entry.vector("direction", sun.direction);
+        entry.vector("color", sun.color);
+        entry.number("strength", sun.strength);
+    }
+    if let Some(sky) = scene.sky {
+        let mut entry = text.table("[sky]");
+        entry.vector("color", sky.color);
+        entry.number("strength", sky.strength);
+    }
+    Ok(())
+}
+
+fn materials(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
+    let [first, named @ ..] = scene.materials.as_slice() else {
+        return Err(SaveError::DefaultMaterial);
+    };
+    if *first != defaults::material() {
+        return Err(SaveError::DefaultMaterial);
+    }
+    check_names("material", named.iter().map(|one| one.name.as_str()))?;
+    for material in named {
+        let mut entry = text.table("[[material]]");
+        entry.text("name", &material.name);
+        entry.vector("color", material.color);
+    }
+    Ok(())
+}

@@ -1,0 +1,77 @@
+//! What makes two scenes the same.
+
+use std::borrow::Borrow;
+use std::fmt::Debug;
+
+use cyltrace::scene::{Prototype, Records, Scene, SolidList};
+
+/// Compares all that a scene file states. The text of a float that `Debug` writes is another
+/// for every f64, zeros of both signs included.
+#[track_caller]
+pub fn assert_same(one: &Scene, other: &Scene, name: &str) {
+    same(&one.materials, &other.materials, name);
+    same(&one.camera, &other.camera, name);
+    same(&one.film, &other.film, name);
+    same(&one.render, &other.render, name);
+    same(&one.sun, &other.sun, name);
+    same(&one.sky, &other.sky, name);
+    same(&one.background, &other.background, name);
+    assert_eq!(one.records(), other.records(), "{name}");
+    assert_eq!(one.prototypes.len(), other.prototypes.len(), "{name}");
+    for (one, other) in one.prototypes.iter().zip(&other.prototypes) {
+        same_prototype(one, other, &format!("{name}, prototype {:?}", one.name));
+    }
+}
+
+#[track_caller]
+fn same_prototype(one: &Prototype, other: &Prototype, name: &str) {
+    assert_eq!(one.name, other.name, "{name}");
+    let (solids, copies) = (&one.solids, &other.solids);
+    same_list(&solids.cylinders, &copies.cylinders, name);
+    same_list(&solids.spheres, &copies.spheres, name);
+    same_list(&solids.cuboids, &copies.cuboids, name);
+    same_list(&solids.cones, &copies.cones, name);
+    same_list(&solids.rounded_cones, &copies.rounded_cones, name);
+    same_list(&solids.disks, &copies.disks, name);
+    same_list(&solids.compositions, &copies.compositions, name);
+    if solids.cylinders.records() == Records::F32 && !solids.cylinders.is_empty() {
+        assert_eq!(copies.cylinders.records(), Records::F32, "{name}");
+        assert_eq!(copies.cylinders.rounding(), 0.0, "{name}");
+    }
+    assert_eq!(one.placements.len(), other.placements.len(), "{name}");
+    for (index, (one, other)) in one.placements.iter().zip(&other.placements).enumerate() {
+        let bits = |affine: glam::DAffine3| affine.to_cols_array().map(f64::to_bits);
+        assert_eq!(one.of, other.of, "{name}, placement {index}");
+        assert_eq!(
+            bits(one.parent_from_child),
+            bits(other.parent_from_child),
+            "{name}, placement {index}"
+        );
+    }
+}
+
+/// Compares lists in the order of their numbers.
+#[track_caller]
+fn same_list<L: SolidList<Solid: Debug>>(one: &L, other: &L, name: &str) {
+    assert_eq!(one.len(), other.len(), "{name}");
+    let [numbered, copies] = [one, other].map(|list| {
+        let mut positions: Vec<usize> = (0..list.len()).collect();
+        positions.sort_by_key(|&position| list.primitive(position));
+        positions
+    });
+    for (position, copy) in numbered.into_iter().zip(copies) {
+        let place = format!("{name}, solid {}", one.primitive(position));
+        same(&one.primitive(position), &other.primitive(copy), &place);
+        same(&one.material(position), &other.material(copy), &place);
+        same(
+            one.solid(position).borrow(),
+            other.solid(copy).borrow(),
+            &place,
+        );
+    }
+}
+
+#[track_caller]
+fn same(one: &impl Debug, other: &impl Debug, name: &str) {
+    assert_eq!(format!("{one:?}"), format!("{other:?}"), "{name}");
+}
