@@ -46,7 +46,7 @@ fn lines(caps: Caps) -> Vec<Within> {
         within(disk.into(), in_plane),
     ];
     let backwards = lines.iter().map(|line| Within {
-        solid: line.solid.clone(),
+        solid: line.solid,
         origin: line.origin + line.direction * 32.0,
         direction: -line.direction,
     });
@@ -82,7 +82,9 @@ fn rays_within_a_surface_hit_where_the_oracle_says_wherever_they_start() {
                     ..Ray::new(origin, direction)
                 };
                 let truth = hits_of_any(&solid, &ray);
-                let first = truth.first().map(|hit| (hit.t_f64(), hit.part, hit.crossing));
+                let first = truth
+                    .first()
+                    .map(|hit| (hit.t_f64(), hit.part, hit.crossing));
                 with_solid!(&solid, solid => {
                     let from_anchor = origin - solid.anchor();
                     let rounded = solid.first(from_anchor, direction, 0.0, t_min, f64::INFINITY);
