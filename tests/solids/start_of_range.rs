@@ -82,7 +82,9 @@ fn rays_within_a_surface_hit_where_the_oracle_says_wherever_they_start() {
                     ..Ray::new(origin, direction)
                 };
                 let truth = hits_of_any(&solid, &ray);
-                let first = truth.first().map(|hit| (hit.t_f64(), hit.part, hit.crossing));
+                let first = truth
+                    .first()
+                    .map(|hit| (hit.t_f64(), hit.part, hit.crossing));
                 with_solid!(&solid, solid => {
                     let from_anchor = origin - solid.anchor();
                     let rounded = solid.first(from_anchor, direction, 0.0, t_min, f64::INFINITY);
