@@ -65,7 +65,7 @@ pub enum MeshReadError {
         path: PathBuf,
     },
     /// The file cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}", path.display())]
     Read {
         /// The file.
         path: PathBuf,

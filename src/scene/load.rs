@@ -307,7 +307,11 @@ impl Loader<'_> {
     }
 
     fn scatter(&self, keys: &ScatterKeys) -> Result<Scatter, SceneError> {
-        const PATTERNS: [(&str, Pattern); 2] = [("grid", Pattern::Grid), ("disc", Pattern::Disk)];
+        const PATTERNS: [(&str, Pattern); 3] = [
+            ("grid", Pattern::Grid),
+            ("disk", Pattern::Disk),
+            ("disc", Pattern::Disk),
+        ];
         const YAWS: [(&str, bool); 2] = [("none", false), ("random", true)];
         let wrong = |place, message: String| Err(self.source.error(place, message));
 

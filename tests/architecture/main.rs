@@ -1,10 +1,11 @@
 //! The rules of the repository that the compiler does not check: who may use
-//! whom, where `unsafe` and some standard_output may stand, how long a file is.
+//! whom, where `unsafe` and standard output are allowed, how long a file is.
 //!
 //! Every rule is a function from a file's name and text to complaints. It is
 //! run over the whole repository, and over a planted sample that breaks it.
 
 mod circles;
+mod documents;
 mod layers;
 mod tokens;
 

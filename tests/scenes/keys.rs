@@ -388,6 +388,19 @@ fn placements_count_instances_then_table_rows_then_scattered_ones() {
 }
 
 #[test]
+fn scatter_in_a_disk_has_two_spellings() {
+    let placements = |pattern: &str| {
+        let scene = scene(&format!(
+            "{TREE}[[scatter]]\nof = \"tree\"\npattern = \"{pattern}\"\ncount = 9\nspacing = 2\n"
+        ));
+        placed(&scene)
+    };
+    let [disk, disc, grid] = ["disk", "disc", "grid"].map(placements);
+    assert_eq!(disk, disc);
+    assert_ne!(disk, grid);
+}
+
+#[test]
 fn nesting_of_64_levels_is_accepted() {
     let mut text = TREE.to_owned();
     let mut inner = "tree".to_owned();

@@ -52,7 +52,7 @@ impl Environment {
     #[must_use]
     pub fn sentence(&self) -> String {
         format!(
-            "{} cases a family on f32 inputs, seed {}, {} rounds. {}",
+            "{} cases per family with f32 inputs, seed {}, {} rounds. {}",
             self.cases,
             self.seed,
             self.rounds,

@@ -59,7 +59,7 @@ pub fn figure(accuracy: &Accuracy) -> String {
     let mark = |row: &Row| mark(accuracy, row);
     let series = GROUPS.map(|group| group.series(accuracy.rows.iter(), mark));
     Figure {
-        x_title: String::from("nanoseconds a ray, nominal family"),
+        x_title: String::from("nanoseconds per ray, nominal family"),
         y_title: String::from("position error in radii, 99th percentile"),
         second_title: String::from("hollow: its worst family"),
         series: series.into(),
@@ -182,7 +182,7 @@ fn families(page: &mut Page, accuracy: &Accuracy, cell: impl Fn(&super::truth::E
 pub const SUMMARY_HEADINGS: [&str; 9] = [
     "contender",
     "times",
-    "ns a ray",
+    "ns per ray",
     "± ns",
     "ratio",
     "p99 error / r",

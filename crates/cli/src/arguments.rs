@@ -30,7 +30,7 @@ use super::limit::MemoryArguments;
 use super::memory;
 use super::output_sink::is_standard_stream;
 
-/// Traces analytic cylinders and like solids through Embree: exact hits, no meshes.
+/// Trace rays against cylinders and other analytic solids, and validate the hits
 #[derive(Debug, Parser)]
 #[command(
     name = "cyltrace",
@@ -61,19 +61,19 @@ pub enum Command {
 /// The options of every command that reads, traces or measures.
 #[derive(Args, Debug)]
 pub struct Common {
-    /// Write the run's figures as JSON to FILE; `-` writes them to standard output, in
-    /// place of the text
+    /// Write the results and times of the run as JSON to FILE; `-` writes them to standard
+    /// output, in place of the text
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
     /// Print neither text nor progress
     #[arg(long, short)]
     pub quiet: bool,
-    /// Trace on N threads, 1 to 1024; the answers do not depend on it [default: all of
-    /// the machine]
+    /// Use N threads, 1 to 1024; results do not depend on the number [default: all of the
+    /// machine]
     #[arg(long, value_name = "N", value_parser = count_up_to::<NonZeroUsize>(GREATEST_THREADS as u64), allow_negative_numbers = true)]
     pub threads: Option<NonZeroUsize>,
     /// Restrict Embree to an instruction set: `sse2`, `sse4.2`, `avx`, `avx2` or `avx512`;
-    /// the answers do not depend on it [default: the best of the machine]
+    /// results do not depend on it [default: the best of the machine]
     #[arg(long, value_name = "NAME")]
     pub max_isa: Option<MaxIsa>,
 }
@@ -155,9 +155,9 @@ pub struct TraceArguments {
 /// How hits are decided.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct DecisionArguments {
-    /// Decide hits, misses and parts of single solids as exact arithmetic does for any f64
-    /// ray, not only if f32 represents its numbers: open cylinders that share their ends
-    /// leave no seam. Tracing takes longer
+    /// Decide hit, miss and part by exact arithmetic for every f64 ray. Without this option,
+    /// they are certain only for numbers that f32 represents. Set operations are not
+    /// affected. Rays take up to 1.8 times as long
     #[arg(long)]
     pub exact: bool,
 }
@@ -203,8 +203,15 @@ impl FormatArguments {
     }
 }
 
+/// `--max-isa` of a command that only estimates what Embree takes.
+const INFO_MAX_ISA: &str = "Estimate the memory of Embree's trees for an instruction set: `sse2`, `sse4.2`, `avx`, `avx2` or `avx512` [default: the best of the machine]";
+
+/// `--max-isa` of a command that does not use Embree.
+const TESSELLATE_MAX_ISA: &str = "Accepted as by other commands, without effect";
+
 /// Print what a scene contains, without tracing it
 #[derive(Args, Debug)]
+#[command(mut_arg("max_isa", |arg| arg.help(INFO_MAX_ISA)))]
 pub struct InfoArguments {
     /// The scene file
     #[arg(value_name = "SCENE")]
@@ -217,6 +224,7 @@ pub struct InfoArguments {
 
 /// Write a scene as a triangle mesh with a proven deviation
 #[derive(Args, Debug)]
+#[command(mut_arg("max_isa", |arg| arg.help(TESSELLATE_MAX_ISA)))]
 pub struct TessellateArguments {
     /// The scene file
     #[arg(value_name = "SCENE")]
@@ -255,12 +263,10 @@ pub struct TessellateArguments {
 /// Exits with 1 if the library's own solvers break a promise.
 #[derive(Args, Debug)]
 pub struct StressArguments {
-    /// Run this family only, such as `rim`, `cone-rim`, `cuboid-edge` or
-    /// `composed-stacks`; may be repeated [default: all 90]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help = family_help())]
     pub family: Vec<StressFamily>,
-    /// Run N cases of each family and kind of inputs, 1 to 10^7; set operations get N up to
-    /// 1000, and the greater of 1000 and N / 100 beyond
+    /// Run N cases of each family and kind of inputs, 1 to 10^7; for set operations, run N up
+    /// to 1000, and beyond that the greater of 1000 and N / 100
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..=GREATEST_CASES))]
     pub cases: u64,
     /// Seed the cases
@@ -286,8 +292,9 @@ pub struct StressArguments {
     /// `cone-rim:f32:0:17`
     #[arg(long, value_name = "BITS", conflicts_with = "map")]
     pub replay: Option<String>,
-    /// Draw a map of the formulations that are right on neighbouring floats around the
-    /// hardest case of FAMILY
+    /// Draw which formulations are right on neighboring floats around the hardest case of
+    /// FAMILY, to `ulp_map_FAMILY_INPUTS.png` in the folder of `--report` or else the
+    /// current one
     #[arg(long, value_name = "FAMILY")]
     pub map: Option<Family>,
     #[command(flatten)]
@@ -339,6 +346,14 @@ pub fn integrator_name(integrator: Integrator) -> &'static str {
         Integrator::Ao => "ao",
         Integrator::Normal => "normal",
     }
+}
+
+/// The help of `--family`.
+fn family_help() -> String {
+    format!(
+        "Run this family only, such as `rim`, `cone-rim`, `cuboid-edge` or `composed-stacks`; may be repeated [default: all {}]",
+        StressFamily::all().len()
+    )
 }
 
 /// Accepts the names of the solvers.

@@ -77,16 +77,18 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
         return Ok(());
     }
     let mut text = format!("{}\n", arguments.scene.display());
-    text += &format!(
-        "prototypes: {}, of which {} are placed\n",
-        scene_stats.prototypes, scene_stats.prototypes_used
-    );
-    text += &format!(
-        "placements: {} stored, {} instances, {} levels deep\n",
-        scene_stats.placements,
-        text::count(scene_stats.instances),
-        scene_stats.depth
-    );
+    if scene_stats.prototypes > 0 {
+        text += &format!(
+            "prototypes: {}, {} of them placed\n",
+            scene_stats.prototypes, scene_stats.prototypes_used
+        );
+        text += &format!(
+            "placements: {} stored, {} in total, nesting depth {}\n",
+            scene_stats.placements,
+            text::count(scene_stats.instances),
+            scene_stats.depth
+        );
+    }
     for (kind, unique) in scene_stats.unique.iter() {
         text += &format!(
             "{}: {unique} unique, {} instanced\n",

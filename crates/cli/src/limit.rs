@@ -25,7 +25,7 @@ pub struct MemoryArguments {
     /// [default: the memory that the system has available]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<u64>,
-    /// Make each Embree primitive of one solid or of a block of eight solids
+    /// Store one solid, or a block of up to eight, per Embree primitive
     #[arg(long, value_name = "NAME", value_enum, default_value_t = LayoutName::Auto)]
     pub layout: LayoutName,
 }
@@ -37,7 +37,7 @@ pub enum LayoutName {
     Auto,
     /// one solid per primitive
     Single,
-    /// eight solids of a kind near each other per primitive
+    /// up to eight neighboring solids of a kind per primitive
     Block,
 }
 

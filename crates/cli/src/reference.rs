@@ -48,12 +48,9 @@ fn table(name: &str) -> String {
                 let known = command.find_subcommand(word);
                 command = known.unwrap_or_else(|| panic!("there is no command {name}"));
             }
+            // An option of every command has a row here only if its help is another one.
             let common = Common::augment_args(Command::new("every"));
-            let is_own = |arg: &&Arg| {
-                common
-                    .get_arguments()
-                    .all(|one| one.get_id() != arg.get_id())
-            };
+            let is_own = |arg: &&Arg| common.get_arguments().all(|one| row(one) != row(arg));
             rows_of(
                 ["option", "meaning"],
                 command.get_arguments().filter(is_own).map(row),

@@ -138,7 +138,7 @@ fn report(
         return Ok(());
     }
     let mut text = format!(
-        "{}: {}x{}, {} samples a pixel, {}\n{}",
+        "{}: {}x{}, {} samples per pixel, {}\n{}",
         arguments.output.display(),
         settings.film.width,
         settings.film.height,
@@ -159,7 +159,7 @@ fn report(
         times.load, times.build, times.render
     );
     text += &format!(
-        "rays: {}, {:.2} million a second\n",
+        "rays: {}, {:.2} million per second\n",
         rays.total(),
         rays_per_s / 1e6
     );

@@ -352,7 +352,7 @@ impl Traced {
         text += &text::skipped_rows(skipped_rows);
         text += &text::notes(notes);
         text += &format!(
-            "time: check {:.2} s, load {:.2} s, build {:.2} s, trace {:.2} s on {} threads ({:.2} million {} a second, tables included)\n",
+            "time: check {:.2} s, load {:.2} s, build {:.2} s, trace {:.2} s on {} threads ({:.2} million {} per second, tables included)\n",
             self.check,
             self.load,
             self.build,

@@ -19,7 +19,7 @@ impl Film {
         assert_eq!(
             pixels.len() as u64,
             u64::from(width) * u64::from(height),
-            "a film of {width} x {height} holds one colour a pixel"
+            "a film of {width} x {height} has one color per pixel"
         );
         Self {
             width,

@@ -196,7 +196,7 @@ pub fn page(found: &Scale, environment: &str) -> String {
 }
 
 /// How to read the page.
-const READING: &str = "Cylinders are random sticks in a cube, shorter and thinner the more there are, so that a ray meets as many of them. Placements are of one prototype of 1000 sticks, turned at random, one to a cell of a cube. Exponents are slopes of the line of least squares through the logarithms, over all sizes. Rays are those of a camera that sees the whole scene, and random ones from within its box. Memory is the records' and Embree's; the peak is the whole program's, the description included, while the scene was made, built and traced.";
+const READING: &str = "Cylinders are random sticks in a cube, shorter and thinner the more there are, so that a ray hits the same number of them. Placements are of one prototype of 1000 sticks, turned at random, one to a cell of a cube. Exponents are slopes of the line of least squares through the logarithms, over all sizes. Rays are those of a camera that sees the whole scene, and random ones from within its box. Memory is the records' and Embree's; the peak is the whole program's, the description included, while the scene was made, built and traced.";
 
 #[cfg(test)]
 mod tests {

@@ -73,7 +73,7 @@ const MEASURED: &str = "measured, 20 families of 10^6";
 const CERTIFIED: &str = "certified by construction";
 const EXACT_SIGNS: &str = "signs decided exactly, section 8";
 const STATED: &str = "signs decided exactly from the stated numbers, section 8";
-const NEIGHBOURHOOD: &str = "neighbourhoods classified exactly";
+const NEIGHBOURHOOD: &str = "neighborhoods classified exactly";
 const SPAWN: &str = "derived, section 5";
 
 const fn promise(
@@ -219,7 +219,7 @@ impl fmt::Display for Claim {
             Self::EveryF64Ulps(most) => write!(f, "every t within {most} f64 ulps"),
             Self::WithinBound => f.write_str("t within (4) to (6) where hit and part are promised"),
             Self::Finite => f.write_str("every answer finite"),
-            Self::NoSelfHit => f.write_str("no spawned ray meets where it left"),
+            Self::NoSelfHit => f.write_str("no spawned ray hits the surface at its start"),
         }
     }
 }

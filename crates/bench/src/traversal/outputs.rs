@@ -61,7 +61,7 @@ pub fn figures(found: &Traversal) -> Vec<Shown> {
                     })
                 }
             };
-            let x_title = "nanoseconds a ray, one traversal, end to end";
+            let x_title = "nanoseconds per ray, one traversal, end to end";
             let point = |one: &Figures| Some((one.ns.median, error(one)?));
             let svg = figure(found, scene, rays, [x_title, y_title], point);
             shown.extend(svg.map(|svg| Shown {
@@ -189,7 +189,7 @@ pub const SUMMARY_HEADINGS: [&str; 11] = [
     "rays",
     "representation",
     "threads",
-    "ns a ray",
+    "ns per ray",
     "Mrays/s",
     "times ours",
     "wrong %",
@@ -269,9 +269,9 @@ pub fn page(found: &Traversal, environment: &str) -> String {
 
 /// How to read the page.
 const READING: [&str; 3] = [
-    "Above 1 this library is faster, each side in its fastest mode. Rivals are timed one by one in turns with this library on the same rays, in the order in which the rays were drawn and in the order in which this library's batches trace them (sorting not counted), and the better order counts; a ratio is the median over neighbouring measurements of some milliseconds, averaged by time over all rays; spreads are median absolute deviations, as if all pieces were off together. Rows with several threads share the rays out; figures are of the first number of threads.",
+    "Above 1 this library is faster, each side in its fastest mode. Rivals are timed one by one in turns with this library on the same rays, in the order in which the rays were drawn and in the order in which this library's batches trace them (sorting not counted), and the better order counts; a ratio is the median over neighboring measurements of some milliseconds, averaged by time over all rays; spreads are median absolute deviations, as if all pieces were off together. Rows with several threads share the rays out; figures are of the first number of threads.",
     "Coherent rays are the camera's, in tiles of 4 by 4 pixels; shadow rays go from their hits to the sun and stop at anything; incoherent ones start anywhere in the box, in any direction. All are f32 numbers, so that everybody has the same ray. An exact oracle says of a sample of them what is hit first, among candidates found by brute force.",
-    "Wrong is a hit for a miss, a miss for a hit, or another solid than the first. The position error is along the ray, in radii of the solid that is hit (the greater one where it tapers, the least half width of a cuboid), over the rays with the right solid. Bytes are records and all that Embree holds, for each solid that is stored: those of a placed prototype count once, placements come on top.",
+    "Wrong is a hit for a miss, a miss for a hit, or another solid than the first. The position error is along the ray, in radii of the solid that is hit (the greater one where it tapers, the least half width of a cuboid), over the rays with the right solid. Bytes are the records and all memory of Embree, per solid that is stored: those of a placed prototype count once, placements come on top.",
 ];
 
 #[cfg(test)]

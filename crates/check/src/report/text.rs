@@ -153,7 +153,7 @@ pub fn verdict(outcome: &Outcome) -> String {
     }
     let mut rows = outcome.rows.iter();
     let Some((row, shortfall)) = rows.find_map(|row| Some((row, row.shortfall()?))) else {
-        return String::from("holds: no answer is wrong");
+        return String::from("passes: no answer is wrong");
     };
     let Row {
         rays,

@@ -10,11 +10,15 @@ use super::numbers::{parse_length, parse_seed, parse_segments};
 use super::{Common, DecisionArguments, FormatArguments};
 use crate::memory;
 
+/// `--columns`, which here concerns rays only.
+const COLUMNS: &str = "Read a table of rays without a header: the numbers of its columns from 0, in the order `ox,oy,oz,dx,dy,dz,t_min,t_max` (six or eight numbers)";
+
 /// Validate hits against meshes that Embree traces, or against exact results
 ///
 /// Exits with 1 if an answer is wrong, or if the meshes leave more than half of a class of
 /// rays without a bound.
 #[derive(Args, Debug)]
+#[command(mut_arg("columns", |arg| arg.help(COLUMNS)))]
 pub struct CheckArguments {
     /// The scene file
     #[arg(value_name = "SCENE")]
@@ -23,8 +27,9 @@ pub struct CheckArguments {
     /// same rays
     #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "16,64", value_parser = parse_segments, allow_negative_numbers = true)]
     pub segments: Vec<u32>,
-    /// Trace N rays of each class, 1 to 10^9; for `--hits` and `--mesh` also the rays of a
-    /// table as `trace` reads it
+    /// Trace N random rays of each class, 1 to 10^9, or N in all with `--mesh`. `--hits`
+    /// requires a table of rays in place of N, in the format of `trace`; `--mesh` also
+    /// accepts one
     #[arg(long, value_name = "N|FILE", default_value = "100000", value_parser = parse_rays)]
     pub rays: Rays,
     /// Validate the hits of another program for `--rays FILE`: a table with one row per ray
@@ -59,8 +64,9 @@ pub struct CheckArguments {
     /// rays
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
-    /// Check one ray again and print every detail: BITS as a run printed them, or
-    /// `CLASS:INDEX`
+    /// Check one ray again and print its answer, bounds and exact hit. BITS is the word that
+    /// a run printed beside a violation; `CLASS:INDEX` is ray INDEX of a class, with the
+    /// same `--seed`, `--segments` and `--max-memory`
     #[arg(long, value_name = "BITS", conflicts_with_all = ["hits", "mesh", "report"])]
     pub replay: Option<Replay>,
     #[command(flatten)]

@@ -80,13 +80,12 @@ impl ExternalInput {
             );
         }
         if hits.len() != rays.len() {
-            let more = if hits.len() > rays.len() {
-                "more than "
-            } else {
-                ""
+            let more = match hits.len() > rays.len() {
+                true => "more than ",
+                false => "",
             };
             bail!(
-                "{}: there are {more}{} rows for {} rays; it must have one row a ray, in order",
+                "{}: the table has {more}{} rows for {} rays; it needs one row per ray, in order",
                 path.display(),
                 hits.len().min(rays.len()),
                 rays.len()

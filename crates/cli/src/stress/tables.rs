@@ -31,7 +31,7 @@ pub fn all(
         let of_inputs = || cells.iter().filter(move |cell| cell.inputs == inputs);
         let _ = writeln!(
             text,
-            "inputs {}, {} cases a family, seed {}",
+            "inputs {}, {} cases per family, seed {}",
             inputs.name(),
             settings.cases,
             settings.seed

@@ -2,6 +2,7 @@
 
 use crate::program;
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 fn cyltrace(arguments: &[&str]) -> (i32, String, String) {
@@ -146,47 +147,85 @@ fn bad_arguments_exit_2_and_name_the_remedy() {
     }
 }
 
+/// The reference of the command line.
+const DOCUMENT: &str = include_str!("../../../../docs/command-line.md");
+
+/// Commands that write JSON, as the table of keys names them, with arguments for a folder
+/// that has `rays.csv` and `points.csv`.
+const WITH_JSON: [(&str, &str); 10] = [
+    ("info", "info SCENE"),
+    ("render", "render SCENE -o a.png --size 8x8"),
+    ("trace --rays", "trace SCENE --rays rays.csv -o hits.csv"),
+    (
+        "trace --points",
+        "trace SCENE --points points.csv -o in.csv",
+    ),
+    ("check", "check SCENE --rays 100"),
+    ("tessellate", "tessellate SCENE -o a.ply"),
+    ("stress", "stress --family rim --cases 1"),
+    (
+        "bench accuracy",
+        "bench accuracy --cases 1 --rounds 1 --formulation exact",
+    ),
+    (
+        "bench traversal",
+        "bench traversal --scene spheres_1e5 --rival embree_sphere --rays 16 --rounds 1 --threads 1",
+    ),
+    (
+        "bench scale",
+        "bench scale --most 1000 --rays 16 --rounds 1",
+    ),
+];
+
 #[test]
-fn document_has_every_column_and_json_key() {
-    let document = include_str!("../../../../docs/command-line.md");
-    let mut missing = Vec::new();
-    let mut need = |word: &str| {
-        if !document.contains(&format!("`{word}")) {
-            missing.push(word.to_owned());
-        }
-    };
-    let directory = tempfile::tempdir().expect("directory");
-    let at = |name: &str| {
-        directory
-            .path()
-            .join(name)
-            .to_str()
-            .expect("UTF-8")
-            .to_owned()
-    };
+fn document_has_the_json_keys_of_each_command() {
+    let folder = program::folder_of(&[
+        ("rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n"),
+        ("points.csv", "x,y,z\n0,0,0\n"),
+    ]);
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/minimal.toml");
-    let (rays, hits, picture) = (at("rays.csv"), at("hits.csv"), at("a.png"));
-    let mesh = at("a.ply");
-    std::fs::write(&rays, "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n").expect("written");
-    for arguments in [
-        &["info", scene, "--json", "-"][..],
-        &[
-            "render", scene, "-o", &picture, "--size", "8x8", "--json", "-",
-        ],
-        &["trace", scene, "--rays", &rays, "-o", &hits, "--json", "-"],
-        &["check", scene, "--rays", "100", "--json", "-"],
-        &["tessellate", scene, "-o", &mesh, "--json", "-"],
-    ] {
-        let (_, out, err) = cyltrace(arguments);
+    for (command, line) in WITH_JSON {
+        let line = format!("{} --json -", line.replace("SCENE", scene));
+        let (_, out, err) = program::cyltrace(folder.path(), &program::words(&line));
         let figures: serde_json::Value = serde_json::from_str(&out).expect(&err);
-        figures
+        let found: BTreeSet<&str> = figures
             .as_object()
-            .expect("keys")
+            .expect("an object")
             .keys()
-            .for_each(|key| need(&format!("{key}`")));
+            .map(String::as_str)
+            .collect();
+        assert_eq!(found, documented_keys(command), "{command}");
     }
-    let hits = std::fs::read_to_string(hits).expect("written");
-    let header = hits.lines().next().expect("a header");
-    header.split(',').for_each(|name| need(&format!("{name}`")));
-    assert!(missing.is_empty(), "{missing:?}");
+}
+
+/// The keys that the table has for a command. A row for `trace` is one for both of its
+/// kinds of tables.
+fn documented_keys(command: &str) -> BTreeSet<&'static str> {
+    let (_, table) = DOCUMENT
+        .split_once("| key | of |")
+        .expect("a table of keys");
+    let of_command = |of: &str| of == command || command.starts_with("trace ") && of == "trace";
+    let mut keys = BTreeSet::new();
+    for row in table.lines().filter(|line| line.starts_with("| `")) {
+        let cells: Vec<&str> = row.split('|').collect();
+        if cells[2].split(',').map(str::trim).any(of_command) {
+            let names = cells[1]
+                .split(',')
+                .map(|name| name.trim().trim_matches('`'));
+            keys.extend(names);
+        }
+    }
+    keys
+}
+
+#[test]
+fn document_has_every_column_of_hits() {
+    let folder = program::folder_of(&[("rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n")]);
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/minimal.toml");
+    let line = format!("trace {scene} --rays rays.csv -o - --quiet");
+    let (_, hits, err) = program::cyltrace(folder.path(), &program::words(&line));
+    let header = hits.lines().next().expect(&err);
+    for name in header.split(',') {
+        assert!(DOCUMENT.contains(&format!("`{name}`")), "{name}");
+    }
 }

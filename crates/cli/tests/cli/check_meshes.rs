@@ -1,4 +1,4 @@
-//! `cyltrace check --mesh` and `--hits` with inputs that could make them report "holds" by
+//! `cyltrace check --mesh` and `--hits` with inputs that could make them pass by
 //! mistake.
 
 use crate::program;

@@ -360,7 +360,7 @@ fn info_counts_what_the_scene_holds() {
     );
 
     let (_, text, _) = cyltrace(directory.path(), &["info", "scene.toml"]);
-    for words in ["5 unique", "13 instanced", "2 levels"] {
+    for words in ["5 unique", "13 instanced", "nesting depth 2"] {
         assert!(text.contains(words), "{words:?} not in\n{text}");
     }
     let (_, text, _) = cyltrace(directory.path(), &["info", "scene.toml", "--quiet"]);

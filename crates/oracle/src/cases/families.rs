@@ -1,8 +1,7 @@
 //! The families: which cylinders, and which rays at them.
 //!
-//! Distances are those from a ray's origin to the point it is aimed at. The
-//! families and their limits are those of a study of this problem that this
-//! crate repeats, but for the last one; `docs/accuracy.md` says where its figures differ.
+//! Distances are those from a ray's origin to the point it is aimed at.
+//! `docs/accuracy.md` lists the families.
 
 use std::str::FromStr;
 

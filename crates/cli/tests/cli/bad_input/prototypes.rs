@@ -171,11 +171,11 @@ pub fn cases() -> Vec<Case> {
         ),
         with_a(
             "scatter_pattern_unknown",
-            "[[scatter]]\nof = \"a\"\npattern = \"disk\"\ncount = 4\nspacing = 1\n",
+            "[[scatter]]\nof = \"a\"\npattern = \"disks\"\ncount = 4\nspacing = 1\n",
             &[
                 "scene.toml:9:11",
-                "\"disk\" is not a value of pattern",
-                "did you mean \"disc\"?",
+                "\"disks\" is not a value of pattern",
+                "did you mean \"disk\"?",
             ],
         ),
     ]
