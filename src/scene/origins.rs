@@ -1,32 +1,32 @@
-//! The files that solids and placements come from, for messages about single ones.
+//! The source files of solids and placements, for messages about single ones.
 
-/// What the entries of a prototype come from, in runs of consecutive numbers.
+/// The source files of a prototype's entries, in runs of consecutive numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Origins {
     runs: Vec<Run>,
 }
 
-/// Entries that come from one file.
+/// The entries of one file.
 #[derive(Clone, Debug)]
 struct Run {
     first: u32,
     file: String,
-    /// Whether each row is an entry, also those that were skipped.
+    /// Whether each row is an entry, including skipped rows.
     is_table: bool,
     count: u32,
 }
 
-/// What an entry comes from.
+/// The source of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Origin<'a> {
     /// The file, as the scene file names it.
     pub file: &'a str,
-    /// The number of the row with data, from 1, where the file is a table.
+    /// The number of the row, from 1 without the header, if the file is a table.
     pub row: Option<u32>,
 }
 
 impl Origins {
-    /// Adds the entries from `first` up to `end` that come from a file.
+    /// Adds the entries of a file, from `first` up to but not including `end`.
     pub(super) fn add(&mut self, file: &str, is_table: bool, first: u32, end: u32) {
         self.runs.push(Run {
             first,
@@ -36,7 +36,7 @@ impl Origins {
         });
     }
 
-    /// What the entry of a number comes from; `None` if the scene file states it.
+    /// The source of the entry with this number; `None` if it is in the scene file itself.
     #[must_use]
     pub fn of(&self, number: u32) -> Option<Origin<'_>> {
         let mut runs = self.runs.iter();

@@ -1,4 +1,4 @@
-//! Gathers the solids of one prototype, and gives them their primitive numbers.
+//! Collects the solids of a prototype and assigns their primitive numbers.
 
 use std::borrow::Borrow;
 
@@ -16,61 +16,64 @@ use crate::solid::{
 };
 use crate::with_solid;
 
-/// What to say about rows that `degenerate = "skip"` would leave out.
+/// The help for rows that `degenerate = "skip"` would skip.
 pub(super) const SKIP_HELP: &str =
-    "degenerate = \"skip\" in the scene file leaves such rows out and counts them";
+    "degenerate = \"skip\" in the scene file skips such rows and counts them";
 
-/// The help for a cylinder that f32 does not represent.
-const F64_HELP: &str = "records = \"f64\", the default, keeps every number as it is stated";
+/// The help for a cylinder that is invalid in f32.
+const F64_HELP: &str = "records = \"f64\", the default, stores every number unrounded";
 
 /// The solids of one prototype.
 #[derive(Default)]
 pub(super) struct SolidCollector {
     pub solids: Solids,
-    /// How many primitive numbers are given away.
+    /// The count of assigned primitive numbers.
     numbers: u32,
-    /// Rows that were left out, though they have a number.
+    /// Rows that were skipped; they keep their numbers.
     pub skipped: u64,
-    /// At least the size of every coordinate of a point of the solids.
+    /// An upper bound of the size of the solids' coordinates.
     pub reach: f64,
     /// Notes on the files for the user.
     pub notes: Vec<String>,
-    /// The files that they come from.
+    /// The source files of the solids.
     pub origins: Origins,
 }
 
-/// What the solids of an entry have in common.
+/// The properties that the solids of an entry share.
 #[derive(Clone, Copy)]
 pub(super) struct Look {
     pub caps: Caps,
     pub material: MaterialIndex,
 }
 
-/// Why a solid is not added.
+/// Why a solid cannot be added.
 #[derive(Debug, PartialEq)]
 pub(super) enum Refusal {
     /// No primitive number is left.
     Numbers,
-    /// Rounded to f32 it is no solid of its kind, for this reason.
+    /// After rounding to f32 the solid is invalid, for this reason.
     Rounded { kind: SolidKind, error: String },
 }
 
 impl Refusal {
-    /// What to say, and what to do about it.
+    /// The message, and the help if there is one.
     pub fn message(&self) -> (String, Option<&'static str>) {
         match self {
             Self::Numbers => {
                 let most = u32::MAX;
-                (format!("a prototype holds at most {most} primitives"), None)
+                (
+                    format!("a prototype can contain at most {most} primitives"),
+                    None,
+                )
             }
             Self::Rounded { kind, error } => (
-                format!("rounded to f32 this is no {kind}: {error}"),
+                format!("this {kind} is invalid after rounding to f32: {error}"),
                 Some(F64_HELP),
             ),
         }
     }
 
-    /// That a row of a table which the scene file names is refused.
+    /// The error for a row of a table that the scene file names.
     pub fn in_row(
         &self,
         source: &Source,
@@ -85,7 +88,7 @@ impl Refusal {
     }
 }
 
-/// What happens to rows that are no solid.
+/// The treatment of rows that give no valid solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Degenerate {
     Error,
@@ -93,7 +96,7 @@ pub(super) enum Degenerate {
 }
 
 impl SolidCollector {
-    /// No solids; cylinders are to be kept so.
+    /// An empty collector that stores cylinders in the given precision.
     pub fn new(records: Records) -> Self {
         Self {
             solids: Solids {
@@ -104,7 +107,7 @@ impl SolidCollector {
         }
     }
 
-    /// How many primitive numbers are given away.
+    /// The count of assigned primitive numbers.
     pub fn numbers(&self) -> u32 {
         self.numbers
     }
@@ -112,7 +115,7 @@ impl SolidCollector {
     /// The next primitive number.
     fn number(&mut self) -> Result<u32, Refusal> {
         let number = self.numbers;
-        // The greatest u32 is left out: Embree's mark for "no primitive".
+        // The greatest u32 is excluded: Embree uses it for "no primitive".
         self.numbers = number.checked_add(1).ok_or(Refusal::Numbers)?;
         Ok(number)
     }
@@ -147,7 +150,7 @@ impl SolidCollector {
         material: MaterialIndex,
     ) -> Result<(), Refusal> {
         let primitive = self.number()?;
-        // What an operation leaves may be nothing: all of its parts count.
+        // The result of an operation may be empty, so the bound covers all of its parts.
         for part in solid.solids() {
             self.reach_to(&part.bounds());
         }
@@ -161,7 +164,7 @@ impl SolidCollector {
         self.reach = self.reach.max(corner.max_element());
     }
 
-    /// Adds a note, once.
+    /// Adds a note, unless it exists.
     pub fn note(&mut self, note: &str) {
         if !self.notes.iter().any(|known| known == note) {
             self.notes.push(note.to_owned());
@@ -173,20 +176,20 @@ impl SolidCollector {
         self.origins.add(file, is_table, first, self.numbers);
     }
 
-    /// Leaves a row out; it keeps its primitive number.
+    /// Skips a row; it keeps its primitive number.
     pub fn skip(&mut self) -> Result<(), Refusal> {
         self.skipped += 1;
         self.leave_free()
     }
 
-    /// Leaves the next primitive number free.
+    /// Leaves the next primitive number unused.
     pub fn leave_free(&mut self) -> Result<(), Refusal> {
         self.number().map(drop)
     }
 }
 
-/// Whether a row that gives this error counts as degenerate. Negative radii
-/// and numbers out of range are not: those are mistakes, whatever was asked.
+/// Whether a row with this error is degenerate. Negative radii and numbers out of
+/// range are not degenerate: they are always errors.
 pub(super) fn is_degenerate(error: &CylinderError) -> bool {
     match error {
         CylinderError::Endpoint { .. } => false,
@@ -195,7 +198,7 @@ pub(super) fn is_degenerate(error: &CylinderError) -> bool {
     }
 }
 
-/// [`is_degenerate`] of a cone or a rounded cone. One radius may be zero.
+/// [`is_degenerate`] for a cone or a rounded cone. One radius may be zero.
 pub(super) fn is_degenerate_cone(error: &ConeError) -> bool {
     match error {
         ConeError::Endpoint { .. } => false,
@@ -211,7 +214,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn primitive_numbers_that_run_out_are_refused() {
+    fn primitive_numbers_that_run_out_are_an_error() {
         let mut solids = SolidCollector {
             numbers: u32::MAX - 1,
             ..SolidCollector::default()
@@ -229,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn degenerate_rows_are_those_without_extent_only() {
+    fn only_rows_without_extent_are_degenerate() {
         let error = |p1, radius| {
             Cylinder::new(DVec3::ZERO, p1, radius, Caps::Both).expect_err("not a cylinder")
         };
