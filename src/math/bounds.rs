@@ -32,7 +32,7 @@ impl Bounds {
         self.lower.cmple(other.upper).all() && other.lower.cmple(self.upper).all()
     }
 
-    /// The least box that contains both.
+    /// The smallest box that contains both.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         Self {
@@ -71,8 +71,8 @@ impl Bounds {
         }
     }
 
-    /// The next greater box: every coordinate moves outward by one ulp, which
-    /// makes up for one rounding to nearest.
+    /// The next larger box: every coordinate moves outward by one ulp, which
+    /// covers one rounding to nearest.
     #[must_use]
     pub fn rounded_outward(&self) -> Self {
         Self {
@@ -83,9 +83,9 @@ impl Bounds {
 
     /// A box that contains the image of every point of this one.
     ///
-    /// The image of the middle and of the half extent (through the matrix of
-    /// absolute values) are computed with at most 6 roundings a term; the box
-    /// grows by 8 units of the terms' sizes.
+    /// The center and the half extent (through the matrix of absolute values)
+    /// are mapped with at most 6 roundings a term. The box grows by 8 units of
+    /// the terms' sizes.
     #[must_use]
     pub fn transformed(&self, to_from_here: &DAffine3) -> Self {
         if self.is_empty() {
@@ -115,7 +115,7 @@ mod tests {
     use crate::math::Random;
 
     #[test]
-    fn transformed_box_holds_the_images_of_its_corners() {
+    fn transformed_box_contains_the_images_of_its_corners() {
         let mut random = Random::new(3, 0);
         for case in 0..2_000 {
             let mut point = || {

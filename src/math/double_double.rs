@@ -11,7 +11,7 @@
 pub struct DoubleDouble {
     /// The sum rounded to f64.
     pub high: f64,
-    /// What the rounding left.
+    /// The rounding error.
     pub low: f64,
 }
 
@@ -64,7 +64,7 @@ impl DoubleDouble {
     }
 }
 
-/// `x` as a sum of two numbers of 26 bits.
+/// Splits `x` into a sum of two numbers of 26 bits.
 fn split(x: f64) -> (f64, f64) {
     const FACTOR: f64 = ((1_u32 << 27) + 1) as f64;
     let scaled = FACTOR * x;

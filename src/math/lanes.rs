@@ -1,11 +1,10 @@
-//! Eight f64 side by side, and eight answers.
+//! Eight f64 values computed side by side.
 //!
-//! Eight numbers of a kind are an array of their own, so that a loop over the
-//! lanes reads and writes them in rows. Such a loop computes of each lane what
-//! scalar code computes, bit for bit; where its body does not branch to what has
-//! to be called, the compiler makes vector instructions of it, those of the
-//! function into which it is inlined: eight lanes at once in one that is
-//! compiled for AVX-512, two for the baseline of x86-64.
+//! Each quantity is an array of eight numbers, so a loop over the lanes reads
+//! and writes contiguous memory. Such a loop computes for each lane what scalar
+//! code computes, bit for bit. If its body branches to no function call, the
+//! compiler vectorizes it with the instructions of the function into which it is
+//! inlined: eight lanes at once with AVX-512, two with baseline x86-64.
 
 use std::array::from_fn;
 use std::ops::Sub;
@@ -20,7 +19,7 @@ pub const LANES: usize = 8;
 #[repr(align(64))]
 pub struct Lanes(pub [f64; LANES]);
 
-/// Which of eight lanes.
+/// A flag for each lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(align(8))]
 pub struct LaneMask(pub [bool; LANES]);
@@ -46,11 +45,11 @@ impl Lanes {
 }
 
 impl LaneMask {
-    /// The same in every lane.
+    /// The same flag in every lane.
     #[inline(always)]
     #[must_use]
-    pub fn splat(holds: bool) -> Self {
-        Self([holds; LANES])
+    pub fn splat(flag: bool) -> Self {
+        Self([flag; LANES])
     }
 
     /// The lanes whose bits are set, lane 0 the lowest.
@@ -64,13 +63,13 @@ impl LaneMask {
     #[inline(always)]
     #[must_use]
     pub fn bits(self) -> u8 {
-        // The product moves byte i, which is 0 or 1, to bit 56 + i, and nothing
-        // else there.
+        // The product moves byte i, which is 0 or 1, to bit 56 + i, and puts
+        // nothing else there.
         const TO_HIGH_BYTE: u64 = 0x0102_0408_1020_4080;
         (self.bytes().wrapping_mul(TO_HIGH_BYTE) >> 56) as u8
     }
 
-    /// Whether it is true in any lane.
+    /// Whether the flag of any lane is set.
     #[inline(always)]
     #[must_use]
     pub fn any(self) -> bool {
@@ -96,7 +95,7 @@ impl LaneVectors {
         }
     }
 
-    /// One vector a lane.
+    /// One vector for each lane.
     #[inline(always)]
     #[must_use]
     pub fn of(vectors: &[DVec3; LANES]) -> Self {
@@ -110,7 +109,7 @@ impl LaneVectors {
     /// The vector of a lane.
     ///
     /// # Panics
-    /// If there is no such lane.
+    /// If `lane` is not below [`LANES`].
     #[inline(always)]
     #[must_use]
     pub fn lane(&self, lane: usize) -> DVec3 {

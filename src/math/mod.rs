@@ -1,9 +1,9 @@
 //! Rays, boxes, roundings and random numbers, on top of glam's f64 vectors.
 //!
-//! This layer knows nothing of the rest of the crate. Everything here is f64;
-//! f32 appears where a value goes to Embree, and is then rounded in a
-//! stated direction, and in [`Real`], for solvers that exist in both. [`Lanes`]
-//! are eight f64 that the same sources compute at once.
+//! This layer does not depend on the rest of the crate. Numbers are f64, with two
+//! exceptions: values for Embree are rounded to f32 in a stated direction, and
+//! [`Real`] lets a solver exist in both precisions. [`Lanes`] are eight f64 that
+//! the same sources compute at once.
 
 mod bounds;
 mod double_double;

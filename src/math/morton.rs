@@ -1,17 +1,16 @@
-//! Morton codes: numbers along a curve through the cells of a grid.
+//! Morton codes: the positions of grid cells along a Z-order curve.
 //!
-//! The code of a cell has the bits of its coordinates in turns, the first
-//! coordinate's lowest bit lowest. Cells whose codes are near are near
-//! themselves.
+//! The code of a cell interleaves the bits of its coordinates; the lowest bit is
+//! the first coordinate's. Cells with nearby codes tend to be nearby.
 
-/// The code of a cell of a plane.
+/// The code of a cell in a plane.
 #[inline]
 #[must_use]
 pub fn morton_code_2([x, y]: [u32; 2]) -> u64 {
     spread_by_2(x) | spread_by_2(y) << 1
 }
 
-/// The code of a cell of space, of the lowest 21 bits of its coordinates.
+/// The code of a cell in space, from the lowest 21 bits of its coordinates.
 #[inline]
 #[must_use]
 pub fn morton_code_3([x, y, z]: [u32; 3]) -> u64 {
@@ -46,7 +45,7 @@ mod tests {
     use super::*;
     use crate::math::Random;
 
-    /// The code bit by bit.
+    /// Computes the code bit by bit.
     fn plain<const N: usize>(cell: [u32; N]) -> u64 {
         let bits = (0..32).flat_map(|bit| cell.map(|x| u64::from(x >> bit & 1)));
         let bits = bits.take(64).enumerate();
@@ -54,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn codes_have_the_bits_in_turns() {
+    fn codes_interleave_the_bits() {
         for number in 0..1000 {
             let mut random = Random::new(1, number);
             let mut coordinate = |bits: u32| random.below(1 << bits) as u32;

@@ -1,29 +1,29 @@
-//! How an object is turned: an orthonormal right-handed frame.
+//! The orientation of an object: an orthonormal right-handed frame.
 //!
-//! The frame is the matrix `M` that takes the object's directions to the world's;
-//! its columns are the object's axes as the world sees them. A product of two
-//! frames is off orthonormal by some units of u = 2^-53, and a million of them would
-//! be off by a million times that. So each product takes one step of Newton's
-//! iteration for the orthonormal matrix nearest to it (Higham, "Computing the
-//! polar decomposition", 1986):
+//! The frame is the matrix `M` that maps object directions to world directions; its
+//! columns are the object's axes in world coordinates. A product of two frames
+//! deviates from orthonormality by a few units of u = 2^-53, and over a million
+//! products the deviations would add up. So each product takes one step of Newton's
+//! iteration for the nearest orthonormal matrix (Higham, "Computing the polar
+//! decomposition", 1986):
 //!
 //! ```text
 //! M' = M - M E / 2,   E = Mᵀ M - I
 //! ```
 //!
-//! The step squares the distance, some 8 u, which leaves less than 2^-98; `E` comes
-//! from exact products, so that it has all its bits although it is a difference of
-//! nearly equal numbers. What is left is the rounding of the entries of `M'`, each
-//! by at most u of itself: every entry of `M'ᵀ M' - I` is below
-//! `2 u Σ |m_ki| |m_kj| <= 2 u`, after any number of turns, and its Frobenius norm at most
-//! 6 u. The norm of `M Mᵀ - I` is the same. Where `E` is zero, as for quarter turns, nothing
-//! is changed at all.
+//! The step squares the deviation: about 8 u becomes less than 2^-98. `E` is computed
+//! from exact products, so it is accurate although it is a difference of nearly equal
+//! numbers. The remaining error is the rounding of the entries of `M'`, each by at
+//! most u of itself: every entry of `M'ᵀ M' - I` is below
+//! `2 u Σ |m_ki| |m_kj| <= 2 u`, after any number of rotations, and its Frobenius norm at
+//! most 6 u. The norm of `M Mᵀ - I` is the same. Where `E` is zero, as for quarter turns, the
+//! step changes nothing.
 
 use glam::{DMat3, DVec3};
 
 use super::{DoubleDouble, UNIT_ROUNDOFF, frobenius_norm, rotation, sin_cos_degrees, unit};
 
-/// The way an object is turned about its own center.
+/// The rotation of an object about its own center.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orientation {
     world_from_object: DMat3,
@@ -36,7 +36,7 @@ impl Default for Orientation {
 }
 
 impl Orientation {
-    /// Not turned.
+    /// No rotation.
     pub const IDENTITY: Self = Self {
         world_from_object: DMat3::IDENTITY,
     };
@@ -64,8 +64,8 @@ impl Orientation {
             .then_some(Self { world_from_object })
     }
 
-    /// Turned on about the world's x axis, right-handed. Multiples of 90 degrees
-    /// are exact.
+    /// Adds a right-handed rotation about the world's x axis. Multiples of 90
+    /// degrees are exact.
     ///
     /// # Panics
     /// When the angle is not finite.
@@ -79,7 +79,7 @@ impl Orientation {
         ))
     }
 
-    /// Turned on about the world's y axis, as [`Orientation::rotated_x`].
+    /// Adds a rotation about the world's y axis; see [`Orientation::rotated_x`].
     ///
     /// # Panics
     /// When the angle is not finite.
@@ -93,7 +93,7 @@ impl Orientation {
         ))
     }
 
-    /// Turned on about the world's z axis, as [`Orientation::rotated_x`].
+    /// Adds a rotation about the world's z axis; see [`Orientation::rotated_x`].
     ///
     /// # Panics
     /// When the angle is not finite.
@@ -107,23 +107,23 @@ impl Orientation {
         ))
     }
 
-    /// Turned on about an axis of any length in the world, right-handed.
+    /// Adds a right-handed rotation about an axis of any length in the world.
     ///
     /// # Panics
     /// When the angle is not finite, or the axis is zero or not finite.
     #[must_use]
     pub fn rotated(self, axis: DVec3, degrees: f64) -> Self {
-        let axis = unit(axis).expect("the axis of a turn is finite and not zero");
+        let axis = unit(axis).expect("the axis of a rotation must be finite and not zero");
         self.turned(rotation(axis, finite_sin_cos(degrees)))
     }
 
-    /// This turn, and then `next`.
+    /// This rotation, followed by `next`.
     #[must_use]
     pub fn then(self, next: Self) -> Self {
         self.turned(next.world_from_object)
     }
 
-    /// The turn back.
+    /// The inverse rotation.
     #[must_use]
     pub fn inverse(self) -> Self {
         Self {
@@ -131,14 +131,14 @@ impl Orientation {
         }
     }
 
-    /// The matrix that takes the object's directions to the world's. Its columns
+    /// The matrix that maps object directions to world directions. Its columns
     /// are the object's axes.
     #[must_use]
     pub fn world_from_object(&self) -> DMat3 {
         self.world_from_object
     }
 
-    /// Whether the object's axes are the world's, in any order and either way.
+    /// Whether every axis of the object is parallel to an axis of the world.
     #[must_use]
     pub fn is_axis_aligned(&self) -> bool {
         self.world_from_object
@@ -147,13 +147,13 @@ impl Orientation {
             .all(|entry| entry == 0.0 || entry.abs() == 1.0)
     }
 
-    /// A direction of the object as the world sees it, rounded.
+    /// An object direction in world coordinates, rounded.
     #[must_use]
     pub fn to_world(&self, object: DVec3) -> DVec3 {
         self.world_from_object * object
     }
 
-    /// A direction of the world as the object sees it, rounded.
+    /// A world direction in object coordinates, rounded.
     #[inline]
     #[must_use]
     pub fn to_object(&self, world: DVec3) -> DVec3 {
@@ -173,11 +173,14 @@ impl Orientation {
 }
 
 fn finite_sin_cos(degrees: f64) -> (f64, f64) {
-    assert!(degrees.is_finite(), "a turn by {degrees} degrees");
+    assert!(
+        degrees.is_finite(),
+        "the rotation angle must be finite, but is {degrees} degrees"
+    );
     sin_cos_degrees(degrees)
 }
 
-/// The step that the head of this file derives.
+/// The Newton step derived at the top of this file.
 fn orthonormal(matrix: DMat3) -> DMat3 {
     matrix - matrix * (residual(&matrix) * 0.5)
 }
@@ -219,7 +222,8 @@ mod tests {
         let several = turned.rotated_x(90.0).rotated_y(-180.0).rotated_z(450.0);
         assert!(several.is_axis_aligned());
         assert!(!turned.rotated_x(1.0).is_axis_aligned());
-        // y to z about x, z to -z about y; z is where it is about z.
+        // The turn about x takes Y to Z, the one about y takes Z to -Z, and the one
+        // about z leaves that fixed.
         assert_eq!(several.to_world(DVec3::Y), DVec3::NEG_Z);
         assert_eq!(several.to_object(DVec3::NEG_Z), DVec3::Y);
     }

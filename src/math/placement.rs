@@ -1,14 +1,14 @@
-//! Affine placements: the way back into the child's space and its rounding.
+//! Affine placements: the inverse map into the child's space and its rounding error.
 //!
-//! A placement takes a child's point `c` to the parent's `p = L c + T`. A ray
-//! goes the other way, `c = L⁻¹ (p - T)`: the subtraction comes first, so that
-//! a large translation costs at most one rounding of the difference, where a
-//! folded inverse `L⁻¹ p - L⁻¹ T` would cancel two large numbers.
+//! A placement maps a child's point `c` to the parent's `p = L c + T`. A ray is
+//! mapped by the inverse, `c = L⁻¹ (p - T)`. The subtraction comes first, so a
+//! large translation costs at most one rounding of the difference; a folded
+//! inverse `L⁻¹ p - L⁻¹ T` would cancel two large numbers.
 //!
-//! What the roundings do is stated as a displacement *in the parent's space*:
-//! the computed `c` is the exact image of a point that lies at most
-//! `inverse_error · |p - T|` from `p`. With `κ = ‖L‖ ‖L⁻¹‖` (Frobenius norms),
-//! `G` the computed inverse and u = 2^-53:
+//! The rounding error is stated as a displacement *in the parent's space*: the
+//! computed `c` is the exact image of a point at most `inverse_error · |p - T|`
+//! from `p`. With `κ = ‖L‖ ‖L⁻¹‖` (Frobenius norms), `G` the computed inverse and
+//! u = 2^-53:
 //!
 //! - the subtraction moves `p - T` by at most `u |p - T|`;
 //! - `G` instead of `L⁻¹` moves the image by `L (G - L⁻¹) v = (L G - I) v`, and
@@ -22,7 +22,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::UNIT_ROUNDOFF;
 
-/// Takes points and vectors of a parent to a child placed in it.
+/// Maps points and vectors of a parent to a child placed in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChildFromParent {
     inverse: DMat3,
@@ -30,7 +30,7 @@ pub struct ChildFromParent {
 }
 
 impl ChildFromParent {
-    /// The way back of a placement with a regular matrix.
+    /// The inverse of a placement; its matrix must be invertible.
     #[must_use]
     pub fn new(parent_from_child: &DAffine3) -> Self {
         Self {
@@ -39,7 +39,7 @@ impl ChildFromParent {
         }
     }
 
-    /// Where the child's origin is in the parent.
+    /// The child's origin in the parent's space.
     #[must_use]
     pub fn translation(&self) -> DVec3 {
         self.translation
@@ -52,31 +52,30 @@ impl ChildFromParent {
         self.inverse * vector
     }
 
-    /// The parent's unit normal for a child's normal: normals go by the
-    /// inverse transposed.
+    /// The parent's unit normal for a child's normal, by the inverse transpose.
     #[must_use]
     pub fn parent_normal(&self, child_normal: DVec3) -> DVec3 {
         (self.inverse.transpose() * child_normal).normalize()
     }
 }
 
-/// How much a placement stretches, and how much its roundings displace.
+/// Bounds on the stretch and the rounding errors of a placement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacementErrors {
-    /// At least the factor by which `L` lengthens any vector.
+    /// An upper bound of `|L v| / |v|` over all vectors `v`.
     pub stretch: f64,
-    /// At most the factor by which `L` shortens any vector.
+    /// A lower bound of `|L v| / |v|` over all vectors `v`.
     pub shrink: f64,
-    /// At least `‖L‖ ‖L⁻¹‖`, in Frobenius norms; 3 for a rotation.
+    /// An upper bound of `‖L‖ ‖L⁻¹‖`, in Frobenius norms; 3 for a rotation.
     pub condition: f64,
-    /// A computed child's point is the exact image of a parent's point that
-    /// is displaced by at most this factor times its distance from the
-    /// child's origin; a vector likewise, with its length.
+    /// A computed point of the child is the exact image of a parent's point
+    /// that is displaced by at most this factor times its distance from the
+    /// child's origin. For a vector, its length takes the place of the distance.
     pub inverse_error: f64,
 }
 
 impl PlacementErrors {
-    /// The bounds for a placement and its computed way back.
+    /// The bounds for a placement and its computed inverse.
     #[must_use]
     pub fn new(parent_from_child: &DAffine3, child_from_parent: &ChildFromParent) -> Self {
         let matrix = parent_from_child.matrix3;
@@ -102,8 +101,8 @@ fn spectral_norm_bound(matrix: &DMat3) -> f64 {
     rows.max_element().sqrt() * (1.0 + 8.0 * UNIT_ROUNDOFF)
 }
 
-/// The root of the sum of the squares of the entries, at least the factor by
-/// which the matrix lengthens any vector.
+/// The square root of the sum of the squared entries, an upper bound of the
+/// factor by which the matrix lengthens a vector.
 #[must_use]
 pub fn frobenius_norm(matrix: &DMat3) -> f64 {
     (matrix.x_axis.length_squared()
@@ -117,7 +116,7 @@ mod tests {
     use super::*;
     use crate::math::Random;
 
-    /// Nested placements multiply their bounds: what a rotation adds counts.
+    /// Nested placements multiply their bounds, so the excess of a rotation would add up.
     #[test]
     fn rotations_neither_stretch_nor_shrink() {
         let mut random = Random::new(5, 0);
@@ -132,8 +131,8 @@ mod tests {
         }
     }
 
-    /// Goes into the child and back in higher precision, and measures how far
-    /// the round trip misses.
+    /// Maps a point into the child and back, the latter in higher precision, and
+    /// measures the error of the round trip.
     #[test]
     fn inverse_error_covers_the_round_trip() {
         let mut random = Random::new(4, 0);

@@ -1,25 +1,25 @@
-//! Where an object is and which way it is turned.
+//! The position and orientation of an object.
 //!
-//! A point goes to the object by the difference to the center first, so that a
-//! far center costs one rounding of that difference and not of the products.
+//! The map into object space subtracts the center first, so a distant center costs
+//! one rounding of the difference and none of the products.
 
 use glam::{DAffine3, DVec3};
 
 use super::Orientation;
 
 /// A rigid motion from an object's own space, with its center at zero, to the
-/// world. Turns are about the object's own center and leave it where it is; they
-/// and translations follow each other in the order of the calls.
+/// world. Rotations are about the object's own center. Rotations and translations
+/// apply in the order of the calls.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
-    /// Where the object's center is in the world.
+    /// The object's center in the world.
     pub center: DVec3,
-    /// Which way the object is turned.
+    /// The object's rotation about its center.
     pub orientation: Orientation,
 }
 
 impl Pose {
-    /// Not turned, with its center at a point.
+    /// No rotation, with the center at a point.
     #[must_use]
     pub fn at(center: DVec3) -> Self {
         Self {
@@ -28,7 +28,7 @@ impl Pose {
         }
     }
 
-    /// Moved on.
+    /// Adds a translation.
     #[must_use]
     pub fn translated(self, by: DVec3) -> Self {
         Self {
@@ -37,7 +37,7 @@ impl Pose {
         }
     }
 
-    /// Turned on about its center; see [`Orientation::rotated_x`].
+    /// Adds a rotation about the center; see [`Orientation::rotated_x`].
     ///
     /// # Panics
     /// When the angle is not finite.
@@ -46,7 +46,7 @@ impl Pose {
         self.oriented(self.orientation.rotated_x(degrees))
     }
 
-    /// Turned on about its center; see [`Orientation::rotated_y`].
+    /// Adds a rotation about the center; see [`Orientation::rotated_y`].
     ///
     /// # Panics
     /// When the angle is not finite.
@@ -55,7 +55,7 @@ impl Pose {
         self.oriented(self.orientation.rotated_y(degrees))
     }
 
-    /// Turned on about its center; see [`Orientation::rotated_z`].
+    /// Adds a rotation about the center; see [`Orientation::rotated_z`].
     ///
     /// # Panics
     /// When the angle is not finite.
@@ -64,7 +64,7 @@ impl Pose {
         self.oriented(self.orientation.rotated_z(degrees))
     }
 
-    /// Turned on about its center; see [`Orientation::rotated`].
+    /// Adds a rotation about the center; see [`Orientation::rotated`].
     ///
     /// # Panics
     /// When the angle is not finite, or the axis is zero or not finite.
@@ -73,31 +73,31 @@ impl Pose {
         self.oriented(self.orientation.rotated(axis, degrees))
     }
 
-    /// A point of the object in the world, rounded.
+    /// An object point in world coordinates, rounded.
     #[must_use]
     pub fn point_to_world(&self, object: DVec3) -> DVec3 {
         self.orientation.to_world(object) + self.center
     }
 
-    /// A point of the world as the object sees it, rounded.
+    /// A world point in object coordinates, rounded.
     #[must_use]
     pub fn point_to_object(&self, world: DVec3) -> DVec3 {
         self.orientation.to_object(world - self.center)
     }
 
-    /// A direction of the object in the world, rounded.
+    /// An object direction in world coordinates, rounded.
     #[must_use]
     pub fn direction_to_world(&self, object: DVec3) -> DVec3 {
         self.orientation.to_world(object)
     }
 
-    /// A direction of the world as the object sees it, rounded.
+    /// A world direction in object coordinates, rounded.
     #[must_use]
     pub fn direction_to_object(&self, world: DVec3) -> DVec3 {
         self.orientation.to_object(world)
     }
 
-    /// The map that takes the object's points to the world's.
+    /// The map from object points to world points.
     #[must_use]
     pub fn world_from_object(&self) -> DAffine3 {
         DAffine3 {

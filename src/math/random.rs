@@ -2,7 +2,7 @@
 //!
 //! The n-th number of a stream is a hash of (seed, stream, n), so any tile,
 //! row or thread draws the same numbers whatever was drawn before it. The hash
-//! is the finaliser of SplitMix64 (Steele, Lea, Flood, "Fast splittable
+//! is the finalizer of SplitMix64 (Steele, Lea, Flood, "Fast splittable
 //! pseudorandom number generators", OOPSLA 2014) applied to a Weyl sequence.
 
 use glam::DVec3;
@@ -11,7 +11,7 @@ use glam::DVec3;
 /// successive counters over all 64 bits before they are mixed.
 const WEYL_INCREMENT: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// A stream of numbers that is fixed by its seed and its name.
+/// A stream of numbers that is determined by a seed and a stream number.
 #[derive(Clone, Debug)]
 pub struct Random {
     key: u64,
@@ -19,8 +19,8 @@ pub struct Random {
 }
 
 impl Random {
-    /// The stream `stream` of the family `seed`. Streams with different names
-    /// are independent; a name is often a pixel, a row or a case number.
+    /// The stream number `stream` of the family `seed`. Streams with different
+    /// numbers are independent; the number is often a pixel, a row or a test case.
     #[must_use]
     pub fn new(seed: u64, stream: u64) -> Self {
         Self {
@@ -66,7 +66,7 @@ impl Random {
     }
 }
 
-/// The finaliser of SplitMix64: a bijection in which every input bit moves
+/// The finalizer of SplitMix64: a bijection in which every input bit flips
 /// about half of the output bits.
 fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);

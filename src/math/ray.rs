@@ -13,21 +13,21 @@ pub const GREATEST_ORIGIN: f64 = power_of_two(200);
 /// The sizes that the largest component of a ray's direction may have: 2^-500 to
 /// 2^500, about 3.1e-151 to 3.3e150.
 ///
-/// A solid that is placed reaches up to 2^150 (its greatest coordinate) times 2^64 (the
-/// greatest stretch of placements), which is more than the farthest origin. So no hit
-/// has a `t` of more than 2^216 / 2^-500, and f64 contains it. Its square need not be
-/// finite: the tracer scales directions before it solves anything.
+/// A placed solid reaches up to 2^150 (the greatest coordinate) times 2^64 (the greatest
+/// stretch of placements), which is farther than the farthest origin. So the `t` of a hit
+/// is at most 2^216 / 2^-500, which is a finite f64. Its square need not be finite: the
+/// tracer scales directions before it solves.
 pub const DIRECTION_SIZES: RangeInclusive<f64> = power_of_two(-500)..=power_of_two(500);
 
-/// Why a ray cannot be traced: a number of it is too large or too small.
+/// A ray cannot be traced because one of its numbers is too large or too small.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum RaySizeError {
-    /// The origin is too far.
+    /// The origin is too far away.
     #[error(
         "the origin has the component {component:e}: it must be a number of at most {GREATEST_ORIGIN:.1e} in size"
     )]
     Origin {
-        /// The component that is too large, or no number.
+        /// The component that is too large or NaN.
         component: f64,
     },
     /// The direction is too long or too short.
@@ -37,14 +37,14 @@ pub enum RaySizeError {
         DIRECTION_SIZES.end()
     )]
     Direction {
-        /// The largest component, or one that is no number.
+        /// The largest component, or one that is NaN.
         component: f64,
     },
 }
 
 /// The set of points `origin + t * direction` with `t_min <= t <= t_max`.
 ///
-/// The direction need not have unit length; `t` counts in lengths of
+/// The direction need not have unit length. `t` is in units of the length of
 /// `direction`, and keeps that meaning through placements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
@@ -52,9 +52,9 @@ pub struct Ray {
     pub origin: DVec3,
     /// Any vector whose largest component is within [`DIRECTION_SIZES`].
     pub direction: DVec3,
-    /// Least `t` that counts; may be negative or minus infinity.
+    /// The least `t` of a hit; may be negative or minus infinity.
     pub t_min: f64,
-    /// Greatest `t` that counts; may be infinite.
+    /// The greatest `t` of a hit; may be infinite.
     pub t_max: f64,
 }
 
@@ -78,29 +78,30 @@ impl Ray {
 
     /// Whether the ray can hit anything: origin and direction have the sizes of
     /// [`Ray::has_supported_sizes`], and the range is not empty (NaN makes it empty).
-    /// Any other ray is a miss.
+    /// Any other ray misses.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         self.has_supported_sizes() && self.t_min <= self.t_max
     }
 
     /// Whether no component of the origin exceeds [`GREATEST_ORIGIN`] in size, and the
-    /// largest of the direction is within [`DIRECTION_SIZES`]. The others of the
-    /// direction may be as small as they like, and the limits of `t` are any numbers.
+    /// largest component of the direction is within [`DIRECTION_SIZES`]. The other
+    /// components of the direction may be arbitrarily small, and the limits of `t` may be
+    /// any numbers.
     #[inline]
     #[must_use]
     pub fn has_supported_sizes(&self) -> bool {
-        // The sums are NaN where a component is; `max_element` might overlook it.
+        // The sums are NaN where a component is; `max_element` may ignore NaN.
         let (origin, direction) = (self.origin.abs(), self.direction.abs());
         origin.max_element() <= GREATEST_ORIGIN
             && DIRECTION_SIZES.contains(&direction.max_element())
             && !(self.origin + self.direction).is_nan()
     }
 
-    /// As [`Ray::has_supported_sizes`], with what is wrong.
+    /// As [`Ray::has_supported_sizes`], but reports the component at fault.
     ///
     /// # Errors
-    /// When it has not.
+    /// If a component is NaN, or its size is not supported.
     pub fn check_sizes(&self) -> Result<(), RaySizeError> {
         if self.has_supported_sizes() {
             return Ok(());
@@ -114,12 +115,12 @@ impl Ray {
     }
 }
 
-/// The component that is no number, else the largest.
+/// The NaN component if one exists, else the largest.
 fn worst(vector: DVec3) -> f64 {
     let components = vector.to_array().into_iter();
     components
         .max_by(|a, b| a.abs().total_cmp(&b.abs()))
-        .expect("there are three")
+        .expect("a vector has three components")
 }
 
 /// A [`Ray`] in any precision.
@@ -129,9 +130,9 @@ pub struct RayOf<S: Real> {
     pub origin: S::Vector,
     /// Any direction of any length.
     pub direction: S::Vector,
-    /// Least `t` that counts.
+    /// The least `t` of a hit.
     pub t_min: S,
-    /// Greatest `t` that counts.
+    /// The greatest `t` of a hit.
     pub t_max: S,
 }
 

@@ -1,8 +1,8 @@
 //! Arithmetic that is written once for f32 and f64.
 //!
-//! Only what the solvers use: the four operations, roots, and three-vectors.
-//! Every operation is one operation of the precision, rounded to nearest; the
-//! vectors are glam's.
+//! The traits contain only what the solvers use: the four operations, roots, and
+//! three-vectors. Every operation is one operation of the precision, rounded to
+//! nearest; the vectors are glam's.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -25,7 +25,7 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// Three of them.
+    /// A vector of three such numbers.
     type Vector: RealVector<Self>;
     /// Numbers of about twice the precision.
     type Wide: Wide<Self>;
@@ -34,8 +34,8 @@ pub trait Real:
     const ZERO: Self;
     /// The least positive normal number.
     const MIN_POSITIVE: Self;
-    /// Whether solvers decide ties by exact arithmetic: not in f32, which exists for
-    /// comparison.
+    /// Whether solvers decide ties by exact arithmetic. They do not in f32, which exists
+    /// for comparison.
     const DECIDES_TIES: bool;
 
     /// The number of this precision nearest to `x`.
@@ -44,11 +44,11 @@ pub trait Real:
     /// The same number in f64.
     fn to_f64(self) -> f64;
 
-    /// The size.
+    /// The absolute value.
     #[must_use]
     fn abs(self) -> Self;
 
-    /// The size, with the sign of `sign`.
+    /// The absolute value with the sign of `sign`.
     #[must_use]
     fn copysign(self, sign: Self) -> Self;
 
@@ -175,7 +175,7 @@ pub fn wide_square<S: Real>(v: [S::Wide; 3]) -> S::Wide {
     x.plus(y).plus(z)
 }
 
-/// Hands the trait's methods to those of the type.
+/// Implements the traits by the methods of the types.
 macro_rules! impl_real {
     ($scalar:ident, $vector:ident, $wide:ident, $decides_ties:literal) => {
         impl Real for $scalar {

@@ -1,12 +1,13 @@
-//! Turns by degrees, from sums, products, square roots and `libm`, so that they
-//! are the same numbers on every machine; glam's own call the platform's sine.
+//! Rotations by degrees. They use only sums, products, square roots and `libm`, so
+//! the results are the same on every machine; glam's own rotations call the
+//! platform's sine.
 
 use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
-/// The unit vector along `vector`, or `None` of the zero vector. Any finite
-/// size will do: it is divided out before anything is squared.
+/// The unit vector along `vector`, or `None` if it is zero or not finite. Its
+/// size is divided out before anything is squared, so nothing overflows.
 #[must_use]
 pub fn unit(vector: DVec3) -> Option<DVec3> {
     let size = vector.abs().max_element();

@@ -1,4 +1,4 @@
-//! Roundings: their unit, and powers of two, by which scaling is exact.
+//! The unit roundoff, directed rounding to f32, and powers of two for exact scaling.
 
 /// Half an ulp of 1: every operation of f64 has at most this relative error.
 pub const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;

@@ -1,4 +1,4 @@
-//! Why a mesh is not read or not written: what is wrong, and where.
+//! Errors of reading and writing meshes: what is wrong, and where.
 
 use std::fmt;
 use std::io;
@@ -55,10 +55,10 @@ impl fmt::Display for MeshError {
     }
 }
 
-/// Why no mesh was read.
+/// Why a mesh cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum MeshReadError {
-    /// The name ends in no format that is read.
+    /// The extension is that of no mesh format.
     #[error("{}: the name of a mesh must end in {}", path.display(), Format::endings(Format::ALL.iter().copied()))]
     Extension {
         /// The file.
@@ -73,14 +73,14 @@ pub enum MeshReadError {
         source: io::Error,
     },
     /// The file is longer than a mesh may be.
-    #[error("{}: the file has more than {most_bytes} bytes, the most that is read of a mesh here", path.display())]
+    #[error("{}: the file has more than {most_bytes} bytes, the limit for a mesh", path.display())]
     TooLarge {
         /// The file.
         path: PathBuf,
         /// The limit.
         most_bytes: u64,
     },
-    /// The content is no mesh.
+    /// The content is not a mesh.
     #[error("{}{error}", path.display())]
     Content {
         /// The file.
@@ -90,10 +90,10 @@ pub enum MeshReadError {
     },
 }
 
-/// Why there is no mesh file.
+/// Why a mesh file cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum MeshFileError {
-    /// The name says nothing of the format.
+    /// The extension is that of no format that can be written.
     #[error(
         "cannot write {path:?}: the name of a mesh must end in {}",
         written_endings()
@@ -103,53 +103,56 @@ pub enum MeshFileError {
         path: PathBuf,
     },
     /// The format is only read.
-    #[error("{name} is read and not written: write {}", written_endings())]
+    #[error(
+        "{name} files can be read but not written: write {}",
+        written_endings()
+    )]
     NotWritten {
-        /// What the format is called.
+        /// The name of the format.
         name: &'static str,
     },
-    /// No such meshes.
+    /// The number of segments is out of range.
     #[error(
-        "{segments} segments: a mesh has at least {LEAST_SEGMENTS} and at most {GREATEST_SEGMENTS}"
+        "{segments} segments: the number must be between {LEAST_SEGMENTS} and {GREATEST_SEGMENTS}"
     )]
     Segments {
         /// The number given.
         segments: u32,
     },
-    /// There are solids that have no mesh of their own.
+    /// The scene contains solids that cannot be tessellated.
     #[error(
-        "solids composed by union, intersection or difference have no mesh of their own, and the scene holds {solids}: leave them out, or state the solids that they are composed of by themselves"
+        "solids composed by union, intersection or difference cannot be tessellated, and the scene contains {solids}: remove them, or list their parts as separate solids"
     )]
     ComposedSolids {
-        /// How many, as they are stored.
+        /// Their number, each counted once however often it is placed.
         solids: u64,
     },
     /// A PLY file counts vertices in 32 bits.
     #[error(
-        "the mesh has {vertices} vertices, and a .ply file can name {}: write an .obj file, or use fewer segments",
+        "the mesh has {vertices} vertices, more than the {} that a .ply file can index: write an .obj file, or use fewer segments",
         u32::MAX
     )]
     Vertices {
         /// Vertices of the mesh.
         vertices: u128,
     },
-    /// More than may be written.
+    /// The file would exceed the limit.
     #[error("the file needs up to {needed} bytes, which is more than the {allowed} allowed")]
     TooLarge {
-        /// At least what the file takes.
+        /// An upper bound of the size of the file.
         needed: u128,
-        /// What was allowed.
+        /// The limit.
         allowed: u64,
     },
-    /// The caller asked to stop.
+    /// The caller stopped the writing.
     #[error("stopped before the mesh was complete")]
     Cancelled,
-    /// The system refuses to write.
+    /// The system reports an error.
     #[error(transparent)]
     Write(#[from] io::Error),
 }
 
-/// The endings of the formats that are written.
+/// The extensions of the formats that can be written.
 fn written_endings() -> String {
     let all = Format::ALL.iter().copied();
     Format::endings(all.filter(|format| format.is_written()))

@@ -8,12 +8,12 @@ use super::reading::MeshFile;
 use super::{Format, MeshReadError};
 use crate::scene::MOST_MESH_BYTES;
 
-/// Reads a mesh in the format that the file's name ends in.
+/// Reads a mesh in the format of the file's extension.
 ///
 /// # Errors
-/// When the name ends as those of no [`Format`], the file cannot be read, is larger
-/// than [`MOST_MESH_BYTES`] or malformed, a face names a vertex that does not exist, or
-/// there is no face.
+/// If the extension is that of no [`Format`], if the file cannot be read, is larger than
+/// [`MOST_MESH_BYTES`] or malformed, if a face names a vertex that does not exist, or if
+/// the mesh has no faces.
 pub fn read_mesh(path: &Path) -> Result<MeshFile, MeshReadError> {
     read_mesh_within(path, MOST_MESH_BYTES)
 }
@@ -21,7 +21,7 @@ pub fn read_mesh(path: &Path) -> Result<MeshFile, MeshReadError> {
 /// As [`read_mesh`], for a file of at most `most_bytes`.
 ///
 /// # Errors
-/// As those of [`read_mesh`].
+/// See [`read_mesh`].
 pub fn read_mesh_within(path: &Path, most_bytes: u64) -> Result<MeshFile, MeshReadError> {
     let format = Format::of(path);
     let format = format.ok_or_else(|| MeshReadError::Extension { path: path.into() })?;
@@ -42,10 +42,10 @@ pub fn read_mesh_within(path: &Path, most_bytes: u64) -> Result<MeshFile, MeshRe
         })
 }
 
-/// The bytes of a file; `None` if they are more than `most_bytes`.
+/// The bytes of a file; `None` if it has more than `most_bytes`.
 fn read_bytes(path: &Path, most_bytes: u64) -> io::Result<Option<Vec<u8>>> {
     let file = File::open(path)?;
-    // A pipe has no length, so that reading is limited as well.
+    // A pipe reports no length, so the read is limited too.
     if file.metadata()?.len() > most_bytes {
         return Ok(None);
     }
@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_that_are_too_long_are_refused_before_they_are_read() {
+    fn files_that_are_too_long_are_rejected_before_they_are_read() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("m.obj");
         std::fs::write(&path, "v 0 0 0\n".repeat(200)).expect("a file");

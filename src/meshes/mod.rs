@@ -1,10 +1,10 @@
 //! Triangle meshes: a scene as one mesh in a file, and meshes of any program.
 //!
-//! Every solid of the scene, with all its placements, becomes a mesh of its own in
-//! world space: `plan` counts them and derives how far the mesh may be from the true
-//! surface, `walk` visits them, `formats` writes them. Nothing but the mesh of the solid at
-//! hand is in memory, so a file may be as large as a disk. `formats` also reads meshes, with
-//! what its readers share in `reading`; `file` opens them.
+//! Every placed solid of the scene becomes a mesh of its own in world space: `plan` counts
+//! them and derives how far the mesh may be from the true surface, `walk` visits them, and
+//! `formats` writes them. Only the mesh of the current solid is in memory, so the disk alone
+//! limits the size of a file. `formats` also reads meshes; `reading` contains what its
+//! readers share, and `file` opens the files.
 
 mod error;
 mod file;
@@ -22,12 +22,12 @@ pub use plan::Plan;
 pub use reading::MeshFile;
 pub use reading::remarks::Made;
 
-/// Called with the number of vertices and triangles that were written since;
-/// says whether to go on.
+/// Called with the number of vertices and triangles written since the last call;
+/// returns whether to continue.
 pub type Progress<'a> = dyn FnMut(u64) -> ControlFlow<()> + 'a;
 
-/// This many vertices or triangles are written at once: some 100 kB of a large mesh,
-/// which is millions of them for a ball of 4096 sides.
+/// The number of vertices or triangles written at once: about 100 kB of a mesh, which has
+/// millions of them for a ball of 4096 sides.
 const AT_ONCE: usize = 4096;
 
 fn proceed(progress: &mut Progress, items: usize) -> Result<(), MeshFileError> {

@@ -1,28 +1,28 @@
-//! What a mesh will hold, and how far it may be from the true surface.
+//! The size of a mesh, and a bound of its distance from the true surface.
 //!
-//! Both are worked out once a prototype, innermost first, so that the time does
-//! not grow with what is placed. For the content of a prototype, in its own
-//! coordinates, let
+//! Both are computed once for each prototype, innermost first, so the time does
+//! not grow with the number of placed solids. For the content of a prototype, in
+//! its own coordinates, let
 //!
-//! - D bound the distance between meshes and surfaces, each from the other:
-//!   [`deviation_of`], what falls short or reaches beyond;
-//! - E bound how far a vertex, as computed, is from the one that is meant:
+//! - D bound the distance of the meshes from the surfaces and of the surfaces from
+//!   the meshes: [`deviation_of`];
+//! - E bound the distance of a computed vertex from the exact one:
 //!   [`corner_error_of`];
-//! - P bound how far any vertex is from the origin.
+//! - P bound the distance of any vertex from the origin.
 //!
-//! A placement `x -> L x + T` lengthens vectors by `s = |L|` at most, and
-//! distances likewise: D becomes `s D`. A vertex goes through one placement
-//! after another. In `L x + T` every component is three products and three
-//! sums, of relative error 4 u each at most (u = 2^-53), so a vertex is off by
-//! `4 u (|L|_F P + |T|)` more, with `|L|_F <= √3 s`:
+//! A placement `x -> L x + T` lengthens vectors, and so distances, by at most
+//! `s = |L|`: D becomes `s D`. A vertex passes through one placement after
+//! another. In `L x + T` every component is three products and three sums, with a
+//! relative error of at most 4 u each (u = 2^-53), so the error of a vertex grows
+//! by `4 u (|L|_F P + |T|)`, with `|L|_F <= √3 s`:
 //!
 //! `D' = s D`,  `E' = s E + 5 u (2 s P + |T|)`,  `P' = s P + |T|`
 //!
-//! where 5 and 2 for 4 and √3 leave room for terms of second order. A
-//! point of a triangle is moved no farther than its corners, so D + E bounds
-//! the distance of the mesh as written from the surface, and of the surface from
-//! the mesh. The roundings of the bounds themselves, six a level on at most a
-//! few thousand levels, are covered by a factor `1 + 2^-36`.
+//! where 5 and 2 instead of 4 and √3 leave room for terms of second order. A
+//! point of a triangle moves no farther than its corners, so D + E bounds the
+//! distance of the written mesh from the surface, and of the surface from the
+//! mesh. The factor `1 + 2^-36` covers the rounding of the bounds themselves, six
+//! roundings a level on at most a few thousand levels.
 
 use super::MeshFileError;
 use crate::math::{ChildFromParent, PlacementErrors, UNIT_ROUNDOFF, power_of_two};
@@ -35,7 +35,7 @@ use crate::solid::tessellation::{
 /// Digits of the greatest placement number, and the `/` before it.
 const LONGEST_STEP: u128 = 11;
 
-/// What the mesh of a scene comes to.
+/// The size and accuracy of a scene's mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
     segments: u32,
@@ -43,17 +43,17 @@ pub struct Plan {
     whole: Whole,
 }
 
-/// What a prototype comes to with all that it places, in its own coordinates.
+/// The totals of a prototype and everything placed in it, in its own coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Whole {
     solids: u128,
-    /// Those of them whose meshes are prisms.
+    /// The solids whose meshes are prisms.
     cylinders: u128,
     vertices: u128,
     triangles: u128,
-    /// Prototypes with solids of their own, each time they are placed.
+    /// Placed prototypes that have solids of their own.
     groups: u128,
-    /// At least the bytes of their names and paths.
+    /// An upper bound of the bytes of their names and paths.
     names: u128,
     deviation: f64,
     rounding: f64,
@@ -61,10 +61,10 @@ struct Whole {
 }
 
 impl Plan {
-    /// Counts what the meshes of a scene come to.
+    /// Computes the size and accuracy of the mesh of a scene.
     ///
     /// # Errors
-    /// When there are no meshes with this many sides, or solids that are composed of others.
+    /// If the number of segments is out of range, or a solid is composed of others.
     pub fn new(scene: &Scene, segments: u32, fit: Fit) -> Result<Self, MeshFileError> {
         if !(LEAST_SEGMENTS..=GREATEST_SEGMENTS).contains(&segments) {
             return Err(MeshFileError::Segments { segments });
@@ -121,27 +121,27 @@ impl Plan {
         self.whole.triangles
     }
 
-    /// Every point of the mesh is at most this far from the surface of the
-    /// scene, and every point of that from the mesh, in scene units. Roundings
-    /// are part of it.
+    /// An upper bound of the distance of any point of the mesh from the surface of
+    /// the scene, and of any point of the surface from the mesh, in scene units. It
+    /// includes rounding.
     #[must_use]
     pub fn deviation(&self) -> f64 {
         (self.whole.deviation + self.whole.rounding) * (1.0 + power_of_two(-36))
     }
 
-    /// The part of [`Plan::deviation`] that is rounding: by so much an inscribed
-    /// mesh may reach out of its solid, and a circumscribed one into it.
+    /// The part of [`Plan::deviation`] that is rounding: an inscribed mesh may
+    /// leave its solid by this distance, and a circumscribed one may enter it.
     #[must_use]
     pub fn rounding(&self) -> f64 {
         self.whole.rounding * (1.0 + power_of_two(-36))
     }
 
-    /// At least the bytes of the names of all groups, and how many there are.
+    /// An upper bound of the bytes of the names of all groups, and the number of groups.
     pub(super) fn group_names(&self) -> (u128, u128) {
         (self.whole.names, self.whole.groups)
     }
 
-    /// What a file says of itself, line by line.
+    /// The comment lines of a mesh file.
     pub(super) fn comment(&self, name: &str) -> [String; 6] {
         let printable = |c: char| if c.is_control() { ' ' } else { c };
         let name: String = name.chars().map(printable).collect();
@@ -156,7 +156,7 @@ impl Plan {
     }
 }
 
-/// What a prototype comes to. The description contains no cycles.
+/// The totals of a prototype. The description contains no cycles.
 fn whole(
     scene: &Scene,
     index: PrototypeIndex,
@@ -202,7 +202,7 @@ impl Whole {
         whole
     }
 
-    /// The same, as it is where it is placed.
+    /// The totals in the coordinates of the parent.
     fn placed(self, placement: &Placement) -> Self {
         let map = &placement.parent_from_child;
         let stretch = PlacementErrors::new(map, &ChildFromParent::new(map)).stretch;

@@ -1,4 +1,4 @@
-//! Visits every solid of a scene, where it is placed.
+//! Visits every placed solid of a scene.
 
 use glam::{DAffine3, DVec3};
 
@@ -7,16 +7,15 @@ use crate::scene::{Prototype, PrototypeIndex, Scene};
 use crate::solid::AnySolid;
 use crate::solid::tessellation::{Fit, mesh_of};
 
-/// A prototype with solids of its own, at one of the places that it has in the
-/// scene.
+/// A prototype with solids of its own, in one of its placements in the scene.
 pub(super) struct Instance<'a> {
-    /// What is placed.
+    /// The placed prototype.
     pub prototype: &'a Prototype,
     /// The placements from the root to it, outermost first.
     pub path: &'a [u32],
-    /// The same as maps.
+    /// The maps of these placements.
     parent_from_child: &'a [DAffine3],
-    /// Whether left and right are exchanged.
+    /// Whether the placements together mirror the prototype.
     is_mirrored: bool,
 }
 
@@ -32,8 +31,7 @@ impl Instance<'_> {
         vertices
     }
 
-    /// The corners of a triangle such that its outward side is
-    /// counter-clockwise in the world.
+    /// Orders the corners of a triangle counter-clockwise in the world, seen from outside.
     pub fn outward(&self, [a, b, c]: [u32; 3]) -> [u32; 3] {
         if self.is_mirrored {
             [a, c, b]
@@ -43,26 +41,26 @@ impl Instance<'_> {
     }
 }
 
-/// Calls `action` with every placed prototype that has solids: the root first,
-/// then each placement with what it places.
+/// Calls `action` with every placed prototype that has solids: the root first, then
+/// each placement, followed by the placements inside it.
 pub(super) fn instances(
     scene: &Scene,
     action: &mut dyn FnMut(&Instance) -> Result<(), MeshFileError>,
 ) -> Result<(), MeshFileError> {
-    let mut way = Way {
+    let mut walk = Walk {
         path: Vec::new(),
         parent_from_child: Vec::new(),
     };
-    way.visit(scene, PrototypeIndex::ROOT, false, action)
+    walk.visit(scene, PrototypeIndex::ROOT, false, action)
 }
 
-/// The placements on the way to a prototype.
-struct Way {
+/// The placements from the root to the current prototype.
+struct Walk {
     path: Vec<u32>,
     parent_from_child: Vec<DAffine3>,
 }
 
-impl Way {
+impl Walk {
     fn visit(
         &mut self,
         scene: &Scene,
@@ -83,7 +81,7 @@ impl Way {
             let map = placement.parent_from_child;
             self.path.push(number as u32);
             self.parent_from_child.push(map);
-            // Scenes keep determinants far above the rounding of this one.
+            // The determinants of valid scenes are far above their rounding errors.
             let mirrors = map.matrix3.determinant() < 0.0;
             self.visit(scene, placement.of, is_mirrored != mirrors, action)?;
             self.path.pop();

@@ -1,9 +1,8 @@
-//! The camera as it is aimed: from positions on the film to rays.
+//! The aimed camera, which maps positions on the film to rays.
 //!
 //! Film positions are in pixels, `x` to the right and `y` downward, with
 //! `(0, 0)` at the picture's upper left corner. Rays start at the eye
-//! (perspective) or on the plane through it (orthographic) and count from
-//! `t = 0`.
+//! (perspective) or on the plane through it (orthographic), at `t = 0`.
 
 use glam::{DVec2, DVec3};
 
@@ -12,23 +11,23 @@ use crate::math::{Bounds, Ray};
 use super::ViewVolume;
 use super::description::{Camera, Film, Frame, Projection};
 
-/// The part of the picture that an automatic frame leaves free on each side:
-/// enough to see that nothing is cut, too little to waste the picture.
+/// The share of the picture that an automatic frame leaves free on each side:
+/// large enough to show that nothing is cut off, small enough to waste little.
 const MARGIN: f64 = 0.04;
 
-/// From the scene towards the eye of an automatic frame: a three-quarter view,
-/// 28 degrees above the horizon. A sun at azimuth 135 degrees, where scenes
-/// have it by default, then shines from the left and from behind the viewer.
+/// The direction from the scene to the eye of an automatic frame: a three-quarter
+/// view, 28 degrees above the horizon. A sun at the default azimuth of 135 degrees
+/// then shines from the left and from behind the viewer.
 const AUTO_EYE: DVec3 = DVec3::new(-0.8, -0.4, 0.48);
 
 /// The least distance from the eye of an automatic perspective to the nearest
-/// corner of the scene's box, in diagonals of the box. Without it a wide
-/// angle would put the eye right at the corner, which formally is in the
-/// picture then; with it the near end of a long scene looks at most a few
-/// times larger than the far end.
+/// corner of the scene's box, in diagonals of the box. Without it a wide angle
+/// of view would put the eye at the corner, which then counts as inside the
+/// picture. With it the near end of a long scene looks at most a few times
+/// larger than the far end.
 const CLEARANCE: f64 = 0.25;
 
-/// A camera that is aimed.
+/// A camera with a fixed position, direction and angle of view.
 #[derive(Clone, Debug)]
 pub struct AimedCamera {
     eye: DVec3,
@@ -43,8 +42,8 @@ pub struct AimedCamera {
 }
 
 impl AimedCamera {
-    /// The camera that `description` asks for, where `bounds` hold the scene
-    /// (used by automatic frames) and the picture has the size `film`.
+    /// The camera of `description` for a picture of the size `film`. `bounds`
+    /// contain the scene; automatic frames use them.
     #[must_use]
     pub fn new(description: &Camera, bounds: &Bounds, film: Film) -> Self {
         let size = DVec2::new(f64::from(film.width), f64::from(film.height));
@@ -89,8 +88,8 @@ impl AimedCamera {
         camera
     }
 
-    /// As [`AimedCamera::new`], where the description says by itself what is in
-    /// the picture.
+    /// As [`AimedCamera::new`], if the description alone determines the picture;
+    /// `None` if the camera depends on the bounds of the scene.
     #[must_use]
     pub fn stated(description: &Camera, film: Film) -> Option<Self> {
         let is_stated = match (description.frame, description.projection) {
@@ -101,7 +100,7 @@ impl AimedCamera {
         is_stated.then(|| Self::new(description, &Bounds::at(DVec3::ZERO), film))
     }
 
-    /// What the camera's rays go through.
+    /// The volume that the camera's rays cover.
     #[must_use]
     pub fn view_volume(&self) -> ViewVolume {
         let side = |across: DVec3, half: f64| {
@@ -136,8 +135,8 @@ impl AimedCamera {
         }
     }
 
-    /// The film position where a point is seen; `None` behind the eye of a
-    /// perspective. The position may lie outside the picture.
+    /// The film position of a point; `None` behind the eye of a perspective. The
+    /// position may lie outside the picture.
     #[must_use]
     pub fn project(&self, point: DVec3) -> Option<DVec2> {
         let seen = self.coordinates(point);
@@ -167,9 +166,9 @@ impl AimedCamera {
         })
     }
 
-    /// Moves the eye of a perspective to the nearest place along the view
-    /// from where all corners are in the picture, margin included, and
-    /// sideways so that what is left free is the same on opposite sides.
+    /// Moves the eye of a perspective back to the nearest point from which all
+    /// corners are in the picture, margin included, and sideways so that the
+    /// free space is the same on opposite sides.
     ///
     /// With the slope `s` of the picture's edge, a corner (x, z) is left of
     /// the right edge when `x - shift <= s (z + distance)`, and likewise on
@@ -191,8 +190,8 @@ impl AimedCamera {
         self.eye += self.right * shift_right + self.up * shift_up - self.forward * distance;
     }
 
-    /// Moves the film plane of an orthographic camera before all corners, and
-    /// their middle to the middle of the picture.
+    /// Moves the film plane of an orthographic camera in front of all corners,
+    /// and centers the corners in the picture.
     fn slide_before(&mut self, corners: &[DVec3; 8]) {
         let low = |axis: usize| -greatest(corners.iter().map(|c| -c[axis]));
         let high = |axis: usize| greatest(corners.iter().map(|c| c[axis]));
@@ -202,8 +201,8 @@ impl AimedCamera {
             + self.forward * (low(2) - depth * MARGIN);
     }
 
-    /// Half of the height that shows the scene's box, seen from where the
-    /// orthographic camera is.
+    /// Half of the height that shows the scene's box from the position of the
+    /// orthographic camera.
     fn fitting_half_height(&self, bounds: &Bounds) -> f64 {
         let aspect = self.film.x / self.film.y;
         let corners = self.corners(bounds);
@@ -213,9 +212,9 @@ impl AimedCamera {
 }
 
 /// The shift for which the greatest and the least slope `(x - shift) / depth`
-/// are opposite. Their sum falls as the shift grows, so bisection finds it; 60
-/// halvings exhaust the digits that the picture can show. This shift also
-/// makes the greater of both as small as any shift does.
+/// add up to zero. Their sum falls as the shift grows, so bisection finds it; 60
+/// halvings exhaust the digits that the picture can show. No other shift makes
+/// the larger of the two sizes smaller.
 fn balancing_shift(x: &[f64; 8], depths: &[f64; 8]) -> f64 {
     let (mut low, mut high) = (-greatest(x.iter().map(|x| -x)), greatest(x.iter().copied()));
     for _ in 0..60 {
@@ -230,7 +229,7 @@ fn balancing_shift(x: &[f64; 8], depths: &[f64; 8]) -> f64 {
     0.5 * (low + high)
 }
 
-/// The middle of the box; the origin for an empty one.
+/// The center of the box; the origin for an empty box.
 fn center(bounds: &Bounds) -> DVec3 {
     if bounds.is_empty() {
         DVec3::ZERO
@@ -314,8 +313,8 @@ mod tests {
             for on_film in corners_on_film(&camera, &bounds) {
                 let relative = on_film / DVec2::new(f64::from(size.width), f64::from(size.height));
                 let edge = (relative - 0.5).abs().max_element();
-                // Half the margin is allowed for boxes far from the origin,
-                // whose corners are rounded to few digits of their extent.
+                // Boxes far from the origin may use half of the margin: their
+                // corners are rounded to few digits of their extent.
                 assert!(
                     edge < 0.5 - 0.5 * MARGIN,
                     "seed 7 case {case}: {on_film:?} outside {size:?}, {bounds:?}, {projection:?}"
@@ -341,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn ray_through_projected_point_meets_the_point() {
+    fn ray_through_projected_point_passes_through_the_point() {
         let bounds = Bounds {
             lower: DVec3::new(-1.0, -2.0, 0.0),
             upper: DVec3::new(3.0, 1.0, 5.0),

@@ -1,4 +1,4 @@
-//! What a scene file says about the camera.
+//! Reads the `[camera]` table of a scene file.
 
 use glam::DVec3;
 
@@ -11,8 +11,8 @@ use super::source::Source;
 use crate::math::unit;
 use crate::solid::Cylinder;
 
-/// Least sine of the angle between `up` and the view: below it, the picture's
-/// sides would be made of rounding errors.
+/// The least sine of the angle between `up` and the view: below it, rounding
+/// errors would determine the orientation of the picture.
 const LEAST_UP_SINE: f64 = 1e-6;
 
 /// The camera of `[camera]`.
@@ -79,7 +79,7 @@ fn frame(source: &Source, keys: &CameraKeys) -> Result<Frame, SceneError> {
         if keys.position.is_some() || keys.look_at.is_some() || keys.up.is_some() {
             return Err(source.error(
                 word.span(),
-                "frame = \"auto\" excludes position, look_at and up: state one or the others",
+                "frame = \"auto\" excludes position, look_at and up: use one or the others",
             ));
         }
     }
@@ -94,11 +94,12 @@ fn frame(source: &Source, keys: &CameraKeys) -> Result<Frame, SceneError> {
         }
     };
     for key in [position, look_at] {
-        if vector(key).abs().max_element() > Cylinder::GREATEST {
+        let size = vector(key).abs().max_element();
+        if size > Cylinder::GREATEST {
             return Err(source.error(
                 key.span(),
                 format!(
-                    "the size of a coordinate must be at most {:.1e}",
+                    "a coordinate has the size {size:.1e}: it must be at most {:.1e}",
                     Cylinder::GREATEST
                 ),
             ));
@@ -107,7 +108,7 @@ fn frame(source: &Source, keys: &CameraKeys) -> Result<Frame, SceneError> {
     let view = unit(vector(look_at) - vector(position)).ok_or_else(|| {
         source.error(
             look_at.span(),
-            "look_at is the same point as position: the camera needs a direction",
+            "look_at is the same point as position: the two must differ",
         )
     })?;
     Ok(Frame::LookAt {
@@ -117,7 +118,7 @@ fn frame(source: &Source, keys: &CameraKeys) -> Result<Frame, SceneError> {
     })
 }
 
-/// The upward direction, `z` where none is stated.
+/// The upward direction, `z` by default.
 fn up(
     source: &Source,
     key: Option<&Triple>,
@@ -127,13 +128,13 @@ fn up(
     let up = key.map_or(DVec3::Z, vector);
     let place = key.unwrap_or(look_at).span();
     let Some(direction) = unit(up) else {
-        return Err(source.error(place, "up is zero: it needs a direction, of any length"));
+        return Err(source.error(place, "up is zero: it must be a direction, of any length"));
     };
     if view.cross(direction).length() < LEAST_UP_SINE {
         return Err(source.error_with_help(
             place,
             format!(
-                "the camera looks along up, which is [{}, {}, {}]: no side of the picture would be up",
+                "the camera looks along up, which is [{}, {}, {}]: up must not be parallel to the view",
                 up.x, up.y, up.z
             ),
             "choose another up, such as up = [0, 1, 0] for a view along z",

@@ -1,5 +1,5 @@
-//! The numbers of solids and placements in prototypes, before the files that a scene names
-//! are read, or after.
+//! The numbers of solids and placements in prototypes, before or after the files that a
+//! scene names are read.
 
 use std::collections::HashMap;
 
@@ -18,24 +18,24 @@ pub struct ExpectedCounts {
     pub name: String,
     /// Its own solids.
     pub solids: ExpectedSolids,
-    /// Its own placements, by what is placed.
+    /// Its own placements, by placed prototype.
     pub placed: Vec<PlacedCount>,
-    /// Whether the root places it, itself or through others, or is it.
+    /// Whether it is the root, or the root places it directly or through others.
     pub is_used: bool,
 }
 
 /// The numbers of solids in a prototype.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ExpectedSolids {
-    /// How many of each kind.
+    /// The number of solids of each kind.
     pub counts: SolidCounts,
-    /// The bytes of their records, with what compositions are made of.
+    /// The bytes of their records, including the operands of compositions.
     pub bytes: u64,
 }
 
 impl ExpectedSolids {
-    /// Adds solids of a kind, where cylinders are kept so. Operands of set operations count
-    /// extra.
+    /// Adds solids of a kind; `records` is the storage of cylinders. The operands of set
+    /// operations are not included.
     pub fn add(&mut self, kind: SolidKind, more: u64, records: Records) {
         let bytes = with_solid_kind!(kind, S => <S as Stored>::List::record_bytes(records));
         self.counts.add(kind, more.into());
@@ -49,16 +49,16 @@ impl ExpectedSolids {
     }
 }
 
-/// How often a prototype is placed.
+/// The number of placements of a prototype.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlacedCount {
-    /// What is placed.
+    /// The placed prototype.
     pub of: PrototypeIndex,
-    /// How often.
+    /// The number of placements.
     pub count: u64,
 }
 
-/// Joins the counts of the same prototype.
+/// Adds up the counts of each prototype.
 pub(super) fn placed_counts(
     counts: impl IntoIterator<Item = (PrototypeIndex, u64)>,
 ) -> Vec<PlacedCount> {
@@ -76,11 +76,11 @@ pub(super) fn placed_counts(
 }
 
 impl Prototype {
-    /// How often it places each of the others, in their order. Runs on the rayon pool that
-    /// this is called in.
+    /// The number of its placements of each other prototype, in the order of the prototypes.
+    /// Runs on the caller's rayon pool.
     #[must_use]
     pub fn placed(&self) -> Vec<PlacedCount> {
-        /// Placements that a thread counts at a time.
+        /// The number of placements that a thread counts at a time.
         const SHARE: usize = 1 << 16;
         let shares = self.placements.par_chunks(SHARE).map(|share| {
             let runs = share.chunk_by(|one, next| one.of == next.of);
@@ -93,7 +93,7 @@ impl Prototype {
 }
 
 impl ExpectedCounts {
-    /// Its own placements.
+    /// The number of its own placements.
     #[must_use]
     pub fn placements(&self) -> u64 {
         self.placed
@@ -102,7 +102,7 @@ impl ExpectedCounts {
     }
 }
 
-/// Marks what the root, the first, needs; cycles do no harm.
+/// Marks the prototypes that the root, the first one, uses. Cycles are allowed.
 pub(super) fn mark_used(contents: &mut [ExpectedCounts]) {
     let mut open = vec![PrototypeIndex::ROOT];
     while let Some(index) = open.pop() {
@@ -116,7 +116,7 @@ pub(super) fn mark_used(contents: &mut [ExpectedCounts]) {
 
 impl Scene {
     /// The numbers of solids and placements in the prototypes, in their order. Runs on the
-    /// rayon pool that this is called in.
+    /// caller's rayon pool.
     #[must_use]
     pub fn contents(&self) -> Vec<ExpectedCounts> {
         let prototypes = self.prototypes.iter();

@@ -1,22 +1,22 @@
-//! The cylinders of a prototype, kept in f64 or rounded to f32.
+//! The cylinders of a prototype, stored in f64 or rounded to f32.
 //!
-//! In f64 a record is a cache line, number and all. In f32 it is half of one: the numbers of
-//! primitives are kept apart, as runs of consecutive ones, of which there is one
-//! unless rows were skipped.
+//! In f64 a record fills a cache line, primitive number included. In f32 it fills half a
+//! cache line: the primitive numbers are stored separately, as runs of consecutive numbers,
+//! which is a single run unless rows were skipped.
 //!
 //! **Rounding.** A number is rounded to the nearest f32 once, when it is added.
-//! From then on the rounded cylinder *is* the cylinder: widened to f64 it is
-//! exact, and the true surface that every error bound speaks of is its surface,
-//! whoever asks. Against what was stated a number is off by at most
+//! From then on the rounded cylinder *is* the cylinder: its conversion to f64 is
+//! exact, and every error bound refers to its surface. The difference of a number
+//! from the stated one is at most
 //!
 //! ```text
 //! |f32(x) - x| <= 2^-24 |x|     where |x| >= 2^-126,
 //!                 2^-150        below, where f32 is denormal
 //! ```
 //!
-//! and [`CylinderList::rounding`] is the greatest difference there was. Ends that
-//! become the same point, a radius that becomes zero and a number beyond f32 make
-//! no cylinder, and are refused.
+//! and [`CylinderList::rounding`] is the greatest difference in the list. A cylinder
+//! is rejected if its ends become the same point, its radius becomes zero or a number
+//! exceeds f32.
 
 mod arrangement;
 
@@ -30,10 +30,10 @@ use super::description::{CylinderRecord, MaterialIndex};
 use super::solid_lists::{SolidList, SolidRecord};
 use crate::solid::{Caps, Cylinder, CylinderError};
 
-/// The numbers in which cylinders are kept.
+/// The precision in which cylinders are stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Records {
-    /// As stated, 64 bytes a cylinder.
+    /// Unrounded, 64 bytes a cylinder.
     #[default]
     F64,
     /// Rounded to f32, 32 bytes a cylinder.
@@ -88,7 +88,7 @@ impl CylinderRecord32 {
         Ok(record)
     }
 
-    /// The cylinder of these very numbers.
+    /// The cylinder of exactly these numbers.
     #[inline]
     #[must_use]
     pub fn cylinder(&self) -> Cylinder {
@@ -104,22 +104,21 @@ impl CylinderRecord32 {
     }
 }
 
-/// The cylinders of a prototype. Each has its primitive number with it, whatever
-/// its position.
+/// The cylinders of a prototype, each with its primitive number, in any order.
 #[derive(Clone, Debug)]
 pub struct CylinderList {
-    kept: Kept,
-    /// The positions in the order of the primitive numbers, once it was requested.
+    storage: Storage,
+    /// The positions in the order of the primitive numbers, computed when first needed.
     by_primitive: OnceLock<Vec<u32>>,
 }
 
 #[derive(Clone, Debug)]
-enum Kept {
+enum Storage {
     F64(Arc<Vec<CylinderRecord>>),
     F32(Rounded),
 }
 
-/// The records of a list, for those who trace them: they need not come through the list.
+/// Shared access to the records of a list, so that the tracer does not go through the list.
 #[derive(Clone, Debug)]
 pub(crate) enum SharedRecords {
     F64(Arc<Vec<CylinderRecord>>),
@@ -141,9 +140,9 @@ impl SharedRecords {
 #[derive(Clone, Debug, Default)]
 struct Rounded {
     records: Arc<Vec<CylinderRecord32>>,
-    /// Where consecutive primitive numbers begin: a position and its number.
+    /// The first position and primitive number of each run of consecutive numbers.
     runs: Vec<(u32, u32)>,
-    /// The greatest difference of a number from what was stated.
+    /// The greatest difference of a number from the stated one.
     rounding: f64,
 }
 
@@ -179,19 +178,19 @@ impl Rounded {
 }
 
 impl CylinderList {
-    /// An empty list that keeps cylinders so.
+    /// An empty list that stores cylinders in the given precision.
     #[must_use]
     pub fn new(records: Records) -> Self {
-        let kept = match records {
-            Records::F64 => Kept::F64(Arc::default()),
-            Records::F32 => Kept::F32(Rounded::default()),
+        let storage = match records {
+            Records::F64 => Storage::F64(Arc::default()),
+            Records::F32 => Storage::F32(Rounded::default()),
         };
-        Self::of(kept)
+        Self::of(storage)
     }
 
-    fn of(kept: Kept) -> Self {
+    fn of(storage: Storage) -> Self {
         Self {
-            kept,
+            storage,
             by_primitive: OnceLock::new(),
         }
     }
@@ -199,36 +198,36 @@ impl CylinderList {
     /// Adds a cylinder at the end.
     ///
     /// # Errors
-    /// When the list is of f32 and the rounded cylinder is none.
+    /// If the list is of f32 and the rounded cylinder is invalid.
     pub fn push(&mut self, record: CylinderRecord) -> Result<(), CylinderError> {
-        match &mut self.kept {
-            Kept::F64(records) => Arc::make_mut(records).push(record),
-            Kept::F32(rounded) => rounded.push(&record)?,
+        match &mut self.storage {
+            Storage::F64(records) => Arc::make_mut(records).push(record),
+            Storage::F32(rounded) => rounded.push(&record)?,
         }
         self.by_primitive.take();
         Ok(())
     }
 
-    /// Makes room for exactly this many more, where memory allows it.
+    /// Reserves memory for exactly this many more cylinders, if possible.
     pub(super) fn reserve(&mut self, more: usize) {
-        // What cannot be had now is requested again by `push`.
-        let _ = match &mut self.kept {
-            Kept::F64(records) => Arc::make_mut(records).try_reserve_exact(more),
-            Kept::F32(rounded) => Arc::make_mut(&mut rounded.records).try_reserve_exact(more),
+        // If the reservation fails, `push` allocates again.
+        let _ = match &mut self.storage {
+            Storage::F64(records) => Arc::make_mut(records).try_reserve_exact(more),
+            Storage::F32(rounded) => Arc::make_mut(&mut rounded.records).try_reserve_exact(more),
         };
     }
 
-    /// How many there are.
+    /// The number of cylinders.
     #[inline]
     #[must_use]
     pub fn len(&self) -> usize {
-        match &self.kept {
-            Kept::F64(records) => records.len(),
-            Kept::F32(rounded) => rounded.records.len(),
+        match &self.storage {
+            Storage::F64(records) => records.len(),
+            Storage::F32(rounded) => rounded.records.len(),
         }
     }
 
-    /// Whether there is none.
+    /// Whether the list is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -237,13 +236,13 @@ impl CylinderList {
     /// The cylinder at a position.
     ///
     /// # Panics
-    /// When there is none.
+    /// If the position is not below [`CylinderList::len`].
     #[inline]
     #[must_use]
     pub fn get(&self, position: usize) -> CylinderRecord {
-        match &self.kept {
-            Kept::F64(records) => records[position],
-            Kept::F32(rounded) => {
+        match &self.storage {
+            Storage::F64(records) => records[position],
+            Storage::F32(rounded) => {
                 let record = &rounded.records[position];
                 let number = rounded.primitive(position);
                 CylinderRecord::new(&record.cylinder(), number, record.material)
@@ -254,22 +253,22 @@ impl CylinderList {
     /// The primitive number at a position.
     ///
     /// # Panics
-    /// When there is no cylinder.
+    /// If the position is not below [`CylinderList::len`].
     #[must_use]
     pub fn primitive(&self, position: usize) -> u32 {
-        match &self.kept {
-            Kept::F64(records) => records[position].primitive(),
-            Kept::F32(rounded) => {
+        match &self.storage {
+            Storage::F64(records) => records[position].primitive(),
+            Storage::F32(rounded) => {
                 assert!(
                     position < rounded.records.len(),
-                    "no cylinder at {position}"
+                    "position {position} is beyond the end of the list"
                 );
                 rounded.primitive(position)
             }
         }
     }
 
-    /// All of them in order.
+    /// All cylinders in order.
     #[must_use]
     pub fn iter(&self) -> Iter<'_> {
         Iter {
@@ -278,50 +277,49 @@ impl CylinderList {
         }
     }
 
-    /// The records, where they are of f64.
+    /// The records, if they are of f64.
     #[inline]
     #[must_use]
     pub fn as_f64(&self) -> Option<&[CylinderRecord]> {
-        match &self.kept {
-            Kept::F64(records) => Some(records),
-            Kept::F32(_) => None,
+        match &self.storage {
+            Storage::F64(records) => Some(records),
+            Storage::F32(_) => None,
         }
     }
 
-    /// The records, to be kept.
+    /// Shares the records.
     pub(crate) fn shared(&self) -> SharedRecords {
-        match &self.kept {
-            Kept::F64(records) => SharedRecords::F64(Arc::clone(records)),
-            Kept::F32(rounded) => SharedRecords::F32(Arc::clone(&rounded.records)),
+        match &self.storage {
+            Storage::F64(records) => SharedRecords::F64(Arc::clone(records)),
+            Storage::F32(rounded) => SharedRecords::F32(Arc::clone(&rounded.records)),
         }
     }
 
-    /// The records, where they are of f32.
+    /// The records, if they are of f32.
     #[inline]
     #[must_use]
     pub fn as_f32(&self) -> Option<&[CylinderRecord32]> {
-        match &self.kept {
-            Kept::F64(_) => None,
-            Kept::F32(rounded) => Some(&rounded.records),
+        match &self.storage {
+            Storage::F64(_) => None,
+            Storage::F32(rounded) => Some(&rounded.records),
         }
     }
 
-    /// How they are kept.
+    /// The precision in which the cylinders are stored.
     #[must_use]
     pub fn records(&self) -> Records {
-        match &self.kept {
-            Kept::F64(_) => Records::F64,
-            Kept::F32(_) => Records::F32,
+        match &self.storage {
+            Storage::F64(_) => Records::F64,
+            Storage::F32(_) => Records::F32,
         }
     }
 
-    /// The greatest difference of a coordinate or radius from what was stated:
-    /// 0 in f64.
+    /// The greatest difference of a coordinate or radius from the stated one; 0 in f64.
     #[must_use]
     pub fn rounding(&self) -> f64 {
-        match &self.kept {
-            Kept::F64(_) => 0.0,
-            Kept::F32(rounded) => rounded.rounding,
+        match &self.storage {
+            Storage::F64(_) => 0.0,
+            Storage::F32(rounded) => rounded.rounding,
         }
     }
 }
@@ -336,9 +334,9 @@ impl SolidList for CylinderList {
 
     #[inline]
     fn solid(&self, position: usize) -> impl Borrow<Cylinder> {
-        match &self.kept {
-            Kept::F64(records) => records[position].cylinder(),
-            Kept::F32(rounded) => rounded.records[position].cylinder(),
+        match &self.storage {
+            Storage::F64(records) => records[position].cylinder(),
+            Storage::F32(rounded) => rounded.records[position].cylinder(),
         }
     }
 
@@ -347,14 +345,14 @@ impl SolidList for CylinderList {
     }
 
     fn material(&self, position: usize) -> MaterialIndex {
-        match &self.kept {
-            Kept::F64(records) => records[position].material(),
-            Kept::F32(rounded) => rounded.records[position].material(),
+        match &self.storage {
+            Storage::F64(records) => records[position].material(),
+            Storage::F32(rounded) => rounded.records[position].material(),
         }
     }
 
-    /// The position of a primitive number. The first time all are sorted, which
-    /// takes 4 bytes a cylinder from then on.
+    /// The position of a primitive number. The first call sorts all numbers and keeps
+    /// the order, which takes 4 bytes a cylinder.
     fn position(&self, primitive: u32) -> Option<usize> {
         let by_primitive = self.by_primitive.get_or_init(|| {
             let mut positions: Vec<u32> = (0..self.len() as u32).collect();
@@ -374,27 +372,28 @@ impl SolidList for CylinderList {
     /// Cylinders may have any order.
     fn sort(&mut self) {}
 
-    /// Gives back the memory that no cylinder uses, if it is more than an
-    /// eighth: records are aligned, so that giving back is to copy them, with
-    /// both there for a while.
+    /// Frees the unused memory if it is more than an eighth. The records are aligned, so
+    /// this copies them, and both copies exist for a while.
     fn trim(&mut self) {
         let is_loose = |capacity: usize, len: usize| capacity - len > capacity / 8;
-        match &mut self.kept {
-            Kept::F64(records) if is_loose(records.capacity(), records.len()) => {
+        match &mut self.storage {
+            Storage::F64(records) if is_loose(records.capacity(), records.len()) => {
                 Arc::make_mut(records).shrink_to_fit();
             }
-            Kept::F32(rounded) if is_loose(rounded.records.capacity(), rounded.records.len()) => {
+            Storage::F32(rounded)
+                if is_loose(rounded.records.capacity(), rounded.records.len()) =>
+            {
                 Arc::make_mut(&mut rounded.records).shrink_to_fit();
             }
             _ => {}
         }
     }
 
-    /// The bytes of the records, and of the numbers that are kept apart.
+    /// The bytes of the records and of the numbers stored separately.
     fn records_bytes(&self) -> usize {
-        let apart = match &self.kept {
-            Kept::F64(_) => 0,
-            Kept::F32(rounded) => size_of_val(rounded.runs.as_slice()),
+        let apart = match &self.storage {
+            Storage::F64(_) => 0,
+            Storage::F32(rounded) => size_of_val(rounded.runs.as_slice()),
         };
         self.len() * self.records().record_bytes() + apart
     }
@@ -412,7 +411,7 @@ impl Default for CylinderList {
 
 impl From<Vec<CylinderRecord>> for CylinderList {
     fn from(records: Vec<CylinderRecord>) -> Self {
-        Self::of(Kept::F64(Arc::new(records)))
+        Self::of(Storage::F64(Arc::new(records)))
     }
 }
 

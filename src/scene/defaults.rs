@@ -1,5 +1,5 @@
-//! What a scene is where nothing is stated, for files that leave it out and for
-//! scenes made without a file.
+//! The default values of a scene, for keys missing from a file and for scenes made
+//! without a file.
 
 use glam::DVec3;
 
@@ -21,10 +21,10 @@ pub(super) const RENDER: RenderSettings = RenderSettings {
 
 pub(super) const BACKGROUND: DVec3 = DVec3::new(0.8, 0.9, 1.0);
 
-/// The reflectance of solids that name no material.
+/// The reflectance of solids without a material.
 const REFLECTANCE: f64 = 0.5;
 
-/// The material of solids that name none.
+/// The material of solids without a material.
 pub(super) fn material() -> Material {
     Material {
         name: String::new(),
@@ -33,8 +33,8 @@ pub(super) fn material() -> Material {
 }
 
 impl Scene {
-    /// The scene of these prototypes, the first of which is the root, with all
-    /// else as in a scene file that states nothing else.
+    /// A scene of these prototypes, with default values otherwise. The first
+    /// prototype is the root.
     #[must_use]
     pub fn new(prototypes: Vec<Prototype>) -> Self {
         Self {

@@ -1,5 +1,5 @@
-//! The validated description of a scene: everything `tracer` and `render` need,
-//! nothing of the files it came from.
+//! The validated description of a scene: everything that `tracer` and `render` need,
+//! independent of the files it came from.
 
 use super::cylinder_list::Records;
 use super::origins::Origins;
@@ -7,7 +7,7 @@ use super::solid_lists::Solids;
 use crate::solid::{AnySolid, Caps, Cylinder};
 use glam::{DAffine3, DVec3};
 
-/// A whole scene. What it contains has been checked when it was loaded.
+/// A whole scene. Loading validates its content.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// All prototypes; the first is the root, the scene itself. Prototypes
@@ -21,20 +21,20 @@ pub struct Scene {
     pub film: Film,
     /// What `render` computes unless the command line says otherwise.
     pub render: RenderSettings,
-    /// The sun, where there is one.
+    /// The sun, if any.
     pub sun: Option<Sun>,
-    /// The sky, where there is one.
+    /// The sky, if any.
     pub sky: Option<Sky>,
-    /// Linear RGB seen where a camera ray misses and there is no sky.
+    /// Linear RGB of camera rays that miss, if the scene has no sky.
     pub background: DVec3,
-    /// Rows of tables left out because `degenerate = "skip"` was requested.
+    /// The number of table rows skipped because of `degenerate = "skip"`.
     pub skipped_rows: u64,
-    /// Notes on the files for the user, such as columns that are not read.
+    /// Notes on the files for the user, such as ignored columns.
     pub notes: Vec<String>,
 }
 
 impl Scene {
-    /// How cylinders are kept: in f32 where those of any prototype are.
+    /// The precision of cylinders: f32 if the cylinders of any prototype are in f32.
     #[must_use]
     pub fn records(&self) -> Records {
         let is_rounded =
@@ -45,7 +45,7 @@ impl Scene {
         }
     }
 
-    /// The greatest difference of a kept number from the stated one.
+    /// The greatest difference of a stored number from the stated one.
     #[must_use]
     pub fn rounding(&self) -> f64 {
         let lists = self.prototypes.iter();
@@ -76,9 +76,9 @@ pub struct Prototype {
     pub solids: Solids,
     /// The placements, in the order of their instance numbers.
     pub placements: Vec<Placement>,
-    /// The files that the solids come from.
+    /// The source files of the solids.
     pub solid_origins: Origins,
-    /// The files that the placements come from.
+    /// The source files of the placements.
     pub placement_origins: Origins,
 }
 
@@ -95,13 +95,13 @@ impl Prototype {
     }
 }
 
-/// Another prototype put into this one.
+/// Another prototype placed in this one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// What is placed.
+    /// The placed prototype.
     pub of: PrototypeIndex,
-    /// Takes points of the placed prototype to points of the one it is placed
-    /// in: `L x + translation`, with finite entries and `L` regular.
+    /// Maps points of the placed prototype to points of the one that contains the
+    /// placement: `L x + translation`, with finite entries and `L` invertible.
     pub parent_from_child: DAffine3,
 }
 
@@ -154,7 +154,7 @@ impl CylinderRecord {
     }
 }
 
-/// How a surface scatters light: a diffuse one, for now.
+/// How a surface scatters light. All materials are diffuse.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// The name in the scene file; empty for the default material.
@@ -163,7 +163,7 @@ pub struct Material {
     pub color: DVec3,
 }
 
-/// Where the picture is taken from.
+/// The camera: projection and viewpoint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     /// The kind of projection.
@@ -172,7 +172,7 @@ pub struct Camera {
     pub frame: Frame,
 }
 
-/// How points are projected on the picture.
+/// How points are projected onto the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
     /// Through a point.
@@ -187,18 +187,18 @@ pub enum Projection {
     },
 }
 
-/// How the viewpoint is found.
+/// The viewpoint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Frame {
-    /// So that the whole scene is in the picture.
+    /// Chosen so that the whole scene is in the picture.
     Auto,
-    /// As stated.
+    /// Stated by the user.
     LookAt {
         /// The eye.
         position: DVec3,
-        /// A point in the middle of the picture, other than `position`.
+        /// The point at the center of the picture, other than `position`.
         look_at: DVec3,
-        /// The direction that is upward in the picture, not along the view.
+        /// The upward direction in the picture, not parallel to the view.
         up: DVec3,
     },
 }
@@ -215,16 +215,16 @@ pub struct Film {
 /// What `render` computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderSettings {
-    /// The picture's meaning.
+    /// The meaning of a pixel.
     pub integrator: Integrator,
     /// Samples a pixel, at least 1.
     pub spp: u32,
 }
 
-/// What a pixel shows.
+/// The quantity that a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Integrator {
-    /// The world normal as a colour.
+    /// The world normal as a color.
     Normal,
     /// Ambient occlusion.
     Ao,

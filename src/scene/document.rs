@@ -1,6 +1,6 @@
-//! The keys of a scene file, as written: types are checked, meaning
-//! is not. A value that may turn out wrong later keeps its place in the
-//! file ([`Spanned`]).
+//! The keys of a scene file, as written: their types are checked, their meaning
+//! is not. Values that are validated later keep their place in the file
+//! ([`Spanned`]).
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -16,31 +16,31 @@ use super::values::{ColumnOrList, Keys, List, Number, NumberOrList, Whole};
 use crate::for_each_solid;
 use crate::solid::SolidKind;
 
-/// Three numbers and their place.
+/// Three numbers with their place.
 pub(super) type Triple = Spanned<List<Number, 3>>;
 /// Three columns, each with its place.
 pub(super) type ThreeColumns = List<Spanned<ColumnKey>, 3>;
 
-/// Declares the tables that contain solids and placements, each with the lists of
-/// those behind its own keys, because serde cannot refuse unknown keys in a flattened
-/// struct; and [`Body`], which borrows the lists.
-macro_rules! holders {
+/// Declares the tables that contain solids and placements, and [`Body`], which borrows
+/// their lists. Each table repeats the lists after its own keys, because serde cannot
+/// reject unknown keys in a flattened struct.
+macro_rules! containers {
     (
         [$($others:tt)*], $($(#[$meta:meta])* $name:ident $keys:tt)*;
         $({ $type:ident $solid:ident $($rest:tt)* })*
     ) => {
-        holders! {
+        containers! {
             @ [$($solid: <crate::solid::$type as SceneSolid>::Keys,)* $($others)*]
             $($(#[$meta])* $name $keys)*
         }
     };
     (@ $lists:tt $($(#[$meta:meta])* $name:ident $keys:tt)*) => {
-        $(holder!($lists $(#[$meta])* $name $keys);)*
+        $(container!($lists $(#[$meta])* $name $keys);)*
         body!($lists);
     };
 }
 
-macro_rules! holder {
+macro_rules! container {
     ([$($list:ident: $entry:ty,)*]
      $(#[$meta:meta])* $name:ident {
         $($(#[$attribute:meta])* pub $key:ident: $kind:ty,)*
@@ -54,7 +54,7 @@ macro_rules! holder {
         }
 
         impl $name {
-            /// What it contains, under a name.
+            /// Its lists, under a name.
             fn body<'a>(&'a self, name: &'a str) -> Body<'a> {
                 Body { name, $($list: &self.$list,)* }
             }
@@ -64,7 +64,7 @@ macro_rules! holder {
 
 macro_rules! body {
     ([$($list:ident: $entry:ty,)*]) => {
-        /// What the root and every prototype contain.
+        /// The lists of the root or a prototype.
         #[derive(Clone, Copy)]
         pub(super) struct Body<'a> {
             pub name: &'a str,
@@ -73,13 +73,13 @@ macro_rules! body {
     };
 }
 
-/// Adds the lists of files to those that `holders` gets.
+/// Adds the lists of files to those of `containers`.
 macro_rules! with_files {
     ([$($others:tt)*] [$($structs:tt)*] $({ $keys:ident $name:ident })*) => {
-        for_each_solid! { holders [$($name: $keys,)* $($others)*], $($structs)*; }
+        for_each_solid! { containers [$($name: $keys,)* $($others)*], $($structs)*; }
 
         impl<'a> Body<'a> {
-            /// The files of solids, in the order in which their solids are numbered.
+            /// The files of solids, in the order of the primitive numbers.
             pub fn files(self) -> impl Iterator<Item = &'a dyn SolidFile> {
                 std::iter::empty()
                     $(.chain(self.$name.iter().map(|Keys(keys)| keys as &dyn SolidFile)))*
@@ -134,7 +134,7 @@ impl Document {
 macro_rules! body_solids {
     ($({ $type:ident $name:ident $($rest:tt)* })*) => {
         impl Body<'_> {
-            /// How many solids of each kind have a table.
+            /// The number of tables of each kind of solid.
             pub fn solids(&self) -> impl Iterator<Item = (SolidKind, usize)> {
                 [$((SolidKind::$type, self.$name.len())),*].into_iter()
             }

@@ -1,5 +1,5 @@
-//! Why a scene cannot be loaded. Each error's `Display` is the whole message
-//! for a user: where, which value, and what would be right.
+//! Errors of loading a scene. Each error's `Display` is the whole message for a
+//! user: the place, the wrong value, and what would be right.
 
 use std::fmt;
 use std::io;
@@ -15,19 +15,19 @@ pub enum SceneError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// The operating system's error.
         source: io::Error,
     },
-    /// A file of another kind is where a scene file is needed.
+    /// The file is of another kind than a scene file.
     #[error("{}: this is {what}; a scene is a TOML file{purpose}, such as:\n\n{example}", path.display())]
     NotAScene {
         /// The file.
         path: PathBuf,
-        /// What it is.
+        /// The kind of the file.
         what: &'static str,
-        /// What the scene file would do with it.
+        /// How a scene file would use it.
         purpose: &'static str,
-        /// The lines of such a file.
+        /// An example of such a scene file.
         example: String,
     },
     /// A file is not text in UTF-8.
@@ -39,30 +39,30 @@ pub enum SceneError {
         line: u64,
         /// The place in the line, in characters from 1; `None` in tables.
         column: Option<usize>,
-        /// Whether the file starts as one in UTF-16 does.
+        /// Whether the file starts like a UTF-16 file.
         utf16: bool,
     },
-    /// Something in the scene file is wrong.
+    /// A statement of the scene file is wrong.
     #[error(transparent)]
     Statement(Box<Statement>),
-    /// Something in a row of a table, or in its header, is wrong.
+    /// A row of a table, or its header, is wrong.
     #[error("{}:{line}:{} {message}{}", path.display(), column_text(column.as_deref()), help_text(help.as_deref()))]
     Row {
         /// The table.
         path: PathBuf,
         /// The line, from 1.
         line: u64,
-        /// The column's name, where one column is to blame.
+        /// The column's name, if a single column is wrong.
         column: Option<String>,
         /// The value and what is wrong with it.
         message: String,
-        /// What to do about it.
+        /// How to correct it.
         help: Option<String>,
     },
 }
 
 impl SceneError {
-    /// That `message` is true of a row of a table.
+    /// An error in a row of a table.
     pub(super) fn row(path: &Path, line: u64, message: impl Into<String>) -> Self {
         Self::Row {
             path: path.to_owned(),
@@ -85,12 +85,12 @@ pub struct Statement {
     pub column: usize,
     /// The value and what is wrong with it.
     pub message: String,
-    /// What to do about it.
+    /// How to correct it.
     pub help: Option<String>,
     pub(super) excerpt: Option<Excerpt>,
 }
 
-/// The line of a wrong place, to be shown below the message.
+/// The line of a wrong place, shown below the message.
 #[derive(Debug)]
 pub(super) struct Excerpt {
     pub text: String,
@@ -119,7 +119,8 @@ impl fmt::Display for Statement {
         if let Some(help) = &self.help {
             group = group.element(Level::HELP.message(help.as_str()));
         }
-        // The renderer replaces the controls of ASCII; a terminal obeys those from U+0080 on too.
+        // The renderer replaces only the control characters of ASCII. A terminal also obeys
+        // those from U+0080 on.
         let text = Renderer::plain().render(&[group]);
         formatter.write_str(&super::names::printable_lines(&text))
     }
@@ -128,10 +129,10 @@ impl fmt::Display for Statement {
 /// The operating system's reason, or a plainer one.
 fn unreadable(path: &std::path::Path, source: &io::Error) -> String {
     if path.is_dir() {
-        return "it is a directory, a file is needed".to_owned();
+        return "it is a directory: a file is needed".to_owned();
     }
     match source.kind() {
-        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::NotFound => "the file does not exist".to_owned(),
         _ => source.to_string(),
     }
 }
@@ -141,8 +142,8 @@ fn encoding(path: &std::path::Path, line: u64, column: Option<usize>, utf16: boo
         Some(column) => format!("{}:{line}:{column}", path.display()),
         None => format!("{}:{line}", path.display()),
     };
-    let now = if utf16 { ", it looks like UTF-16" } else { "" };
-    format!("{place}: the text is not UTF-8{now}; save the file as UTF-8")
+    let guess = if utf16 { " (it looks like UTF-16)" } else { "" };
+    format!("{place}: the text is not UTF-8{guess}: save the file as UTF-8")
 }
 
 fn column_text(column: Option<&str>) -> String {

@@ -1,6 +1,6 @@
-//! What must hold of prototypes that place each other: no cycles, no level too
-//! many, solids at the end of every branch, and numbers that stay in range all
-//! the way down.
+//! Validates the graph of prototypes that place each other: it has no cycles and
+//! not too many levels, every branch ends in solids, and numbers stay in range
+//! throughout.
 
 use super::description::Prototype;
 use super::error::SceneError;
@@ -14,9 +14,9 @@ use crate::solid::Cylinder;
 pub(super) struct Node<'a> {
     pub prototype: &'a Prototype,
     pub edges: &'a [Edge],
-    /// At least the size of every coordinate of its own solids.
+    /// An upper bound of the size of its own solids' coordinates.
     pub reach: f64,
-    /// Rows of its tables that were left out.
+    /// Rows of its tables that were skipped.
     pub skipped: u64,
 }
 
@@ -25,7 +25,7 @@ impl Node<'_> {
         !self.prototype.solids.is_empty()
     }
 
-    /// Why it contains no solids, where rows were left out; all of them then.
+    /// Why it contains no solids, if all of its rows were skipped.
     fn emptied(&self) -> String {
         match self.skipped {
             0 => String::new(),
@@ -34,17 +34,17 @@ impl Node<'_> {
     }
 }
 
-/// What a prototype and all that is placed in it come to.
+/// The totals of a prototype and everything placed in it.
 #[derive(Clone, Copy, Default)]
 struct Summary {
     has_solids: bool,
-    /// Placements inside each other.
+    /// The depth of nested placements.
     levels: usize,
-    /// At least the size of every coordinate.
+    /// An upper bound of the size of every coordinate.
     reach: f64,
-    /// At least the factor by which vectors grow on their way outward.
+    /// An upper bound of the factor by which vectors grow when mapped outward.
     stretch: f64,
-    /// At least the factor by which they grow on their way inward.
+    /// An upper bound of the factor by which they grow when mapped inward.
     squeeze: f64,
 }
 
@@ -58,7 +58,7 @@ pub(super) fn check(source: &Source, nodes: &[Node]) -> Result<(), SceneError> {
         return Err(source.error_with_help(
             0..0,
             format!(
-                "the scene is empty: it holds no solids{}",
+                "the scene is empty: it contains no solids{}",
                 nodes.first().map_or_else(String::new, Node::emptied)
             ),
             "add a [[cylinder]] or another solid, a [[cylinder_table]] or an [[swc]], or place a prototype with an [[instance]]",
@@ -88,7 +88,7 @@ fn summary(
         let wrong = |message: String| Err(source.error(edge.place.clone(), message));
         if !child.has_solids {
             return wrong(format!(
-                "the prototype {name} holds no solids{}: there is nothing to place",
+                "the prototype {name} contains no solids{}: it cannot be placed",
                 nodes[of].emptied()
             ));
         }
@@ -100,7 +100,7 @@ fn summary(
                 total.levels
             ));
         }
-        // A point is at most √3 times as far away as its greatest coordinate.
+        // The distance of a point is at most √3 times its greatest coordinate.
         let reach = 2.0 * edge.reach.stretch * child.reach + edge.reach.translation;
         if reach > Cylinder::GREATEST {
             return wrong(format!(
@@ -113,7 +113,7 @@ fn summary(
         let squeeze = edge.reach.squeeze * child.squeeze;
         if stretch.max(squeeze) > GREATEST_STRETCH {
             return wrong(format!(
-                "nested placements scale what is in {name} by factors from {:.1e} to {stretch:.1e}: supported are {:.1e} to {:.1e}",
+                "nested placements scale the content of {name} by factors from {:.1e} to {stretch:.1e}: factors from {:.1e} to {:.1e} are supported",
                 1.0 / squeeze,
                 1.0 / GREATEST_STRETCH,
                 GREATEST_STRETCH
@@ -127,7 +127,7 @@ fn summary(
 
 /// An order in which every prototype comes after those placed in it.
 ///
-/// A depth-first search with a stack of its own: a chain of placements may be
+/// A depth-first search with its own stack, because a chain of placements may be
 /// as long as the file.
 fn children_first(source: &Source, nodes: &[Node]) -> Result<Vec<usize>, SceneError> {
     #[derive(Clone, Copy, PartialEq)]
@@ -172,7 +172,7 @@ fn children_first(source: &Source, nodes: &[Node]) -> Result<Vec<usize>, SceneEr
     Ok(order)
 }
 
-/// That the end of `path` places `child`, which is on the path.
+/// The error that the end of `path` places `child`, which is on the path.
 fn cycle(source: &Source, nodes: &[Node], path: &[usize], child: usize, edge: &Edge) -> SceneError {
     const MOST_SHOWN: usize = 12;
     let start = path.iter().position(|&index| index == child).unwrap_or(0);

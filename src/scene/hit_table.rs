@@ -1,5 +1,5 @@
-//! Tables of hits of another program: the columns `hit` and `t` of `trace`, a row a
-//! ray in their order. Where there is a column `ray`, it must count the rows.
+//! Tables of hits of another program: the columns `hit` and `t` of `trace`, one row for each
+//! ray in order. A column `ray`, if present, must number the rows.
 
 use std::io::Read;
 use std::path::Path;
@@ -27,7 +27,7 @@ const KNOWN: [&str; 15] = [
     "error",
 ];
 
-/// A row.
+/// A row of the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GivenHit {
     /// The ray's parameter; `None` for a miss.
@@ -36,28 +36,28 @@ pub struct GivenHit {
     pub line: u64,
 }
 
-/// All rows of a table, and a note on columns that are not read.
+/// All rows of a table, and a note on ignored columns.
 #[derive(Debug)]
 pub struct GivenHits {
-    /// One a ray.
+    /// One row for each ray.
     pub hits: Vec<GivenHit>,
-    /// The names of unknown columns, in a sentence.
+    /// A sentence that names the unknown columns.
     pub unread: Option<String>,
 }
 
 impl GivenHits {
-    /// Reads the table of a file or a pipe, of at most `most` rows and one.
+    /// Reads the table of a file or a pipe, up to `most + 1` rows.
     ///
     /// # Errors
-    /// When it cannot be read, or a cell is malformed.
+    /// If the table cannot be read, or a cell is malformed.
     pub fn open(path: &Path, format: TableFormat, most: usize) -> Result<Self, SceneError> {
         Self::read(input::open(path)?, path, format, most)
     }
 
-    /// The same from anything; errors call it `path`.
+    /// As [`GivenHits::open`], from any reader; errors name it `path`.
     ///
     /// # Errors
-    /// When it cannot be read, or a cell is malformed.
+    /// If the table cannot be read, or a cell is malformed.
     pub fn read(
         input: impl Read,
         path: &Path,
@@ -75,7 +75,7 @@ impl GivenHits {
         let unread = layout.unread(&known);
         let mut rows = table.rows();
         let mut hits = Vec::new();
-        // One more than `most` shows that there are too many.
+        // One row more than `most` shows that the table has too many.
         while hits.len() <= most {
             let Some(row) = rows.next_row()? else {
                 break;
@@ -100,13 +100,14 @@ impl GivenHits {
     }
 }
 
-/// A table with several rows a ray, or in another order, is not compared.
-fn check_number(row: &Row, column: Column, due: usize) -> Result<(), SceneError> {
+/// Rejects a table with several rows for a ray, or in another order.
+fn check_number(row: &Row, column: Column, expected: usize) -> Result<(), SceneError> {
     let number = row.any_number(column).map_err(|fault| row.refused(fault))?;
-    if number == due as f64 {
+    if number == expected as f64 {
         return Ok(());
     }
     let cell = quoted(row.cell(column));
-    let message = format!("{cell} where {due} is due: there must be one row a ray, in order");
+    let message =
+        format!("expected {expected}, found {cell}: the table must have one row per ray, in order");
     Err(row.error(Some(column), message))
 }

@@ -1,19 +1,19 @@
-//! How many lines a file has, before it is read in earnest.
+//! Counts the lines of a file before it is parsed.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The lines of a file, the last counted also where nothing ends it; 0 of what
-/// is no file, such as a pipe, which can be read once only.
+/// The number of lines of a file, including a last line without an end. 0 for a pipe and
+/// the like, which can be read only once.
 pub(super) fn lines(path: &Path) -> io::Result<u64> {
-    // Asked before it is opened: opening a pipe waits for somebody to write.
+    // Checked before opening the file: opening a pipe waits for a writer.
     if !fs::metadata(path)?.is_file() {
         return Ok(0);
     }
     let mut file = File::open(path)?;
     let mut bytes = vec![0; 1 << 16];
-    // Lines end with LF, CR LF or CR, in one file maybe with each of them.
+    // Lines end with LF, CR LF or CR; one file may contain all three.
     let (mut lines, mut is_after_return) = (1, false);
     loop {
         match file.read(&mut bytes) {
@@ -37,8 +37,8 @@ pub(super) fn lines(path: &Path) -> io::Result<u64> {
     }
 }
 
-/// How often a byte is among others, in shares that a byte can count: so it is as
-/// fast as memory is.
+/// The number of occurrences of a byte. The counts of short chunks fit into a byte, which
+/// vectorizes to the speed of memory.
 fn count(bytes: &[u8], one: u8) -> u64 {
     let in_share = |share: &[u8]| -> u8 { share.iter().map(|&byte| u8::from(byte == one)).sum() };
     bytes
@@ -55,7 +55,7 @@ mod tests {
     fn lines_of_all_ends_are_counted() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("table");
-        // At the end of what is read at a time, too.
+        // Also at the end of a buffer.
         let long = "x".repeat((1 << 16) - 1);
         for (text, expected) in [
             ("", 1),

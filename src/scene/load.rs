@@ -1,4 +1,4 @@
-//! From a scene file to a checked description.
+//! Turns a scene file into a validated description.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -29,20 +29,19 @@ use super::transform::GREATEST_ENTRY;
 use super::values::{Keys, NumberOrList, Whole};
 use crate::for_each_solid;
 
-/// Reads a scene file and the tables it names, and checks everything.
+/// Reads a scene file and the files that it names, and validates them.
 ///
 /// `docs/scene-file.md` describes the file. Paths in it are relative to its
 /// folder.
 ///
 /// # Errors
-/// When a file cannot be read, or anything in one is not as described there.
-/// The error's text names the file, the line and the value, and says what
-/// would be right.
+/// If a file cannot be read, or differs from that description. The message names
+/// the file, the line and the value, and states what would be right.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
     SceneFile::read(path)?.load()
 }
 
-/// From the keys of a scene file to the scene.
+/// Turns the keys of a scene file into the scene.
 pub(super) fn lower(
     source: &Source,
     document: Document,
@@ -90,12 +89,12 @@ pub(super) fn lower(
     })
 }
 
-/// The keys of a table, all of them at their defaults where it is not stated.
+/// The keys of a table, or default keys if the file does not contain it.
 fn keys<T: Default>(table: Option<Keys<T>>) -> T {
     table.map_or_else(T::default, |Keys(keys)| keys)
 }
 
-/// How cylinders are kept.
+/// The precision of cylinders.
 pub(super) fn records(
     source: &Source,
     word: Option<&Spanned<String>>,
@@ -106,7 +105,7 @@ pub(super) fn records(
     })
 }
 
-/// The numbers of the prototypes; the root has none of their names.
+/// The indices of the prototypes by name, without the root.
 fn prototype_index(
     source: &Source,
     prototypes: &[Keys<PrototypeKeys>],
@@ -122,7 +121,7 @@ fn prototype_index(
         .collect())
 }
 
-/// What every entry of a prototype may refer to.
+/// The data that the entries of a prototype refer to.
 struct Loader<'a> {
     source: &'a Source,
     tables: &'a Tables<'a>,
@@ -131,7 +130,7 @@ struct Loader<'a> {
     prototypes: &'a HashMap<String, PrototypeIndex>,
 }
 
-/// A prototype, and what the check of all prototypes needs of it.
+/// A prototype, and the data that the check of all prototypes needs.
 struct Lowered {
     prototype: Prototype,
     edges: Vec<Edge>,
@@ -151,8 +150,8 @@ impl Lowered {
     }
 }
 
-/// Adds the solids of each kind. Those of files are numbered behind the first kind, the
-/// cylinders.
+/// Adds the solids of each kind. The numbers of solids from files follow those of the first
+/// kind, the cylinders.
 macro_rules! add_in_order {
     (
         $loader:ident $solids:ident $body:ident;
@@ -166,7 +165,7 @@ macro_rules! add_in_order {
 }
 
 impl Loader<'_> {
-    /// The solids and placements, in the order of their numbers.
+    /// Collects the solids and placements of a prototype, in the order of their numbers.
     fn body(&self, body: &Body) -> Result<Lowered, SceneError> {
         let source = self.source;
         let mut solids = SolidCollector::new(self.records);
@@ -211,7 +210,7 @@ impl Loader<'_> {
         })
     }
 
-    /// Adds the solids that come from files.
+    /// Adds the solids from files.
     fn add_files(&self, solids: &mut SolidCollector, body: &Body) -> Result<(), SceneError> {
         let context = Context {
             source: self.source,
@@ -285,7 +284,7 @@ impl Loader<'_> {
         })
     }
 
-    /// That the solid at a place is not added.
+    /// The error that the solid at a place cannot be added.
     fn refused(&self, place: Range<usize>, refusal: &Refusal) -> SceneError {
         let (message, help) = refusal.message();
         match help {
@@ -300,7 +299,7 @@ impl Loader<'_> {
             names.sort_unstable();
             self.source.error_with_help(
                 of.span(),
-                format!("there is no prototype {}", quoted(of.get_ref())),
+                format!("unknown prototype {}", quoted(of.get_ref())),
                 suggestion(of.get_ref(), names, "prototypes"),
             )
         })
@@ -345,7 +344,7 @@ impl Loader<'_> {
             return wrong(
                 key.span(),
                 format!(
-                    "scale is [{}, {}]: it must be a positive number, or the least and the greatest, in that order, between 2^-100 and 2^100",
+                    "scale is [{}, {}]: it must be a number, or the least and the greatest in that order, between 2^-100 and 2^100",
                     scale[0], scale[1]
                 ),
             );
@@ -364,7 +363,9 @@ impl Loader<'_> {
         if scatter.reach().translation > GREATEST_ENTRY {
             return wrong(
                 keys.spacing.span(),
-                format!("spacing is {spacing}: with {count} items it reaches beyond 2^100"),
+                format!(
+                    "spacing is {spacing}: with {count} items the scatter reaches beyond 2^100"
+                ),
             );
         }
         Ok(scatter)

@@ -1,22 +1,23 @@
 //! The scene as the user states it, in f64, and the files it is read from.
 //!
 //! [`load`] reads a scene file in TOML (`docs/scene-file.md`) in three steps:
-//! `document` contains the keys as written, with their places; the
-//! entries are lowered one kind a file (`solids`, with their `pose`,
-//! `set_operations`, the `formats` of files, `placing`, `scatter`,
-//! `camera`, `settings`), streaming the rows of tables, which `table` reads and
-//! `named_table` opens for them; `solid_collector` collects the
-//! solids of a prototype and numbers them; `graph` checks how prototypes place each
-//! other. `scene_file` knows the file between the two
-//! first steps, and `contents` what it will hold, so that a scene which is too
-//! large is refused early. `cylinder_list` keeps cylinders in f64 or f32,
-//! `solid_lists` the other kinds; `aimed_camera` aims the camera. The result is a [`Scene`] that needs no
-//! further checks and knows nothing of files.
 //!
-//! [`save`] writes a scene as such files.
+//! 1. `document` contains the keys as written, with their places.
+//! 2. The entries are turned into solids, placements and settings, one kind in each
+//!    file: `solids` with their `pose`, `set_operations`, the `formats` of files,
+//!    `placing`, `scatter`, `camera` and `settings`. Rows of tables are streamed;
+//!    `named_table` opens the tables and `table` reads them. `solid_collector` collects
+//!    and numbers the solids of a prototype.
+//! 3. `graph` checks how prototypes place each other.
 //!
-//! `number_table` and `hit_table` read what else comes as tables: rays, points, and the
-//! hits of another program.
+//! `scene_file` is the state after the first step; `contents` counts what loading will
+//! make, so that a scene that is too large is rejected early. `cylinder_list` stores
+//! cylinders in f64 or f32, and `solid_lists` the other kinds; `aimed_camera` aims the
+//! camera. The result is a [`Scene`] that needs no further checks and does not depend on
+//! files. [`save`] writes it as such files.
+//!
+//! `number_table` and `hit_table` read other tables: rays, points, and the hits of another
+//! program.
 
 mod aimed_camera;
 mod camera;

@@ -1,5 +1,4 @@
-//! Tables that a scene file names: opens them, finds their columns and limits their
-//! memory.
+//! Opens the tables that a scene file names, finds their columns and limits their memory.
 
 use std::cell::{Cell, RefCell};
 use std::fs::File;
@@ -13,10 +12,10 @@ use super::lines::lines;
 use super::source::Source;
 use super::table::{Column, ColumnKey, Decimal, Delimiter, Row, Rows, Table, TableFormat, input};
 
-/// What all tables of a scene file share.
+/// The data that all tables of a scene file share.
 pub(super) struct Tables<'a> {
     pub source: &'a Source,
-    /// Bytes left for the rows of pipes, which cannot be counted beforehand.
+    /// Bytes left for the rows of pipes, which cannot be counted in advance.
     memory: Cell<u64>,
     notes: RefCell<Vec<String>>,
 }
@@ -33,13 +32,13 @@ pub(super) struct TableKeys<'a> {
 pub(super) struct NamedTable<'a> {
     tables: &'a Tables<'a>,
     rows: Rows<File>,
-    /// At least as many as its rows, where they could be counted.
+    /// An upper bound of the number of rows, if they could be counted.
     lines: Option<u64>,
 }
 
 impl<'a> Tables<'a> {
-    /// The tables of a scene file, with `memory` bytes for rows that cannot be counted
-    /// beforehand.
+    /// The tables of a scene file, with `memory` bytes for rows that cannot be counted in
+    /// advance.
     pub fn new(source: &'a Source, memory: Option<u64>) -> Self {
         Self {
             source,
@@ -74,15 +73,15 @@ impl<'a> Tables<'a> {
         })
     }
 
-    /// Takes some of the memory for what could not be counted beforehand; returns false
-    /// if less is left.
+    /// Reserves some of the memory for rows that could not be counted in advance. Returns
+    /// false if less is left.
     pub fn take(&self, bytes: u64) -> bool {
         let left = self.memory.get().checked_sub(bytes);
         self.memory.set(left.unwrap_or(0));
         left.is_some()
     }
 
-    /// The error for a row of a pipe without memory.
+    /// The error that the memory does not suffice for a row of a pipe.
     pub fn refused(&self, path: &Path, line: u64) -> SceneError {
         SceneError::Row {
             path: path.to_owned(),
@@ -93,7 +92,7 @@ impl<'a> Tables<'a> {
         }
     }
 
-    /// Keeps a note for the user.
+    /// Adds a note for the user.
     pub fn note(&self, note: String) {
         self.notes.borrow_mut().push(note);
     }
@@ -105,12 +104,12 @@ impl<'a> Tables<'a> {
 }
 
 impl NamedTable<'_> {
-    /// Finds a column that the scene file states.
+    /// Finds a column that the scene file names.
     pub fn column(&self, key: &Spanned<ColumnKey>) -> Result<Column, SceneError> {
         self.column_at(key.get_ref(), key.span())
     }
 
-    /// The same, where the place in the scene file is another's.
+    /// As [`NamedTable::column`], with another place in the scene file for errors.
     pub fn column_at(
         &self,
         key: &ColumnKey,
@@ -129,26 +128,26 @@ impl NamedTable<'_> {
         Ok([self.column(x)?, self.column(y)?, self.column(z)?])
     }
 
-    /// Notes which columns are not among those that are read.
+    /// Adds a note on the columns that are not among those read.
     pub fn note_unread(&self, read: &[Column]) {
         if let Some(note) = self.rows.layout().unread(read) {
             self.tables.note(note);
         }
     }
 
-    /// At least as many rows as it has, 0 of a pipe.
+    /// An upper bound of the number of rows; 0 for a pipe.
     pub fn most_rows(&self) -> usize {
         let lines = self.lines.unwrap_or(0);
         usize::try_from(lines).unwrap_or(0)
     }
 
-    /// The next row, which will be kept as a record of `record_bytes`.
+    /// The next row, which will be stored as a record of `record_bytes`.
     pub fn next_row(&mut self, record_bytes: usize) -> Result<Option<Row<'_>>, SceneError> {
         let Some(row) = self.rows.next_row()? else {
             return Ok(None);
         };
         if self.lines.is_none() {
-            // A list that grows is in memory twice while it is moved.
+            // A growing list is in memory twice while it moves.
             if !self.tables.take(2 * record_bytes as u64) {
                 return Err(self.tables.refused(row.path(), row.line));
             }
@@ -157,8 +156,8 @@ impl NamedTable<'_> {
     }
 }
 
-/// The most rows of a table, one of whose columns is `column`; 0 of one that cannot be read.
-/// One whose columns have numbers may have no header.
+/// An upper bound of the rows of a table, one of whose columns is `column`; 0 if it cannot be
+/// read. A table whose columns are numbered may have no header.
 pub(super) fn table_rows(
     source: &Source,
     file: &Spanned<String>,
@@ -168,8 +167,8 @@ pub(super) fn table_rows(
     rows(source, file) + u64::from(is_numbered)
 }
 
-/// The lines of a file but the first, which is a header, a comment, or a sample without a
-/// parent; 0 of one that cannot be read.
+/// The number of lines of a file without the first, which is a header, a comment or a sample
+/// without a parent; 0 if the file cannot be read.
 pub(super) fn rows(source: &Source, file: &Spanned<String>) -> u64 {
     let lines = lines(&source.resolve(file.get_ref()));
     lines.map_or(0, |lines| lines.saturating_sub(1))

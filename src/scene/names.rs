@@ -1,15 +1,13 @@
-//! Names that users type: choices between a few words, and suggestions when
-//! a name is not known.
+//! Names that users type: how messages quote them, and suggestions for unknown names.
 
 use std::fmt::Write;
 
-/// Longest piece of a user's text that a message repeats, in characters.
+/// The most characters of a user's text that a message repeats.
 const LONGEST_QUOTE: usize = 60;
-/// Most names that a message lists.
+/// The most names that a message lists.
 const MOST_LISTED: usize = 40;
 
-/// The text in double quotes, control characters escaped, the end of a long
-/// one left out.
+/// The text in double quotes, with control characters escaped. A long text is cut.
 pub(super) fn quoted(text: &str) -> String {
     match text.char_indices().nth(LONGEST_QUOTE) {
         None => format!("{text:?}"),
@@ -17,8 +15,8 @@ pub(super) fn quoted(text: &str) -> String {
     }
 }
 
-/// A message of a library, which may repeat characters of a file, with control
-/// characters escaped: a terminal would obey them.
+/// Escapes the control characters in a message of a library. The message may repeat
+/// characters of a file, and a terminal would obey them.
 pub(super) fn printable(message: &str) -> String {
     let mut text = String::new();
     for c in message.chars() {
@@ -30,8 +28,7 @@ pub(super) fn printable(message: &str) -> String {
     text
 }
 
-/// Lines with every other control character replaced by U+FFFD, which is as wide as one
-/// character.
+/// Replaces every control character but line feeds by U+FFFD, which keeps the width of lines.
 pub(super) fn printable_lines(text: &str) -> String {
     let shown = |c: char| match c.is_control() && c != '\n' {
         true => char::REPLACEMENT_CHARACTER,
@@ -40,8 +37,8 @@ pub(super) fn printable_lines(text: &str) -> String {
     text.chars().map(shown).collect()
 }
 
-/// What to say after "there is no such name": the nearest of the names, and
-/// all of them. `what` is their plural.
+/// The help for an unknown name: the nearest of the known names, and a list of all.
+/// `what` is their plural.
 pub(super) fn suggestion<'n>(
     wrong: &str,
     names: impl IntoIterator<Item = &'n str>,
@@ -49,7 +46,7 @@ pub(super) fn suggestion<'n>(
 ) -> String {
     let names: Vec<&str> = names.into_iter().collect();
     if names.is_empty() {
-        return format!("there are no {what}");
+        return format!("no {what} are defined");
     }
     let mut text = String::new();
     if let Some(near) = nearest(wrong, &names) {
@@ -67,8 +64,8 @@ pub(super) fn suggestion<'n>(
     text
 }
 
-/// The name that takes the fewest edits to reach, when that is at most a third
-/// of the letters, and at least one is allowed: more would be another word.
+/// The name with the smallest edit distance, if that is at most a third of the letters
+/// or 1: with more edits it would be another word.
 fn nearest<'n>(wrong: &str, names: &[&'n str]) -> Option<&'n str> {
     let wrong: Vec<char> = wrong.chars().take(LONGEST_QUOTE).collect();
     let allowed = (wrong.len() / 3).max(1);
@@ -80,14 +77,13 @@ fn nearest<'n>(wrong: &str, names: &[&'n str]) -> Option<&'n str> {
         .map(|(_, name)| name)
 }
 
-/// The least number of letters put in, left out, replaced or swapped with the
-/// next one ("optimal string alignment"), upper and lower case taken as the
-/// same letter.
+/// The edit distance that counts inserted, deleted, replaced and transposed letters
+/// ("optimal string alignment"), ignoring case.
 fn edits(wrong: &[char], name: &str) -> usize {
     let name: Vec<char> = name.chars().take(2 * LONGEST_QUOTE).collect();
     let same =
         |row: usize, column: usize| name[row].to_lowercase().eq(wrong[column].to_lowercase());
-    // costs[row][column] changes the first `column` letters of `wrong` into
+    // costs[row][column] is the distance from the first `column` letters of `wrong` to
     // the first `row` letters of `name`.
     let mut costs = vec![vec![0; wrong.len() + 1]; name.len() + 1];
     costs[0] = (0..=wrong.len()).collect();
@@ -130,7 +126,7 @@ mod tests {
             suggestion("oak", ["pine"], "trees"),
             "the trees are \"pine\""
         );
-        assert_eq!(suggestion("oak", [], "trees"), "there are no trees");
+        assert_eq!(suggestion("oak", [], "trees"), "no trees are defined");
     }
 
     #[test]

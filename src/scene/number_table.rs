@@ -1,8 +1,8 @@
 //! Tables of rays, `ox,oy,oz,dx,dy,dz` and optionally `t_min,t_max`, and of points,
-//! `x,y,z`, as [`Table`] reads them.
+//! `x,y,z`, read by [`Table`].
 //!
-//! A table is read in blocks of rows, so that blocks can be parsed by many threads and
-//! a table of any length needs little memory.
+//! A table is read in blocks of rows, so that many threads can parse blocks and a table of
+//! any length needs little memory.
 
 use std::io::{self, Read};
 use std::marker::PhantomData;
@@ -14,22 +14,22 @@ use super::error::SceneError;
 use super::table::{Block, Column, ColumnKey, Layout, Row, Table, TableFormat, input};
 use crate::math::Ray;
 
-/// A value that a row of numbers states.
+/// A value given by a row of numbers.
 pub trait NumberRow: Sized + Send {
     /// The columns' names: first those that contain finite numbers and must be present,
     /// then those that may be absent.
     const NAMES: &'static [&'static str];
 
-    /// Columns that a table must have.
+    /// The number of columns that a table must have.
     const REQUIRED: usize;
 
-    /// The values of the columns that are absent.
+    /// The values of absent columns.
     const DEFAULTS: &'static [f64];
 
-    /// The value of a row of numbers, one a column.
+    /// The value of a row of numbers, one for each column.
     ///
     /// # Errors
-    /// What is wrong with them.
+    /// If the numbers are not a valid value.
     fn of(values: &[f64]) -> Result<Self, String>;
 }
 
@@ -47,7 +47,7 @@ impl NumberRow for Ray {
         };
         if ray.direction == DVec3::ZERO {
             return Err(
-                "columns \"dx\", \"dy\", \"dz\": the direction is zero; it must have a length"
+                "columns \"dx\", \"dy\", \"dz\": the direction is zero; it must have a nonzero length"
                     .to_owned(),
             );
         }
@@ -55,7 +55,7 @@ impl NumberRow for Ray {
         let (t_min, t_max) = (ray.t_min, ray.t_max);
         match t_min > t_max {
             true => Err(format!(
-                "columns \"t_min\", \"t_max\": {t_min:?} is greater than {t_max:?}"
+                "columns \"t_min\", \"t_max\": {t_min:?} is greater than {t_max:?}; t_min must not exceed t_max"
             )),
             false => Ok(ray),
         }
@@ -73,7 +73,7 @@ impl NumberRow for DVec3 {
     }
 }
 
-/// The most columns that a [`NumberRow`] has.
+/// The most columns of a [`NumberRow`].
 const MOST_NUMBERS: usize = 8;
 
 /// A table that is being read.
@@ -82,20 +82,20 @@ pub struct NumberTable<R, I = Box<dyn Read>> {
     columns: NumberColumns<R>,
 }
 
-/// Which columns of a table contain which numbers.
+/// The columns of a table that contain the numbers.
 pub struct NumberColumns<R> {
     layout: Layout,
-    /// Those that are present, each by its position in [`NumberRow::NAMES`].
+    /// The columns present, each with its position in [`NumberRow::NAMES`].
     columns: Vec<(usize, Column)>,
     row: PhantomData<fn() -> R>,
 }
 
 impl<R: NumberRow> NumberTable<R> {
     /// Opens a table of a file or a pipe; `-` is standard input. `columns` are the
-    /// numbers of the columns, from 0, where they have no names.
+    /// numbers of the columns, from 0, for a table without column names.
     ///
     /// # Errors
-    /// When it cannot be read or a column is missing.
+    /// If the table cannot be read or a column is missing.
     pub fn open(path: &Path, format: TableFormat, columns: &[u64]) -> Result<Self, SceneError> {
         if path.as_os_str() == "-" {
             let name = Path::new("standard input");
@@ -106,10 +106,10 @@ impl<R: NumberRow> NumberTable<R> {
 }
 
 impl<R: NumberRow, I: Read> NumberTable<R, I> {
-    /// Begins to read a table, which errors call `path`; see [`NumberTable::open`].
+    /// As [`NumberTable::open`], from any reader; errors name the table `path`.
     ///
     /// # Errors
-    /// When it cannot be read or a column is missing.
+    /// If the table cannot be read or a column is missing.
     pub fn new(
         input: I,
         path: &Path,
@@ -127,7 +127,7 @@ impl<R: NumberRow, I: Read> NumberTable<R, I> {
         };
         if is_numbered && ![R::REQUIRED, R::NAMES.len()].contains(&keys.len()) {
             let message = format!(
-                "{} columns are numbered, {} are needed: {names}",
+                "{} column numbers are given: {} are needed, for {names}",
                 keys.len(),
                 R::REQUIRED
             );
@@ -137,7 +137,7 @@ impl<R: NumberRow, I: Read> NumberTable<R, I> {
         let layout = table.layout();
         let mut found = Vec::new();
         for (position, key) in keys.iter().enumerate() {
-            // Those that may be absent must not be there twice.
+            // An optional column must not occur twice.
             if is_numbered || position < R::REQUIRED || layout.names(key) {
                 found.push((position, layout.column(key)?));
             }
@@ -150,15 +150,15 @@ impl<R: NumberRow, I: Read> NumberTable<R, I> {
         Ok(Self { table, columns })
     }
 
-    /// The next rows, `None` at the end.
+    /// The next rows, or `None` at the end.
     ///
     /// # Errors
-    /// When the table cannot be read or goes beyond a limit.
+    /// If the table cannot be read or exceeds a limit.
     pub fn next_block(&mut self) -> Result<Option<Block>, SceneError> {
         self.table.next_block()
     }
 
-    /// Its columns, for other threads too.
+    /// The columns of the table, which other threads may use.
     #[must_use]
     pub fn columns(&self) -> NumberColumns<R> {
         NumberColumns {
@@ -173,7 +173,7 @@ impl<R: NumberRow> NumberColumns<R> {
     /// The rows of a block.
     ///
     /// # Errors
-    /// What is wrong with the first bad one.
+    /// The error in the first invalid row.
     pub fn rows(&self, block: &Block) -> Result<Vec<R>, SceneError> {
         let mut rows = Vec::with_capacity(block.len());
         self.layout.for_each_row(block, |row| {
@@ -197,7 +197,7 @@ impl<R: NumberRow> NumberColumns<R> {
         R::of(&values[..R::NAMES.len()]).map_err(|message| row.error(None, message))
     }
 
-    /// A note on the columns that are not read.
+    /// A note on ignored columns.
     #[must_use]
     pub fn unread(&self) -> Option<String> {
         let read: Vec<Column> = self.columns.iter().map(|(_, column)| *column).collect();

@@ -1,35 +1,35 @@
-//! The files that solids and placements come from, for messages about single ones.
+//! The source files of solids and placements, for messages about single ones.
 
 use std::sync::Arc;
 
-/// What the entries of a prototype come from, in runs of consecutive numbers.
+/// The source files of a prototype's entries, in runs of consecutive numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Origins {
     runs: Vec<Run>,
 }
 
-/// Entries that come from one file.
+/// The entries of one file.
 #[derive(Clone, Debug)]
 struct Run {
     first: u32,
     file: Arc<str>,
-    /// The row of the first, from 0, where each row is an entry, also those that were skipped.
+    /// The row of the first, from 0, where each row is an entry, including skipped rows.
     first_row: Option<u32>,
     count: u32,
 }
 
-/// What an entry comes from.
+/// The source of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Origin<'a> {
     /// The file, as the scene file names it.
     pub file: &'a str,
-    /// The number of the row with data, from 1, where the file is a table.
+    /// The number of the row, from 1 without the header, if the file is a table.
     pub row: Option<u32>,
 }
 
 impl Origins {
-    /// Adds the entries from `first` up to `end` that come from a file, in a table from the
-    /// row `first_row` on.
+    /// Adds the entries of a file, from `first` up to but not including `end`; in a table,
+    /// from the row `first_row` on.
     pub(super) fn add(&mut self, file: Arc<str>, first_row: Option<u32>, first: u32, end: u32) {
         self.runs.push(Run {
             first,
@@ -39,7 +39,7 @@ impl Origins {
         });
     }
 
-    /// What the entry of a number comes from; `None` if the scene file states it.
+    /// The source of the entry with this number; `None` if it is in the scene file itself.
     #[must_use]
     pub fn of(&self, number: u32) -> Option<Origin<'_>> {
         let mut runs = self.runs.iter();

@@ -1,5 +1,5 @@
-//! Gathers the placements of one prototype: single ones, the rows of tables,
-//! and those scattered by rule.
+//! Collects the placements of a prototype: single instances, the rows of tables, and
+//! scattered items.
 
 use std::ops::Range;
 
@@ -24,15 +24,15 @@ use crate::math::{rotation, sin_cos_degrees};
 #[derive(Default)]
 pub(super) struct Placements {
     pub list: Vec<Placement>,
-    /// The entries that placed something.
+    /// The entries of the scene file that place prototypes.
     pub edges: Vec<Edge>,
 }
 
-/// One entry of a scene file that places a prototype, once or often.
+/// An entry of a scene file that places a prototype, once or many times.
 #[derive(Clone, Debug)]
 pub(super) struct Edge {
     pub of: PrototypeIndex,
-    /// Where the scene file says so.
+    /// The place of the entry in the scene file.
     pub place: Range<usize>,
     pub reach: Reach,
 }
@@ -81,7 +81,7 @@ impl Placements {
         table.note_unread(&layout.all());
         let mut reach = Reach::default();
         let before = self.list.len();
-        // What cannot be had is requested again, row by row.
+        // If the reservation fails, `make_room` allocates row by row.
         let _ = self.list.try_reserve_exact(table.most_rows());
         while let Some(row) = table.next_row(size_of::<Placement>())? {
             let parent_from_child = layout.placement(&row).map_err(|fault| row.refused(fault))?;
@@ -101,8 +101,8 @@ impl Placements {
         Ok(())
     }
 
-    /// Adds the items of all `[[scatter]]` entries. Nothing is made before all
-    /// of them have numbers and memory.
+    /// Adds the items of all `[[scatter]]` entries, after reserving numbers and memory for
+    /// all of them.
     pub fn add_scatters(
         &mut self,
         source: &Source,
@@ -125,7 +125,7 @@ impl Placements {
         Ok(())
     }
 
-    /// Makes sure that `more` placements have numbers and memory.
+    /// Reserves numbers and memory for `more` placements.
     fn make_room(
         &mut self,
         source: &Source,
@@ -135,20 +135,20 @@ impl Placements {
         let total = self.list.len() as u64 + more as u64;
         if total > u64::from(u32::MAX) {
             let message = format!(
-                "this makes {total} placements: a prototype holds at most {}",
+                "this makes {total} placements: a prototype can contain at most {}",
                 u32::MAX
             );
             return Err(source.error(of.span(), message));
         }
         let reserved = match more {
             1 => self.list.try_reserve(1),
-            // Exactly as many as there are: doubling would double the memory.
+            // Exact, because doubling the capacity could double the memory.
             _ => self.list.try_reserve_exact(more),
         };
         reserved.map_err(|_| {
             let bytes = total * size_of::<Placement>() as u64;
             let message = format!(
-                "there is no memory for {total} placements: they take {:.1} GB",
+                "not enough memory for {total} placements: they take {:.1} GB",
                 bytes as f64 / 1e9
             );
             source.error(of.span(), message)
@@ -160,7 +160,7 @@ impl Placements {
     }
 }
 
-/// The placement that an `[[instance]]` states.
+/// The map of an `[[instance]]`.
 fn composed(source: &Source, keys: &InstanceKeys) -> Result<DAffine3, SceneError> {
     let about_axes = [keys.rotate_x, keys.rotate_y, keys.rotate_z];
     if let Some(matrix) = &keys.matrix {
@@ -168,7 +168,7 @@ fn composed(source: &Source, keys: &InstanceKeys) -> Result<DAffine3, SceneError
         if keys.scale.is_some() || turns || keys.translate.is_some() {
             return Err(source.error(
                 matrix.span(),
-                "matrix excludes scale, rotate, rotate_x, rotate_y, rotate_z and translate: state one or the others",
+                "matrix excludes scale, rotate, rotate_x, rotate_y, rotate_z and translate: use one or the others",
             ));
         }
         let rows = &matrix.get_ref().0;

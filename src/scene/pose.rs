@@ -1,10 +1,9 @@
-//! How solids are turned and moved by the keys of their pose: about x, y and z,
-//! then by the list `rotate`, each about the solid's own center, then along
-//! `translate`.
+//! The pose of a solid: rotations about x, y and z, then those of the list `rotate`,
+//! all about the solid's own center, then the translation `translate`.
 //!
-//! What is not stated changes nothing, not even by a rounding. The points of a turned
-//! solid are `center + R (point - center)`, rounded to f64; from then on they are
-//! exact numbers as those of any other solid.
+//! Missing keys change nothing, not even by a rounding. The points of a rotated solid
+//! are `center + R (point - center)`, rounded to f64; from then on they are exact
+//! numbers like those of any other solid.
 
 use std::ops::Range;
 
@@ -21,10 +20,10 @@ use crate::math::{Orientation, unit};
 use crate::solid::{AnySolid, Composition};
 use crate::with_solid;
 
-/// A turn about a center that is not known yet, and a translation.
+/// A rotation about a center that is given later, and a translation.
 pub(super) struct Motion<'a> {
     source: &'a Source,
-    /// The place of errors about the solid where it is moved to.
+    /// The place of errors about the moved solid.
     place: Range<usize>,
     turn: Option<Orientation>,
     translation: Option<DVec3>,
@@ -41,13 +40,13 @@ pub(super) fn axis(source: &Source, turn: &RotationKeys) -> Result<DVec3, SceneE
     unit(vector(&turn.axis)).ok_or_else(|| {
         source.error(
             turn.axis.span(),
-            "the rotation axis is zero: it needs a direction, of any length",
+            "the rotation axis is zero: it must be a direction, of any length",
         )
     })
 }
 
 impl<'a> Motion<'a> {
-    /// The motion that the keys of a pose state, for what is at `place` in the file.
+    /// The motion of a pose's keys, for the solid at `place` in the file.
     pub fn new(
         source: &'a Source,
         keys: &PoseKeys,
@@ -65,7 +64,7 @@ impl<'a> Motion<'a> {
         })
     }
 
-    /// A composition, all of it turned about one center.
+    /// Moves a composition, all parts about one center.
     pub fn of_composition(
         &self,
         composition: Composition,
@@ -84,7 +83,7 @@ impl<'a> Motion<'a> {
         })
     }
 
-    /// A solid, turned about a center.
+    /// Moves a solid about a center.
     pub fn of_solid(&self, solid: &AnySolid, center: DVec3) -> Result<AnySolid, SceneError> {
         if self.turn.is_none() && self.translation.is_none() {
             return Ok(*solid);
@@ -98,13 +97,13 @@ impl<'a> Motion<'a> {
             solid.moved(&motion).map(AnySolid::from).map_err(|error| {
                 let place = self.place.clone();
                 self.source
-                    .error(place, format!("where the solid is moved to, {error}"))
+                    .error(place, format!("after the solid is rotated and translated, {error}"))
             })
         })
     }
 }
 
-/// A turn about a center and a translation. What is not stated changes no bit.
+/// A rotation about a center and a translation. A missing part changes no bit.
 pub(super) struct RigidMotion {
     turn: Option<Orientation>,
     center: DVec3,
@@ -112,7 +111,7 @@ pub(super) struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// Where it takes a point.
+    /// Moves a point.
     pub fn point(&self, point: DVec3) -> DVec3 {
         let turned = self.turn.map_or(point, |turn| {
             self.center + turn.to_world(point - self.center)
@@ -120,12 +119,12 @@ impl RigidMotion {
         self.translation.map_or(turned, |by| turned + by)
     }
 
-    /// Where it turns a direction.
+    /// Rotates a direction.
     pub fn direction(&self, direction: DVec3) -> DVec3 {
         self.turn.map_or(direction, |turn| turn.to_world(direction))
     }
 
-    /// The orientation of what had this one before.
+    /// The new orientation of an object, given the one before.
     pub fn orientation(&self, before: Orientation) -> Orientation {
         self.turn.map_or(before, |turn| before.then(turn))
     }

@@ -1,4 +1,4 @@
-//! Reads whole files: regular ones, up to a size.
+//! Reads whole regular files, up to a size limit.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -7,20 +7,20 @@ use std::path::Path;
 /// The bytes of a file.
 ///
 /// # Errors
-/// When it cannot be read, has more than `greatest` bytes, or is no regular file: a
+/// If the file cannot be read, has more than `greatest` bytes, or is not a regular file. A
 /// device may never end, and opening a pipe waits for a writer.
 pub(super) fn read_regular(path: &Path, greatest: u64) -> io::Result<Vec<u8>> {
     let found = fs::metadata(path)?;
     if !found.is_file() {
         return Err(io::Error::other(
-            "it is a device, a pipe or a socket, a regular file is needed",
+            "it is a device, a pipe or a socket: a regular file is needed",
         ));
     }
     if found.len() > greatest {
         return Err(too_large(greatest));
     }
     let mut bytes = Vec::with_capacity(usize::try_from(found.len()).unwrap_or(0));
-    // It may have grown meanwhile, and the files of /proc state no size.
+    // The file may have grown since, and files in /proc report no size.
     File::open(path)?
         .take(greatest + 1)
         .read_to_end(&mut bytes)?;
@@ -50,7 +50,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn what_is_no_regular_file_is_refused_without_reading() {
+    fn other_than_regular_files_are_rejected_without_reading() {
         for path in ["/dev/zero", "/dev/urandom", "/dev/null", "/"] {
             let error = read_regular(Path::new(path), 5).expect_err("no file");
             assert!(
@@ -58,7 +58,7 @@ mod tests {
                 "{path}: {error}"
             );
         }
-        // It states no size, and has more bytes than these.
+        // The file reports no size, and has more than 5 bytes.
         let error = read_regular(Path::new("/proc/self/status"), 5).expect_err("too large");
         assert_eq!(error.to_string(), "it has more than 5 bytes");
     }

@@ -1,8 +1,8 @@
 //! Placements by rule: many copies of a prototype on a plane.
 //!
-//! Item `k` of a scatter depends on `k`, the keys and the seed only: its
-//! random numbers are stream `k` of the seed, first the yaw, then the scale,
-//! both drawn whether used or not.
+//! Item `k` of a scatter depends only on `k`, the keys and the seed: its random
+//! numbers are stream `k` of the seed, first the yaw, then the scale. Both are drawn
+//! even if unused.
 
 use std::f64::consts::{PI, TAU};
 
@@ -16,20 +16,20 @@ use crate::math::{Random, rotation};
 /// as a fraction of a turn.
 const GOLDEN_TURN: u64 = 0x61C8_8646_80B5_83EB;
 
-/// More than the roundings of a rotation and of its norms can add.
+/// An upper bound of the rounding errors of a rotation and its norms.
 const ROUNDING_FACTOR: f64 = 1.0 + 64.0 * f64::EPSILON;
 
-/// How the items are spread on the plane z = 0.
+/// The arrangement of the items in the plane z = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Pattern {
     /// A square grid about the origin, row by row from the least x and y.
     Grid,
-    /// A sunflower: item k at distance `spacing · √((k + 1/2)/π)`, a golden
-    /// angle further than the last. The area per item is `spacing²`.
+    /// A sunflower: item k is at distance `spacing · √((k + 1/2)/π)`, a golden
+    /// angle after the previous one. The area per item is `spacing²`.
     Disk,
 }
 
-/// A `[[scatter]]` whose values have been checked.
+/// A validated `[[scatter]]`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scatter {
     pub pattern: Pattern,
@@ -38,13 +38,13 @@ pub(super) struct Scatter {
     /// Positive.
     pub spacing: f64,
     pub random_yaw: bool,
-    /// Limits of the scale, positive, in order.
+    /// The limits of the scale, positive and in order.
     pub scale: [f64; 2],
     pub seed: u64,
 }
 
 impl Scatter {
-    /// What applies to all items.
+    /// Bounds for all items.
     pub fn reach(&self) -> Reach {
         // A grid's last item is at most (√count + 1)/2 spacings away on each
         // axis, a disk's at most √(count/π).
@@ -56,8 +56,7 @@ impl Scatter {
         }
     }
 
-    /// The items' placements, in the order of their numbers, on the rayon pool
-    /// that this is called in.
+    /// The items' placements, in the order of their numbers, on the caller's rayon pool.
     pub fn items(&self) -> impl IndexedParallelIterator<Item = DAffine3> {
         let scatter = *self;
         let columns = columns(scatter.count);
@@ -102,7 +101,7 @@ impl Scatter {
     }
 }
 
-/// The side of the least square that contains `count` items.
+/// The side of the smallest square grid for `count` items.
 fn columns(count: u32) -> u32 {
     let side = count.isqrt();
     if side * side == count { side } else { side + 1 }
@@ -122,7 +121,7 @@ mod tests {
     };
 
     #[test]
-    fn grid_is_centerd_and_counts_row_by_row() {
+    fn grid_is_centered_and_counts_row_by_row() {
         let positions: Vec<DVec3> = SCATTER.items().map(|item| item.translation).collect();
         let expected = [
             [-2.0, -2.0, 0.0],
@@ -139,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_hold_all_items_with_the_least_square() {
+    fn columns_are_the_side_of_the_smallest_square() {
         for (count, side) in [(1, 1), (2, 2), (4, 2), (5, 3), (9, 3), (10, 4)] {
             assert_eq!(columns(count), side, "{count}");
         }

@@ -1,4 +1,4 @@
-//! A scene file that has been read, before the files that it names are.
+//! A scene file that has been read, before the files that it names are read.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -27,8 +27,8 @@ impl SceneFile {
     /// Reads a scene file.
     ///
     /// # Errors
-    /// When the file cannot be read, is no TOML, or has keys or types other
-    /// than those of `docs/scene-file.md`.
+    /// If the file cannot be read, is not TOML, or has keys or types other than those in
+    /// `docs/scene-file.md`.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         Self::read_toml(path).map_err(|error| match error {
             SceneError::Unreadable { .. } => error,
@@ -42,7 +42,7 @@ impl SceneFile {
         Ok(Self { source, document })
     }
 
-    /// The file itself.
+    /// The path of the scene file.
     #[must_use]
     pub fn path(&self) -> &Path {
         self.source.path()
@@ -60,9 +60,9 @@ impl SceneFile {
         paths.collect()
     }
 
-    /// At least what the prototypes will hold, in their order: tables are
-    /// counted by their lines, lattices by their beams, and what cannot be read contains
-    /// nothing. No record is made, so that a scene which is too large can be refused.
+    /// Upper bounds of the contents of the prototypes, in their order. Tables are counted by
+    /// their lines, lattices by their beams; a file that cannot be read counts as empty. No
+    /// record is made, so a scene that is too large can be rejected in advance.
     #[must_use]
     pub fn contents(&self) -> Vec<ExpectedCounts> {
         let records = records(&self.source, self.document.records.as_ref()).unwrap_or_default();
@@ -81,7 +81,7 @@ impl SceneFile {
                 (of(&keys.of), rows)
             });
             let mut placed: Vec<_> = single.chain(tables).collect();
-            // Where loading refuses to count on, it makes nothing.
+            // Loading rejects larger numbers before it makes anything.
             let mut total: u64 = placed.iter().map(|(_, count)| count).sum();
             for Keys(keys) in body.scatter {
                 let count = keys.count.get_ref().0;
@@ -105,8 +105,7 @@ impl SceneFile {
         contents
     }
 
-    /// The most bytes that any file takes while it is read, beside the records that are
-    /// made of it.
+    /// The most bytes that any file takes while it is read, besides its records.
     #[must_use]
     pub fn reading_bytes(&self) -> u64 {
         let files = self.document.bodies().flat_map(Body::files);
@@ -114,7 +113,7 @@ impl SceneFile {
         bytes.max().unwrap_or(0)
     }
 
-    /// How many solids a prototype contains itself.
+    /// The numbers of solids that a prototype itself contains.
     fn solids(&self, body: &Body, records: Records) -> ExpectedSolids {
         let mut solids = ExpectedSolids::default();
         for (kind, stated) in body.solids() {
@@ -132,25 +131,25 @@ impl SceneFile {
         solids
     }
 
-    /// Reads the files that the scene names, and checks everything.
+    /// Reads the files that the scene names, and validates the scene.
     ///
     /// # Errors
-    /// Those of [`load`](super::load()).
+    /// See [`load`](super::load()).
     pub fn load(self) -> Result<Scene, SceneError> {
         self.load_within(None)
     }
 
-    /// The same, with at most `memory` bytes for the records of pipes, whose rows
+    /// As [`SceneFile::load`], with at most `memory` bytes for the records of pipes, whose rows
     /// [`SceneFile::contents`] cannot count; `None` sets no limit.
     ///
     /// # Errors
-    /// Those of [`load`](super::load()), and rows beyond the memory.
+    /// See [`load`](super::load()); also if the rows of pipes exceed the memory.
     pub fn load_within(self, memory: Option<u64>) -> Result<Scene, SceneError> {
         lower(&self.source, self.document, memory)
     }
 }
 
-/// That a file which is no scene is data or a picture, as its name says.
+/// The error that a file is data or a picture instead of a scene, judged by its extension.
 fn other_kind(path: &Path) -> Option<SceneError> {
     const PICTURES: &[&str] = &["png", "exr", "jpg", "jpeg"];
     let name = path.file_name()?.to_str()?;

@@ -1,4 +1,4 @@
-//! The counts of a scene, without tracing it.
+//! The counts and bounds of a scene, without tracing it.
 
 use rayon::prelude::*;
 
@@ -6,26 +6,25 @@ use super::{PlacedCount, PrototypeIndex, Scene};
 use crate::math::Bounds;
 use crate::solid::SolidCounts;
 
-/// The counts of a scene. Prototypes that nobody places are left out, but for
-/// `prototypes`.
+/// The counts and bounds of a scene. Except in `prototypes`, unused prototypes do not count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneStats {
-    /// Named prototypes, the root not counted, used or not.
+    /// Named prototypes, without the root, used or not.
     pub prototypes: u64,
-    /// Those of them that the root places, itself or through others.
+    /// Named prototypes that the root places, directly or through others.
     pub prototypes_used: u64,
-    /// Placements as they are stored: those within a prototype count once.
+    /// Stored placements: those within a prototype count once.
     pub placements: u64,
-    /// Solids as they are stored.
+    /// Stored solids: those within a prototype count once.
     pub unique: SolidCounts,
-    /// Placements with those within placed prototypes counted each time.
+    /// Placements, where those within a prototype count each time it is placed.
     pub instances: u128,
-    /// Solids with every placement counted.
+    /// Solids, where those within a prototype count each time it is placed.
     pub instanced: SolidCounts,
-    /// Levels of placements: 0 when the root places nothing.
+    /// Levels of placements: 0 if the root places nothing.
     pub depth: u32,
-    /// A box around everything. Boxes of placements are boxes of transformed
-    /// boxes, so it may be larger than the least one.
+    /// A box around everything. It may be larger than the smallest such box, because
+    /// the box of a placement is the box of a transformed box.
     pub bounds: Bounds,
 }
 
@@ -38,12 +37,12 @@ struct Whole {
     bounds: Bounds,
 }
 
-/// Fewer placements or solids are not worth a thread.
+/// The least number of placements that is worth a thread.
 const LEAST_SHARE: usize = 4096;
 
 impl Scene {
-    /// Counts what the scene contains. Time and memory grow with what is stored,
-    /// not with what is placed. Runs on the rayon pool that this is called in.
+    /// Counts the contents of the scene. Time and memory grow with the stored
+    /// contents, not with the placed ones. Runs on the caller's rayon pool.
     #[must_use]
     pub fn scene_stats(&self) -> SceneStats {
         let mut wholes = vec![None; self.prototypes.len()];

@@ -1,4 +1,4 @@
-//! Set operations: from the keys of a table to the tree of its solids.
+//! Set operations: turns the keys of a table into the tree of its solids.
 
 use glam::DVec3;
 use toml::Spanned;
@@ -11,7 +11,7 @@ use super::source::Source;
 use super::values::Keys;
 use crate::solid::{AnySolid, Composition, SolidKind};
 
-/// What to do with the operands.
+/// The set operation of a table.
 #[derive(Clone, Copy)]
 pub(super) enum Operation {
     Union,
@@ -20,7 +20,7 @@ pub(super) enum Operation {
 }
 
 impl Operation {
-    /// What its solids are called.
+    /// The kind of its solids.
     pub fn kind(self) -> SolidKind {
         match self {
             Self::Union => SolidKind::Union,
@@ -29,17 +29,17 @@ impl Operation {
         }
     }
 
-    /// The solid that a table of this operation states.
+    /// The solid of a table of this operation.
     pub fn of(self, source: &Source, keys: &CompositionKeys) -> Result<Composition, SceneError> {
         let operands = keys.of().get_ref().iter();
         let operands = operands.map(|keys| operand(source, keys));
         let mut operands = operands.collect::<Result<Vec<_>, _>>()?;
-        // They stay as long as the scene does.
+        // The operands live as long as the scene.
         operands.shrink_to_fit();
         if operands.is_empty() {
             return Err(source.error_with_help(
                 keys.of().span(),
-                "of is empty: a set operation needs solids",
+                "of is empty: a set operation needs at least one solid",
                 "of = [{ cuboid = { half_widths = [1, 1, 1] } }, { sphere = { center = [1, 0, 0], radius = 1 } }]",
             ));
         }
@@ -48,7 +48,7 @@ impl Operation {
             Self::Intersection => Composition::Intersection(operands),
             Self::Difference => Composition::Difference(operands),
         };
-        // An operation has an operand, so that there is a first solid.
+        // An operation has an operand, so it has a first solid.
         let center = unmoved
             .solids()
             .first()
@@ -57,7 +57,7 @@ impl Operation {
     }
 }
 
-/// How many operands a set operation has, with those of the operations in it.
+/// The number of operands of a set operation, including those of nested operations.
 pub(super) fn operand_count(keys: &CompositionKeys) -> u64 {
     let of_operand = |operand: &OperandKeys| -> u64 {
         let nested = [&operand.union, &operand.intersection, &operand.difference];
@@ -68,7 +68,7 @@ pub(super) fn operand_count(keys: &CompositionKeys) -> u64 {
     operands.map(|Keys(keys)| of_operand(keys)).sum()
 }
 
-/// An operand, which is a solid or another set operation.
+/// Reads an operand: a solid or another set operation.
 fn operand(source: &Source, keys: &Spanned<Keys<OperandKeys>>) -> Result<Composition, SceneError> {
     let place = keys.span();
     let Keys(keys) = keys.get_ref();
@@ -91,9 +91,12 @@ fn operand(source: &Source, keys: &Spanned<Keys<OperandKeys>>) -> Result<Composi
         let names: Vec<&str> = kinds.map(SolidKind::name).collect();
         return Err(source.error_with_help(
             place,
-            format!("an operand is one solid, and this states {}", stated.len()),
             format!(
-                "write {{ cylinder = {{ ... }} }}, or another of {}, each between braces of its own",
+                "an operand must be one solid, but this has {}",
+                stated.len()
+            ),
+            format!(
+                "write {{ cylinder = {{ ... }} }} or another of {}, each in its own braces",
                 names.join(", ")
             ),
         ));
@@ -107,13 +110,13 @@ fn operand(source: &Source, keys: &Spanned<Keys<OperandKeys>>) -> Result<Composi
     }
 }
 
-/// What an operand states.
+/// The content of an operand.
 enum Stated<'a> {
     Solid(Spanned<&'a dyn SolidKeys>),
     Nested(Operation, &'a CompositionKeys),
 }
 
-/// A solid that has an inside.
+/// Reads a solid, which must have an inside.
 fn closed(source: &Source, stated: &Spanned<&dyn SolidKeys>) -> Result<Composition, SceneError> {
     let keys = *stated.get_ref();
     check_part(source, keys)?;
@@ -136,11 +139,11 @@ fn closed(source: &Source, stated: &Spanned<&dyn SolidKeys>) -> Result<Compositi
     })
 }
 
-/// That a part of a set operation has no material or number of its own.
+/// Checks that a part of a set operation has no material or number of its own.
 fn check_part<T: SolidTable + ?Sized>(source: &Source, keys: &T) -> Result<(), SceneError> {
     let wrong = |place, what| {
         let message =
-            format!("a set operation has one {what}: state it beside of, not in its parts");
+            format!("a set operation has one {what}: set it next to the key of, not in a part");
         Err(source.error(place, message))
     };
     match (keys.material(), keys.primitive()) {

@@ -1,4 +1,4 @@
-//! What a scene file says about the picture: film, lights and materials.
+//! The picture's settings in a scene file: film, lights and materials.
 
 use std::collections::HashMap;
 
@@ -33,15 +33,14 @@ pub(super) const INTEGRATORS: [(&str, Integrator); 3] = [
     ("ao", Integrator::Ao),
 ];
 
-/// Everything that shines.
+/// The lights of a scene.
 pub(super) struct Lights {
     pub sun: Option<Sun>,
     pub sky: Option<Sky>,
     pub background: DVec3,
 }
 
-/// The lights that the scene states. What shines where it states none is the
-/// renderer's business.
+/// The lights of the scene file. The renderer chooses lights for a scene without any.
 pub(super) fn lights(
     source: &Source,
     sun: Option<&SunKeys>,
@@ -67,7 +66,7 @@ fn sun(source: &Source, keys: &SunKeys) -> Result<Sun, SceneError> {
             if keys.elevation_degrees.is_some() || keys.azimuth_degrees.is_some() {
                 return Err(source.error(
                     direction.span(),
-                    "direction excludes elevation_degrees and azimuth_degrees: state one or the others",
+                    "direction excludes elevation_degrees and azimuth_degrees: use one or the others",
                 ));
             }
             unit_or_same(vector(direction)).ok_or_else(|| {
@@ -127,13 +126,13 @@ pub(super) fn film(source: &Source, keys: &FilmKeys) -> Result<Film, SceneError>
     {
         return Err(source.error(
             key.span(),
-            format!("the film is {width} x {height}: a picture has at most {GREATEST_PIXELS} pixels (2^28)"),
+            format!("the film is {width} x {height}: a picture can have at most {GREATEST_PIXELS} pixels (2^28)"),
         ));
     }
     Ok(Film { width, height })
 }
 
-/// What `render` computes.
+/// The settings of `render`.
 pub(super) fn render(source: &Source, keys: &RenderKeys) -> Result<RenderSettings, SceneError> {
     Ok(RenderSettings {
         integrator: match &keys.integrator {
@@ -145,7 +144,7 @@ pub(super) fn render(source: &Source, keys: &RenderKeys) -> Result<RenderSetting
     })
 }
 
-/// A whole number from 1 to `most`, where it is stated.
+/// An optional whole number from 1 to `most`.
 fn count(
     source: &Source,
     name: &str,
@@ -198,13 +197,16 @@ impl Materials {
         if !(color.cmpge(DVec3::ZERO) & color.cmple(DVec3::ONE)).all() {
             return Err(source.error(
                 keys.color.span(),
-                "a material reflects between 0 and 1 of each color: no number may be outside [0, 1]",
+                format!(
+                    "color is [{}, {}, {}]: a material's components must be in [0, 1]",
+                    color.x, color.y, color.z
+                ),
             ));
         }
         let index = u16::try_from(self.list.len()).map_err(|_| {
             source.error(
                 keys.name.span(),
-                format!("a scene holds at most {} materials", u16::MAX),
+                format!("a scene can contain at most {} materials", u16::MAX),
             )
         })?;
         self.index.insert(name.clone(), MaterialIndex(index));
@@ -215,7 +217,7 @@ impl Materials {
         Ok(())
     }
 
-    /// The material of a name; the default one where no name is stated.
+    /// The material of a name, or the default material without a name.
     pub fn find(
         &self,
         source: &Source,
@@ -228,14 +230,14 @@ impl Materials {
             let names = self.list[1..].iter().map(|material| material.name.as_str());
             source.error_with_help(
                 name.span(),
-                format!("there is no material {}", quoted(name.get_ref())),
+                format!("unknown material {}", quoted(name.get_ref())),
                 suggestion(name.get_ref(), names, "materials"),
             )
         })
     }
 }
 
-/// That no name is empty and no two are the same.
+/// Checks that no name is empty and that names are unique.
 pub(super) fn check_names<'n>(
     source: &Source,
     what: &str,
@@ -250,7 +252,7 @@ pub(super) fn check_names<'n>(
             return Err(source.error(
                 name.span(),
                 format!(
-                    "there is a {what} {} already, on line {}: names must differ",
+                    "the {what} {} is already defined on line {}: names must differ",
                     quoted(name.get_ref()),
                     source.line(&first)
                 ),
@@ -260,14 +262,20 @@ pub(super) fn check_names<'n>(
     Ok(())
 }
 
-/// Linear RGB of light, none of it negative.
+/// The linear RGB of a light, which must not be negative.
 fn color(source: &Source, key: Option<&Triple>, default: DVec3) -> Result<DVec3, SceneError> {
     let Some(key) = key else {
         return Ok(default);
     };
     let color = vector(key);
     if color.cmplt(DVec3::ZERO).any() {
-        return Err(source.error(key.span(), "a color of light must not be negative"));
+        return Err(source.error(
+            key.span(),
+            format!(
+                "the color is [{}, {}, {}]: a light's components must not be negative",
+                color.x, color.y, color.z
+            ),
+        ));
     }
     Ok(color)
 }

@@ -1,4 +1,4 @@
-//! Gathers the solids of one prototype, and gives them their primitive numbers.
+//! Collects the solids of a prototype and assigns their primitive numbers.
 
 use std::borrow::Borrow;
 use std::ops::Range;
@@ -18,12 +18,12 @@ use crate::solid::{
 };
 use crate::with_solid;
 
-/// What to say about rows that `degenerate = "skip"` would leave out.
+/// The help for rows that `degenerate = "skip"` would skip.
 pub(super) const SKIP_HELP: &str =
-    "degenerate = \"skip\" in the scene file leaves such rows out and counts them";
+    "degenerate = \"skip\" in the scene file skips such rows and counts them";
 
-/// The help for a cylinder that f32 does not represent.
-const F64_HELP: &str = "records = \"f64\", the default, keeps every number as it is stated";
+/// The help for a cylinder that is invalid in f32.
+const F64_HELP: &str = "records = \"f64\", the default, stores every number unrounded";
 
 /// The solids of one prototype.
 #[derive(Default)]
@@ -33,13 +33,13 @@ pub(super) struct SolidCollector {
     next: u32,
     /// Where the scene file first states a primitive number.
     pub numbered_at: Option<Range<usize>>,
-    /// Rows that were left out, though they have a number.
+    /// Rows that were skipped; they keep their numbers.
     pub skipped: u64,
-    /// At least the size of every coordinate of a point of the solids.
+    /// An upper bound of the size of the solids' coordinates.
     pub reach: f64,
     /// Notes on the files for the user.
     pub notes: Vec<String>,
-    /// The files that they come from.
+    /// The source files of the solids.
     pub origins: Origins,
     /// The file that is being read.
     file: Option<File>,
@@ -53,31 +53,34 @@ struct File {
     first: u32,
 }
 
-/// What the solids of an entry have in common.
+/// The properties that the solids of an entry share.
 #[derive(Clone, Copy)]
 pub(super) struct Look {
     pub caps: Caps,
     pub material: MaterialIndex,
 }
 
-/// Why a solid is not added.
+/// Why a solid cannot be added.
 #[derive(Debug, PartialEq)]
 pub(super) enum Refusal {
     /// No primitive number is left.
     Numbers,
     /// A primitive number that is stated is too large.
     Number(u64),
-    /// Rounded to f32 it is no solid of its kind, for this reason.
+    /// After rounding to f32 the solid is invalid, for this reason.
     Rounded { kind: SolidKind, error: String },
 }
 
 impl Refusal {
-    /// What to say, and what to do about it.
+    /// The message, and the help if there is one.
     pub fn message(&self) -> (String, Option<&'static str>) {
         match self {
             Self::Numbers => {
                 let most = u32::MAX;
-                (format!("a prototype holds at most {most} primitives"), None)
+                (
+                    format!("a prototype can contain at most {most} primitives"),
+                    None,
+                )
             }
             Self::Number(number) => {
                 let most = u32::MAX - 1;
@@ -87,13 +90,13 @@ impl Refusal {
                 )
             }
             Self::Rounded { kind, error } => (
-                format!("rounded to f32 this is no {kind}: {error}"),
+                format!("this {kind} is invalid after rounding to f32: {error}"),
                 Some(F64_HELP),
             ),
         }
     }
 
-    /// That a row of a table which the scene file names is refused.
+    /// The error for a row of a table that the scene file names.
     pub fn in_row(
         &self,
         source: &Source,
@@ -108,7 +111,7 @@ impl Refusal {
     }
 }
 
-/// What happens to rows that are no solid.
+/// The treatment of rows that give no valid solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Degenerate {
     Error,
@@ -116,7 +119,7 @@ pub(super) enum Degenerate {
 }
 
 impl SolidCollector {
-    /// No solids; cylinders are to be kept so.
+    /// An empty collector that stores cylinders in the given precision.
     pub fn new(records: Records) -> Self {
         Self {
             solids: Solids {
@@ -181,7 +184,7 @@ impl SolidCollector {
         material: MaterialIndex,
     ) -> Result<(), Refusal> {
         let primitive = self.number()?;
-        // What an operation leaves may be nothing: all of its parts count.
+        // The result of an operation may be empty, so the bound covers all of its parts.
         for part in solid.solids() {
             self.reach_to(&part.bounds());
         }
@@ -195,7 +198,7 @@ impl SolidCollector {
         self.reach = self.reach.max(corner.max_element());
     }
 
-    /// Adds a note, once.
+    /// Adds a note, unless it exists.
     pub fn note(&mut self, note: &str) {
         if !self.notes.iter().any(|known| known == note) {
             self.notes.push(note.to_owned());
@@ -229,20 +232,20 @@ impl SolidCollector {
         Some(File { first_row, ..file })
     }
 
-    /// Leaves a row out; it keeps its primitive number.
+    /// Skips a row; it keeps its primitive number.
     pub fn skip(&mut self) -> Result<(), Refusal> {
         self.skipped += 1;
         self.leave_free()
     }
 
-    /// Leaves the next primitive number free.
+    /// Leaves the next primitive number unused.
     pub fn leave_free(&mut self) -> Result<(), Refusal> {
         self.number().map(drop)
     }
 }
 
-/// Whether a row that gives this error counts as degenerate. Negative radii
-/// and numbers out of range are not: those are mistakes, whatever was asked.
+/// Whether a row with this error is degenerate. Negative radii and numbers out of
+/// range are not degenerate: they are always errors.
 pub(super) fn is_degenerate(error: &CylinderError) -> bool {
     match error {
         CylinderError::Endpoint { .. } => false,
@@ -251,7 +254,7 @@ pub(super) fn is_degenerate(error: &CylinderError) -> bool {
     }
 }
 
-/// [`is_degenerate`] of a cone or a rounded cone. One radius may be zero.
+/// [`is_degenerate`] for a cone or a rounded cone. One radius may be zero.
 pub(super) fn is_degenerate_cone(error: &ConeError) -> bool {
     match error {
         ConeError::Endpoint { .. } => false,
@@ -267,7 +270,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn primitive_numbers_that_run_out_are_refused() {
+    fn primitive_numbers_that_run_out_are_an_error() {
         let mut solids = SolidCollector {
             next: u32::MAX - 1,
             ..SolidCollector::default()
@@ -285,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn degenerate_rows_are_those_without_extent_only() {
+    fn only_rows_without_extent_are_degenerate() {
         let error = |p1, radius| {
             Cylinder::new(DVec3::ZERO, p1, radius, Caps::Both).expect_err("not a cylinder")
         };

@@ -8,7 +8,7 @@ use super::solids::{SceneSolid, SolidKeys};
 use super::values::{Keys, Number, Whole};
 use crate::for_each_solid;
 
-/// How an object is turned and moved.
+/// The keys of a solid's rotations and translation.
 #[derive(Clone, Copy)]
 pub(super) struct PoseKeys<'a> {
     /// Degrees about x, y and z, applied in this order and before the others.
@@ -25,15 +25,15 @@ pub(super) struct RotationKeys {
     pub degrees: Number,
 }
 
-/// What every solid's table has.
+/// The keys that every solid's table has.
 pub(super) trait SolidTable {
     fn material(&self) -> Option<&Spanned<String>>;
     fn primitive(&self) -> Option<&Spanned<Whole>>;
     fn pose(&self) -> PoseKeys<'_>;
 }
 
-/// Declares the keys of a solid's table, those that every solid has behind its own,
-/// because serde cannot refuse unknown keys in a flattened struct.
+/// Declares the keys of a solid's table, followed by the keys that every solid has,
+/// because serde cannot reject unknown keys in a flattened struct.
 macro_rules! solid_table {
     ($(#[$meta:meta])* $name:ident { $($key:ident: $kind:ty,)* }) => {
         $(#[$meta])*
@@ -90,7 +90,7 @@ impl CompositionKeys {
 
 macro_rules! operand_keys {
     ($({ $type:ident $name:ident $($rest:tt)* })*) => {
-        /// An operand of a set operation: one of these.
+        /// An operand of a set operation: exactly one of these keys.
         #[derive(Deserialize)]
         #[serde(deny_unknown_fields)]
         pub(super) struct OperandKeys {
@@ -101,7 +101,7 @@ macro_rules! operand_keys {
         }
 
         impl OperandKeys {
-            /// The solids among them, each with its place.
+            /// The solids among the keys, each with its place.
             pub fn solids(&self) -> impl Iterator<Item = Spanned<&dyn SolidKeys>> {
                 let all = [$(self.$name.as_ref().map(|stated| {
                     let Keys(keys) = stated.get_ref();

@@ -1,4 +1,4 @@
-//! The solids of a prototype, one list a kind.
+//! The solids of a prototype, one list for each kind.
 
 use std::borrow::Borrow;
 use std::fmt::Debug;
@@ -42,10 +42,10 @@ pub trait SolidList: Clone + Debug + Default + Send + Sync {
     /// The kind of solid.
     type Solid;
 
-    /// How many there are.
+    /// The number of solids.
     fn len(&self) -> usize;
 
-    /// Whether there are none.
+    /// Whether the list is empty.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -53,19 +53,19 @@ pub trait SolidList: Clone + Debug + Default + Send + Sync {
     /// The solid at a position.
     ///
     /// # Panics
-    /// When there is none.
+    /// If the position is not below the length.
     fn solid(&self, position: usize) -> impl Borrow<Self::Solid>;
 
     /// The primitive number at a position.
     ///
     /// # Panics
-    /// When there is no solid.
+    /// If the position is not below the length.
     fn primitive(&self, position: usize) -> u32;
 
     /// The material at a position.
     ///
     /// # Panics
-    /// When there is no solid.
+    /// If the position is not below the length.
     fn material(&self, position: usize) -> MaterialIndex;
 
     /// The position of a primitive number.
@@ -74,19 +74,19 @@ pub trait SolidList: Clone + Debug + Default + Send + Sync {
     /// Adds a solid at the end.
     ///
     /// # Errors
-    /// When the list keeps rounded numbers and these are no solid: why not.
+    /// If the list stores rounded numbers and the rounded solid is invalid.
     fn push(&mut self, record: SolidRecord<Self::Solid>) -> Result<(), String>;
 
     /// Sorts the solids by their numbers, if the list is kept in that order.
     fn sort(&mut self);
 
-    /// Gives back the memory that no record uses.
+    /// Frees the memory that no record uses.
     fn trim(&mut self);
 
     /// The bytes of the records.
     fn records_bytes(&self) -> usize;
 
-    /// The bytes of one record where cylinders are kept so.
+    /// The bytes of one record, given the precision of cylinders.
     #[must_use]
     fn record_bytes(_: Records) -> usize {
         size_of::<SolidRecord<Self::Solid>>()
@@ -138,16 +138,16 @@ impl<S: Clone + Debug + Send + Sync> SolidList for Vec<SolidRecord<S>> {
 
 /// A kind of solid that prototypes contain.
 pub trait Stored: Sized + 'static {
-    /// How its solids are kept.
+    /// The list that stores its solids.
     type List: SolidList<Solid = Self>;
 }
 
-/// The list of a kind of solid.
+/// A kind of solid with a list in [`Solids`].
 pub trait Listed: Stored {
-    /// That of a prototype.
+    /// The list of a prototype.
     fn list(solids: &Solids) -> &Self::List;
 
-    /// The same to be changed.
+    /// The mutable list of a prototype.
     fn list_mut(solids: &mut Solids) -> &mut Self::List;
 }
 
@@ -193,13 +193,13 @@ macro_rules! solids {
                 std::iter::empty()$(.chain(numbered(&self.$list)))*
             }
 
-            /// The one of those with a number.
+            /// The solid with this number, if it is not composed of others.
             #[must_use]
             pub fn find_simple(&self, primitive: u32) -> Option<AnySolid> {
                 None$(.or_else(|| find(&self.$list, primitive)))*
             }
 
-            /// The one of those with as many before it.
+            /// The solid at a position in the order of [`simple`](Self::simple).
             #[must_use]
             pub fn nth_simple(&self, position: usize) -> Option<(u32, AnySolid)> {
                 let mut position = position;
@@ -212,7 +212,7 @@ macro_rules! solids {
 for_each_solid!(solids);
 
 impl Solids {
-    /// Cylinders alone.
+    /// A prototype's solids, cylinders only.
     #[must_use]
     pub fn of_cylinders(cylinders: impl IntoIterator<Item = CylinderRecord>) -> Self {
         Self {
@@ -224,7 +224,7 @@ impl Solids {
     /// Adds a solid at the end of the list of its kind. Numbers ascend within a list.
     ///
     /// # Errors
-    /// When the list keeps rounded numbers and these are no solid: why not.
+    /// If the list stores rounded numbers and the rounded solid is invalid.
     pub fn push(&mut self, record: SolidRecord<AnySolid>) -> Result<(), String> {
         fn add<S: Listed>(solids: &mut Solids, record: SolidRecord<S>) -> Result<(), String> {
             S::list_mut(solids).push(record)
@@ -237,26 +237,26 @@ impl Solids {
         with_solid!(solid, solid => add(self, SolidRecord::new(solid, primitive, material)))
     }
 
-    /// How many there are.
+    /// The number of solids.
     #[must_use]
     pub fn len(&self) -> usize {
         let lists = SolidKind::LISTS.iter();
         lists.map(|&kind| self.len_of(kind)).sum()
     }
 
-    /// Whether there are none.
+    /// Whether the prototype has no solids.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The length of the list with a kind. All set operations are in one list.
+    /// The length of the list of a kind. All set operations share one list.
     #[must_use]
     pub fn len_of(&self, kind: SolidKind) -> usize {
         with_solid_kind!(kind, S => S::list(self).len())
     }
 
-    /// How many there are of each kind.
+    /// The number of solids of each kind.
     #[must_use]
     pub fn counts(&self) -> SolidCounts {
         let mut counts = SolidCounts::default();
@@ -269,16 +269,16 @@ impl Solids {
         counts
     }
 
-    /// The number of the solid at a position in the list with its kind.
+    /// The number of the solid at a position in the list of its kind.
     ///
     /// # Panics
-    /// When the list is shorter.
+    /// If the position is not below the length of the list.
     #[must_use]
     pub fn primitive(&self, kind: SolidKind, position: usize) -> u32 {
         with_solid_kind!(kind, S => S::list(self).primitive(position))
     }
 
-    /// The bytes of the records, with what the compositions are made of.
+    /// The bytes of the records, including the operands of compositions.
     #[must_use]
     pub fn records_bytes(&self) -> usize {
         let lists = SolidKind::LISTS.iter();
@@ -288,10 +288,10 @@ impl Solids {
         lists.chain(operands).sum()
     }
 
-    /// A box around all of them. Runs on the rayon pool that this is called in.
+    /// A box around all solids. Runs on the caller's rayon pool.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
-        /// Fewer solids are not worth a thread.
+        /// The least number of solids that is worth a thread.
         const SHARE: usize = 1 << 12;
         let of_list = |&kind| {
             with_solid_kind!(kind, S => {
@@ -323,7 +323,7 @@ impl Solids {
         twice.map_or(Ok(()), |pair| Err(pair[0]))
     }
 
-    /// Gives back the memory that no record uses.
+    /// Frees the memory that no record uses.
     pub(super) fn trim(&mut self) {
         for &kind in SolidKind::LISTS {
             with_solid_kind!(kind, S => S::list_mut(self).trim());
@@ -339,7 +339,7 @@ fn numbered<L: SolidList<Solid: ConvexSolid + Into<AnySolid>>>(
     positions.map(|position| (list.primitive(position), any(list, position)))
 }
 
-/// The solid of a list with a number.
+/// The solid with this number in a list.
 fn find<L: SolidList<Solid: ConvexSolid + Into<AnySolid>>>(
     list: &L,
     primitive: u32,
@@ -348,8 +348,8 @@ fn find<L: SolidList<Solid: ConvexSolid + Into<AnySolid>>>(
     Some(any(list, position))
 }
 
-/// The solid of a list at a position, with its number. A position beyond the list is then
-/// counted from its end.
+/// The solid at a position of a list, with its number. If the position is beyond the list,
+/// the length of the list is subtracted from it.
 fn nth<L: SolidList<Solid: ConvexSolid + Into<AnySolid>>>(
     list: &L,
     position: &mut usize,

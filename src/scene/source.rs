@@ -11,8 +11,8 @@ use super::names::{quoted, suggestion};
 use super::regular_file::read_regular;
 use super::toml_message;
 
-/// Longest line that an error shows, in bytes; of a longer one, only the
-/// place is given.
+/// The longest line that an error shows, in bytes. For a longer line, the message gives
+/// only the place.
 const LONGEST_SHOWN_LINE: usize = 400;
 
 /// A scene file that has been read.
@@ -50,7 +50,7 @@ impl Source {
         })
     }
 
-    /// The file.
+    /// The path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -60,7 +60,7 @@ impl Source {
         &self.text
     }
 
-    /// A path that the scene file states, relative to the file's folder.
+    /// Resolves a path in the scene file relative to the file's folder.
     pub fn resolve(&self, file: &str) -> PathBuf {
         match self.path.parent() {
             Some(folder) => folder.join(file),
@@ -68,12 +68,12 @@ impl Source {
         }
     }
 
-    /// That `message` is true of a place.
+    /// An error at a place.
     pub fn error(&self, place: Range<usize>, message: impl Into<String>) -> SceneError {
         self.statement(place, message.into(), None)
     }
 
-    /// That `message` is true of a place, and what to do about it.
+    /// An error at a place, with advice.
     pub fn error_with_help(
         &self,
         place: Range<usize>,
@@ -83,7 +83,7 @@ impl Source {
         self.statement(place, message.into(), Some(help.into()))
     }
 
-    /// What the TOML parser or a value's type complains about.
+    /// The error of the TOML parser or of a value's type.
     pub fn toml_error(&self, error: &toml::de::Error) -> SceneError {
         let place = error.span().unwrap_or(0..0);
         let (_, _, line_start) = locate(&self.text, place.start.min(self.text.len()));
@@ -92,7 +92,7 @@ impl Source {
         self.statement(place, message, help)
     }
 
-    /// That a file which the scene names cannot be opened.
+    /// The error that a file named in the scene cannot be opened.
     pub fn unreadable(&self, file: &Spanned<String>, error: SceneError) -> SceneError {
         match error {
             SceneError::Unreadable { .. } => self.error_with_help(
@@ -104,7 +104,7 @@ impl Source {
         }
     }
 
-    /// The meaning of a word that must be one of a few.
+    /// The meaning of a word that must be one of the choices.
     pub fn choose<T: Copy>(
         &self,
         what: &str,
@@ -150,7 +150,7 @@ impl Source {
     }
 }
 
-/// Line and column of a byte, both from 1, and where the line starts.
+/// The line and column of a byte, both from 1, and the start of the line.
 fn locate(text: &str, byte: usize) -> (usize, usize, usize) {
     let before = &text[..byte];
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);

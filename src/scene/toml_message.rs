@@ -1,11 +1,11 @@
-//! What the messages of the TOML parser mean to a user, and what to do.
+//! Translates messages of the TOML parser for users, with advice.
 
 use super::formats;
 use super::names::{quoted, suggestion};
 use crate::solid::SolidKind;
 
-/// Keys of the scene that contain many tables, `[[...]]`, beside those of solids
-/// and of their files.
+/// The top-level keys for arrays of tables, `[[...]]`, besides those of solids and of their
+/// files.
 const LISTS: [&str; 5] = [
     "material",
     "prototype",
@@ -13,23 +13,23 @@ const LISTS: [&str; 5] = [
     "instance_table",
     "scatter",
 ];
-/// The other keys of the scene.
+/// The other top-level keys.
 const SINGLE: [&str; 6] = ["background", "camera", "film", "render", "sun", "sky"];
 
-/// Whether a key of the scene contains many tables.
+/// Whether a top-level key is an array of tables.
 fn is_list(key: &str) -> bool {
     LISTS.contains(&key) || formats::KEYS.contains(&key) || key.parse::<SolidKind>().is_ok()
 }
 
-/// Most characters of a message that are passed on, from its beginning and
-/// from its end: it repeats the user's keys and values, however long.
+/// The most characters that are shown from the beginning and from the end of a message,
+/// which may repeat keys and values of any length.
 const LONGEST_PART: usize = 300;
 
-/// What is wrong, and what to do about it where that is known, for a message
-/// of the parser about a place in `line`.
+/// The message for users, and advice if possible, for a message of the parser about a place
+/// in `line`.
 pub(super) fn explain(message: &str, line: &str) -> (String, Option<String>) {
     if message.contains("max recursion depth met") {
-        return ("the values here are nested too deeply".to_owned(), None);
+        return ("the values are nested too deeply".to_owned(), None);
     }
     if let Some((key, expected)) = unknown_field(message) {
         return unknown_key(key, &expected, line);
@@ -43,14 +43,14 @@ pub(super) fn explain(message: &str, line: &str) -> (String, Option<String>) {
             || (message == "duplicate key" && path.is_some() && !line.starts_with("[["));
         if wants_list && is_list(last) {
             return (
-                format!("[{key}] is one table where there may be many"),
+                format!("[{key}] is a single table, but {last} must be an array of tables"),
                 Some(format!("write [[{key}]] in front of each")),
             );
         }
         if line.starts_with("[[") && SINGLE.contains(&last) {
             return (
-                format!("[[{key}]] is a list of tables, and there is only one {last}"),
-                Some(format!("write [{key}], once")),
+                format!("[[{key}]] is an array of tables, but {last} must be a single table"),
+                Some(format!("write [{key}] once")),
             );
         }
     }
@@ -58,12 +58,11 @@ pub(super) fn explain(message: &str, line: &str) -> (String, Option<String>) {
     (without_middle(&lines.join(", ")), None)
 }
 
-/// The key and the keys that would be right, of a message about an unknown
-/// one.
+/// The unknown key and the accepted keys in a message about an unknown key.
 fn unknown_field(message: &str) -> Option<(&str, Vec<&str>)> {
     let rest = message.strip_prefix("unknown field `")?;
     let (key, expected) = rest.split_at(rest.rfind("`, expected ")?);
-    // The odd pieces stand between two backquotes; the first quote ends `key`.
+    // The odd pieces are between two backquotes; the first quote ends `key`.
     Some((key, expected[1..].split('`').skip(1).step_by(2).collect()))
 }
 
@@ -73,10 +72,10 @@ fn unknown_key(key: &str, expected: &[&str], line: &str) -> (String, Option<Stri
     let help = if !is_top {
         suggestion(key, expected.iter().copied(), "keys")
     } else if line.trim_start().starts_with('[') {
-        format!("{key} belongs to the scene itself, not into another table")
+        format!("{key} is a top-level key: it cannot be in another table")
     } else {
         format!(
-            "top-level keys go before the first [table]: put {key} above it; here it belongs to the table that precedes it"
+            "top-level keys go before the first [table]: put {key} above it; here it belongs to the preceding table"
         )
     };
     (message, Some(help))
@@ -106,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unknown_field_of_any_wording_is_taken_apart() {
+    fn unknown_field_of_any_wording_is_parsed() {
         for (message, key, expected) in [
             ("unknown field `a`, expected `b`", "a", &["b"][..]),
             ("unknown field `a`, expected `b` or `c`", "a", &["b", "c"]),
@@ -123,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn message_that_is_not_known_is_passed_on_without_its_middle() {
+    fn unknown_message_is_shown_without_its_middle() {
         let (message, help) = explain("bad\nvalue", "x = 1");
         assert_eq!((message.as_str(), help), ("bad, value", None));
         let (message, _) = explain(&"x".repeat(10_000), "x = 1");

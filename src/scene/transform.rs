@@ -1,8 +1,7 @@
-//! Placements: composed from scale, rotations and translation, and checked.
+//! Validates placements, and converts quaternions to rotations.
 //!
-//! Everything here is additions, products, square roots and `libm`, so that a
-//! scene is the same numbers on every machine; glam's own rotations call the
-//! platform's sine.
+//! The code uses only additions, products, square roots and `libm`, so a scene has the
+//! same numbers on every machine; glam's own rotations call the platform's sine.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -13,43 +12,41 @@ use crate::math::{ChildFromParent, PlacementErrors, power_of_two};
 /// few of them stay within f64.
 pub(super) const GREATEST_ENTRY: f64 = power_of_two(100);
 
-/// Least `|det L|` relative to the product of the lengths of L's columns:
-/// 2^-40. Rounding makes some 2^-50 of a singular matrix; below 2^-40 fewer
-/// than a dozen bits of an inverse would be right.
+/// The least `|det L|` relative to the product of the lengths of L's columns:
+/// 2^-40. For a singular matrix, rounding gives about 2^-50; below 2^-40 fewer
+/// than a dozen bits of an inverse would be correct.
 const LEAST_RELATIVE_DETERMINANT: f64 = power_of_two(-40);
 
-/// Why numbers are not a placement.
+/// Why a placement is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub(super) enum TransformError {
-    #[error("the placement has the entry {entry}: the size of each must be at most 2^100")]
+    #[error("the placement has the entry {entry}: entries must be at most 2^100 in size")]
     Entry { entry: f64 },
-    #[error(
-        "the placement shrinks a direction to {length:e} of its length: it must keep at least 2^-100"
-    )]
+    #[error("the placement scales a direction by {length:e}: the factor must be at least 2^-100")]
     Shrinks { length: f64 },
     #[error(
-        "the placement is singular, it makes volumes flat: its determinant is {relative:e} of the product of its columns' lengths, at least 2^-40 is needed"
+        "the placement is singular, so it flattens volumes: its determinant is {relative:e} times the product of its columns' lengths, but must be at least 2^-40 times"
     )]
     Singular { relative: f64 },
     #[error(
-        "the placement is too uneven: |L| |L^-1| is {condition:.1e} (Frobenius norms; 3 for a rotation), at most 2^27 is supported"
+        "the placement stretches too unevenly: its condition number |L| |L^-1| is {condition:.1e} (Frobenius norms; 3 for a rotation), but must be at most 2^27"
     )]
     Uneven { condition: f64 },
 }
 
-/// How far a placement may take numbers, for the check of nested ones.
+/// Bounds of a placement, for the check of nested placements.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Reach {
-    /// At least the factor by which L lengthens any vector.
+    /// An upper bound of the factor by which L lengthens a vector.
     pub stretch: f64,
-    /// At least the factor by which L's inverse lengthens any vector.
+    /// An upper bound of the factor by which L's inverse lengthens a vector.
     pub squeeze: f64,
-    /// At least the greatest size of a coordinate of the translation.
+    /// An upper bound of the size of the translation's coordinates.
     pub translation: f64,
 }
 
 impl Reach {
-    /// What applies to either placement.
+    /// The bounds of both placements.
     pub fn union(self, other: Self) -> Self {
         Self {
             stretch: self.stretch.max(other.stretch),
@@ -59,7 +56,7 @@ impl Reach {
     }
 }
 
-/// The rotation of a quaternion of any length (x, y, z, w), or `None` of zero.
+/// The rotation of a quaternion (x, y, z, w) of any length, or `None` if it is zero.
 pub(super) fn quaternion_rotation(quaternion: [f64; 4]) -> Option<DMat3> {
     let size = quaternion
         .iter()
@@ -72,11 +69,10 @@ pub(super) fn quaternion_rotation(quaternion: [f64; 4]) -> Option<DMat3> {
     })
 }
 
-/// What a placement does to the size of numbers.
+/// Validates a placement and returns its bounds.
 ///
 /// # Errors
-/// When an entry of the placement is too large, or the matrix is singular or
-/// close to it.
+/// If an entry of the placement is too large, or the matrix is singular or nearly so.
 pub(super) fn checked(parent_from_child: &DAffine3) -> Result<Reach, TransformError> {
     let matrix = parent_from_child.matrix3;
     let translation = parent_from_child.translation;
@@ -154,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn checked_extreme_and_singular_matrices_are_refused() {
+    fn checked_extreme_and_singular_matrices_are_rejected() {
         let scaled = |x, y, z| DAffine3::from_scale(DVec3::new(x, y, z));
         assert!(checked(&scaled(1e30, 1e30, -1e30)).is_ok());
         assert!(checked(&scaled(7e7, 1.0, -1.0)).is_ok());

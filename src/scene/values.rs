@@ -1,8 +1,8 @@
-//! The kinds of values that a scene file contains, checked while they are read,
-//! so that an error points at the value itself.
+//! The types of values in a scene file. They are validated while they are read, so that an
+//! error points at the value itself.
 //!
-//! serde's own types are too lenient here: derived structs also accept arrays,
-//! arrays ignore what is left over, and floats may be NaN.
+//! serde's own types are too lenient: derived structs also accept arrays, arrays ignore
+//! extra elements, and floats may be NaN.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -12,7 +12,7 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor}
 
 use super::table::ColumnKey;
 
-/// A finite number; whole numbers are welcome too.
+/// A finite number, with or without decimals.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Number(pub f64);
 
@@ -38,22 +38,22 @@ pub(super) enum ColumnOrList<const N: usize> {
     Many([ColumnKey; N]),
 }
 
-/// A TOML table with the keys of `T`, and nothing else.
+/// A TOML table with the keys of `T` and no others.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Keys<T>(pub T);
 
-/// What the three number types accept as a number.
+/// Rejects numbers that are not finite, for all number types.
 fn finite<E: Error>(number: f64) -> Result<f64, E> {
     if number.is_finite() {
         Ok(number)
     } else {
         Err(E::custom(format!(
-            "{number} is not accepted: the number must be finite"
+            "the number is {number}: it must be finite"
         )))
     }
 }
 
-/// Exactly `N` elements, or an error that says how many there are.
+/// Exactly `N` elements, or an error that gives their number.
 fn exactly<'de, T, A, const N: usize>(
     mut elements: A,
     expected: &dyn serde::de::Expected,
@@ -129,7 +129,7 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for List<T, N> {
         impl<'de, T: Deserialize<'de>, const N: usize> Visitor<'de> for ListVisitor<T, N> {
             type Value = List<T, N>;
             fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-                write!(formatter, "an array of {N}")
+                write!(formatter, "an array of length {N}")
             }
             fn visit_seq<A: SeqAccess<'de>>(self, elements: A) -> Result<Self::Value, A::Error> {
                 exactly(elements, &self).map(List)
@@ -165,7 +165,7 @@ impl<'de, const N: usize> Deserialize<'de> for NumberOrList<N> {
     }
 }
 
-/// The column of a number, from 0.
+/// The column with a number, from 0.
 fn column<E: Error>(number: i64, expected: &dyn serde::de::Expected) -> Result<ColumnKey, E> {
     u64::try_from(number)
         .map(ColumnKey::Number)

@@ -1,21 +1,20 @@
-//! What can be in a picture: the part of space that the camera's rays go
-//! through.
+//! The part of space that the camera's rays cover, and so the picture can show.
 
 use glam::DVec3;
 
 use crate::math::{Bounds, power_of_two};
 
-/// By how much a box has to be outside, relative to the size of what is
-/// subtracted to find it out: some hundred times the roundings of that, and
-/// of rays through the picture's edge.
+/// How far a box has to be outside, relative to the size of the numbers subtracted
+/// in the test: about a hundred times the rounding errors of the test and of rays
+/// through the picture's edge.
 const SLACK: f64 = power_of_two(-40);
 
 /// The space between four planes through the edges of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewVolume {
     eye: DVec3,
-    /// Normals of the planes through the eye or beside it, which point inward,
-    /// and how far from the eye the planes are along them.
+    /// The inward normals of the planes, and the distances of the planes from the eye
+    /// along them.
     sides: [(DVec3, f64); 4],
 }
 
@@ -25,8 +24,7 @@ impl ViewVolume {
         Self { eye, sides }
     }
 
-    /// Whether any ray of the camera may reach a box; only false where none
-    /// does.
+    /// Whether any ray of the camera may reach a box; false only if none does.
     #[must_use]
     pub fn may_reach(&self, bounds: &Bounds) -> bool {
         let (center, half) = (bounds.center() - self.eye, bounds.extent() * 0.5);
@@ -34,7 +32,7 @@ impl ViewVolume {
         self.sides.iter().all(|(normal, distance)| {
             let farthest = normal.dot(center) + normal.abs().dot(half) + distance;
             let slack = SLACK * (normal.abs().dot(size) + distance.abs());
-            // Written so that NaN may be reached.
+            // Written so that NaN counts as reachable.
             !(farthest < -slack)
         })
     }

@@ -326,7 +326,7 @@ fn what_the_specification_forbids_is_read_with_a_note() {
         panic!("one note");
     };
     assert!(
-        note.starts_with("2: object 1: its type is \"support\", and only"),
+        note.starts_with("2: object 1: its type is \"support\", but only"),
         "{note}"
     );
     assert_eq!(cylinders(&prototype("", &of_support)).len(), 1);
@@ -343,7 +343,10 @@ fn what_the_specification_forbids_is_read_with_a_note() {
     let [note] = &notes("", &of_balls)[..] else {
         panic!("one note");
     };
-    assert!(note.contains("balls but no ballmode"), "{note}");
+    assert!(
+        note.contains("its balls are ignored because it has no ballmode"),
+        "{note}"
+    );
     assert!(spheres(&prototype("", &of_balls)).is_empty());
 }
 
@@ -368,7 +371,7 @@ fn objects_are_named_whose_triangles_are_left_out() {
         panic!("two notes: {found:?}");
     };
     assert!(
-        left_out.contains(": objects 1, 2, 4: its triangles are left out"),
+        left_out.contains(": objects 1, 2, 4: its triangles are ignored"),
         "{left_out}"
     );
     assert!(

@@ -1,7 +1,7 @@
-//! The formats of triangle meshes: a file or a folder each, reading beside writing.
+//! The formats of triangle meshes: one file or folder each, with the reader and the writer.
 //!
 //! A new format is a module with an implementation of [`MeshFormat`] and a line in the list
-//! at the end of this file; `docs/formats.md` contains what [`Format`] says of each.
+//! at the end of this file; `docs/formats.md` lists what [`Format`] reports for each.
 
 mod obj;
 mod ply;
@@ -14,34 +14,34 @@ use super::reading::MeshFile;
 use super::{MeshError, MeshFileError, Plan, Progress};
 use crate::scene::Scene;
 
-/// What a format of meshes implements.
+/// The interface of a mesh format.
 trait MeshFormat {
-    /// What the format is called.
+    /// The name of the format.
     const NAME: &'static str;
 
-    /// The ending of its files' names, in lower case.
+    /// The extension of its files, in lower case.
     const EXTENSION: &'static str;
 
-    /// How it is written; `None` of a format that is only read.
+    /// The writer; `None` for a format that is only read.
     const WRITER: Option<Writer>;
 
     /// Reads a mesh from the bytes of a file.
     ///
     /// # Errors
-    /// When the content is malformed, a number is out of range, a face names a vertex that
-    /// does not exist, or there is no face.
+    /// If the content is malformed, a number is out of range, a face names a vertex that
+    /// does not exist, or the mesh has no faces.
     fn parse(bytes: &[u8]) -> Result<MeshFile, MeshError>;
 }
 
-/// How a format is written.
+/// The functions that write a format.
 struct Writer {
-    /// Refuses a mesh that the format cannot contain.
+    /// Rejects a mesh that the format cannot represent.
     check: fn(&Plan) -> Result<(), MeshFileError>,
-    /// The size of the file, given what it calls the scene.
+    /// The size of the file, or an upper bound. The text is the name of the scene in the file.
     bytes: fn(&Plan, &str) -> u128,
-    /// Whether the file has that size, not at most that size.
+    /// Whether `bytes` is the exact size.
     is_size_exact: bool,
-    /// Writes the mesh of a plan, given what the file calls the scene.
+    /// Writes the mesh of a plan. The text is the name of the scene in the file.
     write: WriteMesh,
 }
 
@@ -62,7 +62,7 @@ macro_rules! formats {
             /// All formats.
             pub const ALL: &[Self] = &[$(Self::$format),*];
 
-            /// What the format is called.
+            /// The name of the format.
             #[must_use]
             pub fn name(self) -> &'static str {
                 match self {
@@ -70,7 +70,7 @@ macro_rules! formats {
                 }
             }
 
-            /// The ending of its files' names, in lower case.
+            /// The extension of its files, in lower case.
             #[must_use]
             pub fn extension(self) -> &'static str {
                 match self {
@@ -81,8 +81,8 @@ macro_rules! formats {
             /// Reads a mesh from the bytes of a file.
             ///
             /// # Errors
-            /// When the content is malformed, a number is out of range, a face names a
-            /// vertex that does not exist, or there is no face.
+            /// If the content is malformed, a number is out of range, a face names a
+            /// vertex that does not exist, or the mesh has no faces.
             pub fn parse(self, bytes: &[u8]) -> Result<MeshFile, MeshError> {
                 match self {
                     $(Self::$format => $module::$format::parse(bytes),)*
@@ -99,7 +99,7 @@ macro_rules! formats {
 }
 
 impl Format {
-    /// The format whose files end as this one does, in upper or lower case.
+    /// The format of a file, by its extension in upper or lower case.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         let extension = path.extension()?;
@@ -107,40 +107,40 @@ impl Format {
         all.find(|format| extension.eq_ignore_ascii_case(format.extension()))
     }
 
-    /// The format to write a file in, by the ending of its name.
+    /// The format in which to write a file, by its extension.
     ///
     /// # Errors
-    /// When the file does not end as those of a format that is written.
+    /// If no format with this extension can be written.
     pub fn to_write(path: &Path) -> Result<Self, MeshFileError> {
         let format = Self::of(path).filter(|format| format.is_written());
         format.ok_or_else(|| MeshFileError::Format { path: path.into() })
     }
 
-    /// Whether meshes are written in it; all formats are read.
+    /// Whether the format can be written; all formats can be read.
     #[must_use]
     pub fn is_written(self) -> bool {
         self.writer().is_some()
     }
 
-    /// The size of a plan's file in bytes, or at most its size where that depends on the
-    /// digits of its numbers; see [`is_size_exact`](Self::is_size_exact). `scene` is what
-    /// the file calls the scene. 0 of a format that is not written.
+    /// The size of a plan's file in bytes, or an upper bound where the size depends on the
+    /// digits of the numbers; see [`is_size_exact`](Self::is_size_exact). `scene` is the name
+    /// of the scene in the file. 0 if the format cannot be written.
     #[must_use]
     pub fn file_bytes(self, plan: &Plan, scene: &str) -> u128 {
         self.writer()
             .map_or(0, |writer| (writer.bytes)(plan, scene))
     }
 
-    /// Whether [`file_bytes`](Self::file_bytes) is the size of the file, and not a bound.
+    /// Whether [`file_bytes`](Self::file_bytes) is exact rather than an upper bound.
     #[must_use]
     pub fn is_size_exact(self) -> bool {
         self.writer().is_some_and(|writer| writer.is_size_exact)
     }
 
-    /// Refuses a file of more than `most_bytes`, or a mesh that the format cannot contain.
+    /// Rejects a file of more than `most_bytes` and a mesh that the format cannot represent.
     ///
     /// # Errors
-    /// In these cases, and of a format that is not written.
+    /// In these cases, and if the format cannot be written.
     pub fn check(self, plan: &Plan, scene: &str, most_bytes: u64) -> Result<(), MeshFileError> {
         let needed = self.file_bytes(plan, scene);
         if needed > u128::from(most_bytes) {
@@ -150,11 +150,11 @@ impl Format {
         (self.writer_or_error()?.check)(plan)
     }
 
-    /// Writes the mesh of a plan. `name` is what the file calls the scene.
+    /// Writes the mesh of a plan. `name` is the name of the scene in the file.
     ///
     /// # Errors
-    /// When the writer refuses, `progress` asks to stop, or the format cannot contain the
-    /// mesh or is not written.
+    /// If `writer` fails, `progress` breaks, or the format cannot represent the mesh or
+    /// cannot be written.
     pub fn write(
         self,
         scene: &Scene,
@@ -173,7 +173,7 @@ impl Format {
         self.writer().ok_or(MeshFileError::NotWritten { name })
     }
 
-    /// The endings of the formats' names in a sentence: `.obj, .ply or .stl`.
+    /// The extensions of formats for a message: `.obj, .ply or .stl`.
     pub(super) fn endings(formats: impl Iterator<Item = Self>) -> String {
         let endings: Vec<_> = formats.map(|one| format!(".{}", one.extension())).collect();
         match endings.split_last() {

@@ -1,11 +1,11 @@
-//! STL, binary and as text: the corners of its facets. Normals, attributes and the names of
-//! solids are ignored, and the facets of all solids are one mesh.
+//! STL, binary and ASCII: the corners of the facets. Normals, attributes and the names of
+//! solids are ignored; the facets of all solids form one mesh.
 //!
-//! A binary file is 80 bytes of anything, the number of facets in 32 bits, and 50 bytes a
-//! facet. Those 80 bytes may begin with `solid`, as a text does. So a file whose length is
-//! what its number of facets makes it is binary, even if its first word is `solid`. A text never has
-//! such a length: four of its bytes are the number of a file beyond [`MOST_MESH_BYTES`]
-//! (`crate::scene`), as no byte of a text is below 9.
+//! A binary file has 80 arbitrary bytes, the number of facets in 32 bits, and 50 bytes for
+//! each facet. The 80 bytes may begin with `solid`, as an ASCII file does. So a file whose
+//! length matches its number of facets is binary, even if its first word is `solid`. An ASCII
+//! file never has such a length: its bytes are 9 or more, so the four bytes at that place are
+//! the number of facets of a file larger than [`MOST_MESH_BYTES`] (`crate::scene`).
 
 use glam::DVec3;
 
@@ -21,7 +21,7 @@ use crate::meshes::reading::text::{lines, number, shown, without_mark, words};
 const HEADER: usize = 84;
 /// Bytes of a binary facet: a normal and three corners in f32, and 16 bits.
 const FACET: usize = 50;
-/// Bytes in which a text is looked for.
+/// The first bytes, which decide whether a file is ASCII.
 const SAMPLE: usize = 1024;
 
 /// Facets; read only.
@@ -54,11 +54,11 @@ fn parse(bytes: &[u8]) -> Result<MeshFile, MeshError> {
     }
     Err(MeshError::in_file(match (claimed, expected) {
         (Some(count), Some(expected)) => format!(
-            "a binary STL file of {count} facets has {expected} bytes, and this one has {}; one that is text begins with \"solid\"",
+            "a binary STL file of {count} facets has {expected} bytes, but this file has {}; an ASCII STL file begins with \"solid\"",
             bytes.len()
         ),
         _ => format!(
-            "an STL file begins with \"solid\", or is binary and has at least {HEADER} bytes"
+            "an STL file begins with \"solid\" (ASCII), or has at least {HEADER} bytes (binary)"
         ),
     }))
 }
@@ -83,7 +83,7 @@ fn binary(bytes: &[u8]) -> Result<MeshFile, MeshError> {
     finished(builder, remarks)
 }
 
-/// What is due next in a text.
+/// What must come next in an ASCII file.
 #[derive(Clone, Copy, PartialEq)]
 enum Due {
     /// A solid, or the end of the file.
@@ -98,7 +98,7 @@ enum Due {
 }
 
 impl Due {
-    /// What is due, for messages.
+    /// The keyword for messages.
     fn name(self) -> &'static str {
         match self {
             Self::Solid => "solid",
@@ -111,8 +111,8 @@ impl Due {
     }
 }
 
-/// Reads a text: words in any case, between any white space. What follows `solid` and
-/// `endsolid` on their lines is a name.
+/// Reads an ASCII file: words in any case, between any white space. The rest of a line
+/// after `solid` or `endsolid` is a name.
 fn ascii(text: &[u8]) -> Result<MeshFile, MeshError> {
     let mut builder = Builder::default();
     let mut remarks = Remarks::default();
@@ -159,14 +159,14 @@ fn ascii(text: &[u8]) -> Result<MeshFile, MeshError> {
                 return Err(MeshError::in_line(line, COORDINATES));
             }
             (due, _) => {
-                let message = format!("{} where {} is due", shown(word), due.name());
+                let message = format!("expected {}, found {}", due.name(), shown(word));
                 return Err(MeshError::in_line(line, message));
             }
         };
     }
     // Some programs leave the last line out.
     if !matches!(due, Due::Solid | Due::Facet) {
-        let message = format!("the file ends where {} is due", due.name());
+        let message = format!("expected {}, found the end of the file", due.name());
         return Err(MeshError::in_line(last, message));
     }
     finished(builder, remarks)
@@ -211,13 +211,13 @@ impl<'a, L: Iterator<Item = (u64, &'a [u8])>> Words<'a, L> {
         is_it
     }
 
-    /// What is left of the line, which is skipped.
+    /// Skips the rest of the line and returns it.
     fn rest_of_line(&mut self) -> &'a [u8] {
         std::mem::take(&mut self.rest)
     }
 }
 
-/// What is wrong with a vertex of fewer or more numbers.
+/// The error of a vertex with fewer or more numbers.
 const COORDINATES: &str = "a vertex has three coordinates: vertex x y z";
 
 /// The coordinates after `vertex`.
@@ -242,7 +242,7 @@ fn finished(builder: Builder, remarks: Remarks) -> Result<MeshFile, MeshError> {
         mesh: builder.finish()?,
         deviation: remarks.deviation,
         made: remarks.made(),
-        // Texts are written from f32 as a rule.
+        // ASCII files are usually written from f32 numbers.
         rounding: ROUNDING_32,
     })
 }
@@ -329,27 +329,27 @@ mod tests {
             (
                 text("facet\nouter loop\nvertex 0 0 0\nendloop\n"),
                 5,
-                "\"endloop\" where vertex",
+                "expected vertex (a facet has three), found \"endloop\"",
             ),
             (
                 text(&FACET_TEXT.replace("endloop", "vertex 1 1 1")),
                 7,
-                "\"vertex\" where endloop",
+                "expected endloop (a facet has three vertices), found \"vertex\"",
             ),
             (
                 text("facet\nvertex 0 0 0\n"),
                 3,
-                "\"vertex\" where outer loop is due",
+                "expected outer loop, found \"vertex\"",
             ),
             (
                 text("facet\nouter loop\n\n"),
                 3,
-                "the file ends where vertex",
+                "expected vertex (a facet has three), found the end",
             ),
             (
                 text(&format!("{FACET_TEXT}endsolid\n{FACET_TEXT}")),
                 10,
-                "\"facet\" where solid",
+                "expected solid, found \"facet\"",
             ),
         ] {
             let error = parse(text.as_bytes()).unwrap_err();
@@ -365,13 +365,13 @@ mod tests {
         for (bytes, message) in [
             (
                 &whole[..whole.len() - 1],
-                "of 1 facets has 134 bytes, and this one has 133",
+                "of 1 facets has 134 bytes, but this file has 133",
             ),
-            (&longer, "and this one has 135"),
+            (&longer, "but this file has 135"),
             (&binary_file(b"", &[])[..40], "begins with \"solid\""),
             (b"", "begins with \"solid\""),
-            (b"solid", "there is no face"),
-            (&binary_file(b"", &[]), "there is no face"),
+            (b"solid", "has no faces"),
+            (&binary_file(b"", &[]), "has no faces"),
         ] {
             let error = parse(bytes).unwrap_err();
             assert!(error.message.contains(message), "{error}");

@@ -1,5 +1,5 @@
-//! A mesh while it is read: limits of numbers, fans of polygons, vertices that are named
-//! before they are stated.
+//! Builds a mesh while it is read: checks limits, splits polygons into fans, and accepts
+//! vertices that are named before they are defined.
 
 use glam::DVec3;
 
@@ -7,7 +7,7 @@ use crate::meshes::error::{MeshError, MeshPlace};
 use crate::scene::{GREATEST_MESH_COORDINATE, MOST_FACE_CORNERS};
 use crate::solid::tessellation::Mesh;
 
-/// What is wrong with a face of more corners than [`MOST_FACE_CORNERS`].
+/// The error of a face with more corners than [`MOST_FACE_CORNERS`].
 pub(in crate::meshes) fn too_many_corners() -> String {
     format!("the face has more than {MOST_FACE_CORNERS} corners")
 }
@@ -16,8 +16,8 @@ pub(in crate::meshes) fn too_many_corners() -> String {
 #[derive(Default)]
 pub(in crate::meshes) struct Builder {
     mesh: Mesh,
-    /// Corners that were beyond the vertices of their time, each greater than the one
-    /// before, with their places: the first that stays beyond is the error.
+    /// Corners that named no vertex when they were read, in increasing order, with their
+    /// places. The first that names none at the end is the error.
     beyond: Vec<(u64, MeshPlace)>,
 }
 
@@ -29,7 +29,7 @@ impl Builder {
 
     /// Adds a vertex.
     pub fn push_vertex(&mut self, point: DVec3, place: MeshPlace) -> Result<(), MeshError> {
-        // NaN is not below.
+        // Written so that NaN fails.
         if !(point.abs().max_element() <= GREATEST_MESH_COORDINATE) || point.is_nan() {
             return Err(MeshError::new(
                 place,
@@ -47,8 +47,8 @@ impl Builder {
         Ok(())
     }
 
-    /// Adds a polygon as a fan about its first corner. One of less than three corners has
-    /// no area and adds nothing.
+    /// Adds a polygon as a fan about its first corner. A polygon of fewer than three corners
+    /// has no area and adds nothing.
     pub fn push_face(&mut self, corners: &[u64], place: MeshPlace) -> Result<(), MeshError> {
         for &corner in corners {
             let greatest = self.beyond.last().map_or(0, |&(greatest, _)| greatest);
@@ -58,7 +58,10 @@ impl Builder {
         }
         let index = |corner: u64| {
             u32::try_from(corner).map_err(|_| {
-                let message = format!("the face names vertex {corner}, counted from 0");
+                let message = format!(
+                    "the face names vertex {corner} (counted from 0), but a mesh has at most {} vertices",
+                    u32::MAX
+                );
                 MeshError::new(place, message)
             })
         };
@@ -76,20 +79,23 @@ impl Builder {
         Ok(())
     }
 
-    /// The mesh; one without a triangle is an error.
+    /// Returns the mesh.
+    ///
+    /// # Errors
+    /// If a face names a vertex that does not exist, or the mesh has no triangles.
     pub fn finish(self) -> Result<Mesh, MeshError> {
         let count = self.vertices();
         if let Some(&(corner, place)) = self.beyond.iter().find(|&&(corner, _)| corner >= count) {
             return Err(MeshError::new(
                 place,
                 format!(
-                    "the face names a vertex that does not exist: number {corner} from 0, {} from 1; there are {count}",
+                    "the face names vertex {corner} ({} if counted from 1), but the mesh has {count} vertices",
                     corner.saturating_add(1)
                 ),
             ));
         }
         if self.mesh.triangles.is_empty() {
-            return Err(MeshError::in_file("there is no face"));
+            return Err(MeshError::in_file("the mesh has no faces"));
         }
         Ok(self.mesh)
     }

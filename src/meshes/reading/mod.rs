@@ -1,10 +1,9 @@
 //! What the readers of mesh files share.
 //!
-//! The readers are ours because an error has to name its line, and a header that promises
-//! more than the file contains must not be believed: nothing is reserved for what has not
-//! been seen. Each one parses bytes, in time and memory that grow with their number alone,
-//! and any bytes end in a mesh or an error. `docs/formats.md` lists what is read, ignored and
-//! refused.
+//! The readers are our own for two reasons: an error has to name its line, and a header may
+//! declare more than the file contains, so no memory is reserved for data not yet seen. Each
+//! reader parses bytes in time and memory proportional to their number, and returns a mesh or
+//! an error for any input. `docs/formats.md` lists what is read, ignored and rejected.
 
 pub(super) mod builder;
 pub(super) mod remarks;
@@ -13,21 +12,21 @@ pub(super) mod text;
 use self::remarks::Made;
 use crate::solid::tessellation::Mesh;
 
-/// 2^-24, what rounding to f32 changes at most, as a share.
+/// 2^-24, the greatest relative error of rounding to f32.
 pub(super) const ROUNDING_32: f64 = 0.5 * f32::EPSILON as f64;
 
-/// A mesh as a file states it.
+/// The content of a mesh file.
 #[derive(Clone, Debug)]
 pub struct MeshFile {
-    /// The triangles; a polygon is a fan of them.
+    /// The triangles; a polygon is split into a fan.
     pub mesh: Mesh,
-    /// How far the mesh may be from the solids' surface, in scene units, where a
-    /// comment contains `deviation X`, as those of `cyltrace tessellate` do.
+    /// The distance of the mesh from the solids' surface, in scene units, if a comment
+    /// contains `deviation X`, as in files of `cyltrace tessellate`.
     pub deviation: Option<f64>,
-    /// How the mesh was made, where comments say so as those of `cyltrace tessellate` do.
-    /// Anybody can write them.
+    /// How the mesh was made, if comments state it as those of `cyltrace tessellate` do.
+    /// Any program can write such comments.
     pub made: Option<Made>,
-    /// How far the format rounds a coordinate, as a share of it: 2^-24 where coordinates are
-    /// stored as f32, 0 for f64 and for text.
+    /// The relative error of rounding a coordinate: 2^-24 for STL and for f32 properties of
+    /// PLY, 0 otherwise.
     pub rounding: f64,
 }

@@ -1,13 +1,13 @@
-//! What the comments of a mesh file state of the mesh.
+//! The comments in a mesh file that describe the mesh.
 
 use crate::solid::tessellation::Fit;
 
-/// How `cyltrace tessellate` made a mesh, as a file states it.
+/// How `cyltrace tessellate` made a mesh, according to the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Made {
     /// Sides around an axis.
     pub segments: u32,
-    /// The side of the surface on which the mesh is.
+    /// The side of the surface on which the mesh lies.
     pub fit: Fit,
 }
 
@@ -21,10 +21,10 @@ pub(in crate::meshes) struct Remarks {
 }
 
 impl Remarks {
-    /// Reads one more comment, without the sign or word that begins it.
+    /// Reads another comment, without the character or word that begins it.
     pub fn read(&mut self, comment: &str) {
         self.deviation = self.deviation.or_else(|| deviation(comment));
-        // Two words, so that no name of a scene is taken for them.
+        // Exactly two words, so that the name of a scene is not mistaken for them.
         let mut words = comment.split_ascii_whitespace();
         let (Some(key), Some(value), None) = (words.next(), words.next(), words.next()) else {
             return;
@@ -40,7 +40,7 @@ impl Remarks {
         }
     }
 
-    /// How the mesh was made, where segments and fit are stated.
+    /// How the mesh was made, if the comments state both segments and fit.
     pub fn made(&self) -> Option<Made> {
         let (segments, fit) = (self.segments?, self.fit?);
         Some(Made { segments, fit })

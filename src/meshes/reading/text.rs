@@ -1,12 +1,12 @@
-//! Lines and words of a text that may have any bytes in it.
+//! Lines and words of a text that may contain any bytes.
 
 use crate::meshes::error::MeshError;
 
-/// Characters of a word that messages show.
+/// The most characters of a word that a message shows.
 const LONGEST_WORD: usize = 40;
 
-/// The lines of a text with their numbers, without their ends: a line feed, with or without
-/// a carriage return before it.
+/// The lines of a text with their numbers. A line ends with a line feed, with or without a
+/// carriage return before it; the lines do not include their ends.
 pub(in crate::meshes) fn lines(bytes: &[u8]) -> impl Iterator<Item = (u64, &[u8])> {
     let lines = bytes.split(|&byte| byte == b'\n');
     let lines = lines.map(|line| line.strip_suffix(b"\r").unwrap_or(line));
@@ -34,7 +34,7 @@ pub(in crate::meshes) fn without_mark(bytes: &[u8]) -> Result<&[u8], MeshError> 
     Ok(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes))
 }
 
-/// The number that a word is, which may be infinite or NaN.
+/// Parses a word as a number, which may be infinite or NaN.
 pub(in crate::meshes) fn number(word: &[u8]) -> Option<f64> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }

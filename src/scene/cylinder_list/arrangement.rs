@@ -1,38 +1,36 @@
-//! Cylinders that are near together, near together in memory.
+//! Orders cylinders so that neighbors in space are neighbors in memory.
 //!
-//! What a ray visits is near together, so records in such an order share pages
-//! and cache lines' neighbours. Files have one more often than not: they follow a
-//! branch, or a lattice row by row. Others are put along a Morton curve of their
-//! middles; `docs/performance.md` has what that gives.
+//! A ray visits cylinders that are close together, so such an order makes it touch
+//! fewer pages and neighboring cache lines. Most files already have one: they follow
+//! a branch, or a lattice row by row. Other lists are sorted along a Morton curve of
+//! the cylinders' centers; `docs/performance.md` states the gain.
 
 use std::sync::Arc;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{CylinderList, Kept};
+use super::{CylinderList, Storage};
 use crate::math::{Bounds, morton_code_3};
 use crate::scene::CylinderRecord;
 
-/// Fewer cylinders than this are left as they are: 256 kB are in the nearer
-/// caches in any order.
+/// Shorter lists keep their order: 256 kB fit into the inner caches in any order.
 const LEAST_CYLINDERS: usize = 1 << 12;
 
-/// A list is in order if the mean distance of neighbours is at most so many
-/// times the mean distance of all from what is nearest, if they filled their
-/// box evenly. Along a Morton curve it is 1.6 times that; of cylinders at random
-/// 11 times and more.
+/// A list is in order if the mean distance of neighbors is at most this many times
+/// the distance that they would have if they filled their box evenly. The ratio is
+/// 1.6 along a Morton curve, and 11 or more for a random order.
 const GREATEST_JUMP: f64 = 4.0;
 
 impl CylinderList {
-    /// Puts cylinders that are near together near together in the list, which
-    /// makes tracing faster and changes no answer: numbers stay with their
-    /// cylinders. A list of few, one that is in such an order, and one of f32,
-    /// whose numbers are kept as runs, stay as they are.
+    /// Sorts the list so that neighbors in space are neighbors in memory. This makes
+    /// tracing faster and changes no result: cylinders keep their numbers. A short list,
+    /// one that is already in such an order, and one of f32, whose numbers are stored as
+    /// runs, keep their order.
     ///
-    /// It takes 80 bytes a cylinder while it runs.
+    /// The sort takes 80 bytes a cylinder while it runs.
     pub fn arrange(&mut self) {
-        let Kept::F64(records) = &mut self.kept else {
+        let Storage::F64(records) = &mut self.storage else {
             return;
         };
         if records.len() < LEAST_CYLINDERS {
@@ -66,13 +64,13 @@ fn middle(record: &CylinderRecord) -> DVec3 {
     0.5 * cylinder.p0() + 0.5 * cylinder.p1()
 }
 
-/// Whether neighbours are near enough. Cylinders all at one place are, too.
+/// Whether neighbors are close enough, as they are if all cylinders coincide.
 fn is_in_order(records: &[CylinderRecord], bounds: &Bounds) -> bool {
     let jump = |pair: &[CylinderRecord]| (middle(&pair[1]) - middle(&pair[0])).length();
     let sum: f64 = records.windows(2).map(jump).sum();
     let mean = sum / (records.len() - 1) as f64;
     let extent = bounds.extent();
     let spacing = extent.max_element() / libm::cbrt(records.len() as f64);
-    // Written so that NaN is in order.
+    // Written so that NaN counts as in order.
     !(mean > GREATEST_JUMP * spacing)
 }

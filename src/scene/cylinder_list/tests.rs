@@ -1,4 +1,4 @@
-//! Lists of cylinders give back what they keep.
+//! Lists of cylinders return what was added.
 
 use super::*;
 use crate::math::{Random, power_of_two};
@@ -18,7 +18,7 @@ fn f32_list_keeps_any_numbers_and_rounds_each_coordinate_once() {
     let stated: Vec<_> = numbers.iter().map(|&n| record(&mut random, n)).collect();
     let mut list = CylinderList::new(Records::F32);
     for &record in &stated {
-        list.push(record).expect("f32 holds it");
+        list.push(record).expect("the cylinder is valid in f32");
     }
     assert_eq!(list.iter().len(), stated.len());
     let mut greatest = 0.0_f64;
@@ -45,7 +45,7 @@ fn f32_list_keeps_any_numbers_and_rounds_each_coordinate_once() {
 }
 
 #[test]
-fn f64_list_gives_back_what_it_was_given() {
+fn f64_list_returns_the_records_added() {
     let mut random = Random::new(62, 0);
     let stated: Vec<_> = (0..9).map(|n| record(&mut random, 2 * n)).collect();
     let list: CylinderList = stated.iter().copied().collect();
@@ -57,23 +57,25 @@ fn f64_list_gives_back_what_it_was_given() {
 }
 
 #[test]
-fn cylinders_that_f32_does_not_hold_are_refused() {
-    let refused = |p0: DVec3, p1: DVec3, radius: f64| {
+fn cylinders_that_are_invalid_in_f32_are_rejected() {
+    let rejected = |p0: DVec3, p1: DVec3, radius: f64| {
         let cylinder = Cylinder::new(p0, p1, radius, Caps::Both).expect("an f64 cylinder");
         let mut list = CylinderList::new(Records::F32);
         let record = CylinderRecord::new(&cylinder, 0, MaterialIndex(0));
-        let error = list.push(record).expect_err("f32 does not hold it");
+        let error = list
+            .push(record)
+            .expect_err("the cylinder is invalid in f32");
         assert!(list.is_empty());
         error
     };
     let far = DVec3::splat(1e6);
-    let error = refused(far, far + DVec3::X * 1e-3, 1.0);
+    let error = rejected(far, far + DVec3::X * 1e-3, 1.0);
     assert_eq!(error, CylinderError::Length { length: 0.0 });
-    let error = refused(DVec3::ZERO, DVec3::X, Cylinder::LEAST);
+    let error = rejected(DVec3::ZERO, DVec3::X, Cylinder::LEAST);
     assert_eq!(error, CylinderError::Radius { radius: 0.0 });
-    let error = refused(DVec3::ZERO, DVec3::X * 1e40, 1.0);
+    let error = rejected(DVec3::ZERO, DVec3::X * 1e40, 1.0);
     assert!(matches!(error, CylinderError::Endpoint { which: "p1", .. }));
-    let error = refused(DVec3::ZERO, DVec3::X, 1e39);
+    let error = rejected(DVec3::ZERO, DVec3::X, 1e39);
     assert_eq!(
         error,
         CylinderError::Radius {
@@ -82,14 +84,14 @@ fn cylinders_that_f32_does_not_hold_are_refused() {
     );
 }
 
-/// A cylinder somewhere in a cube, far shorter than that is wide.
+/// A cylinder at a random place in a cube, far shorter than the cube is wide.
 fn short_record(random: &mut Random, primitive: u32) -> CylinderRecord {
     let p0 = 100.0 * DVec3::new(random.unit(), random.unit(), random.unit());
     let cylinder = Cylinder::new(p0, p0 + random.direction(), 0.1, Caps::Both);
     CylinderRecord::new(&cylinder.expect("a cylinder"), primitive, MaterialIndex(0))
 }
 
-/// The mean distance of neighbours' first ends.
+/// The mean distance between the first ends of neighbors.
 fn mean_jump(list: &CylinderList) -> f64 {
     let ends: Vec<DVec3> = list.iter().map(|record| record.cylinder().p0()).collect();
     let jumps = ends.windows(2).map(|pair| (pair[1] - pair[0]).length());
@@ -97,7 +99,7 @@ fn mean_jump(list: &CylinderList) -> f64 {
 }
 
 #[test]
-fn arranged_list_holds_the_same_with_neighbours_near() {
+fn arranged_list_contains_the_same_cylinders_with_neighbors_near() {
     let mut random = Random::new(63, 0);
     let stated: Vec<_> = (0..10_000).map(|n| short_record(&mut random, n)).collect();
     let mut list = CylinderList::from(stated.clone());
@@ -115,11 +117,11 @@ fn arranged_list_holds_the_same_with_neighbours_near() {
 
     let arranged: Vec<_> = list.iter().collect();
     list.arrange();
-    assert!(list.iter().eq(arranged), "it was in order");
+    assert!(list.iter().eq(arranged), "the list was in order");
 }
 
 #[test]
-fn few_cylinders_and_those_at_one_place_stay_as_they_are() {
+fn short_lists_and_coincident_cylinders_keep_their_order() {
     let mut random = Random::new(64, 0);
     let few: Vec<_> = (0..4095).map(|n| short_record(&mut random, n)).collect();
     let one = record(&mut random, 0).cylinder();

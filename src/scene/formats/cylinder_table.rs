@@ -121,7 +121,7 @@ fn number(row: &Row, column: Column) -> Result<u64, SceneError> {
 }
 
 impl CylinderColumns {
-    /// All columns that are stated.
+    /// All columns that the keys name.
     fn all(&self) -> Vec<ColumnKey> {
         let threes = [Some(&self.p0), self.p1.as_ref(), self.axis.as_ref()];
         let threes = threes.into_iter().flatten().flat_map(|three| &three.0);
@@ -130,17 +130,17 @@ impl CylinderColumns {
     }
 }
 
-/// Where a cylinder's numbers are in a row.
+/// The columns of a cylinder's numbers.
 struct Layout {
     p0: [Column; 3],
     end: End,
     radius: Column,
-    /// What to multiply the radius column with: 1, or 1/2 for a diameter.
+    /// The factor of the radius column: 1, or 1/2 for a diameter.
     factor: f64,
     primitive: Option<Column>,
 }
 
-/// How a row states the second endpoint.
+/// The columns of the second endpoint.
 enum End {
     Point([Column; 3]),
     Along { axis: [Column; 3], length: Column },
@@ -182,7 +182,7 @@ impl Layout {
         })
     }
 
-    /// All columns that are read.
+    /// All columns in use.
     fn all(&self) -> Vec<Column> {
         let mut all = self.p0.to_vec();
         match self.end {

@@ -1,4 +1,4 @@
-//! The formats of files that contain solids: a file or a folder each.
+//! The formats of files that contain solids, one file or folder each.
 //!
 //! A scene file names such files in arrays of tables (`[[swc]]`). A new format is a module
 //! with keys that implement [`SolidFormat`] and a row in
@@ -28,16 +28,16 @@ pub(super) use cylinder_table::CylinderTableKeys;
 pub(super) use swc::SwcKeys;
 pub use swc::check_swc;
 
-/// A format of files that contain solids. It is implemented by the keys of the array of
-/// tables that names its files in a scene file.
+/// A format of files that contain solids. The implementors are the keys of the arrays of
+/// tables that name such files in a scene file.
 pub(super) trait SolidFormat: SolidFile + DeserializeOwned {
-    /// What one of its files is, with an article.
+    /// A noun for its files, with an article.
     const WHAT: &'static str;
 
-    /// The endings of its files' names, in lower case.
+    /// The extensions of its files, in lower case.
     const EXTENSIONS: &'static [&'static str];
 
-    /// Further lines that a scene file needs beside the name of the file, as an example.
+    /// Example lines that a scene file needs in addition to the name of the file.
     const EXAMPLE: &'static str = "";
 }
 
@@ -46,16 +46,16 @@ pub(super) trait SolidFile {
     /// The file.
     fn file(&self) -> &Spanned<String>;
 
-    /// Whether solids have the numbers of the file's rows.
+    /// Whether a solid's number is that of its row in the file.
     fn has_rows(&self) -> bool {
         false
     }
 
-    /// Adds at least the numbers of its solids, before the file is read. What is wrong with
-    /// the keys or the file is left to [`add`](Self::add).
+    /// Adds upper bounds of the numbers of its solids, before the file is read.
+    /// [`add`](Self::add) reports errors of the keys and the file.
     fn count(&self, source: &Source, records: Records, solids: &mut ExpectedSolids);
 
-    /// The most bytes that reading the file takes beside the records of its solids.
+    /// An upper bound of the bytes that reading the file takes besides the records of its solids.
     fn reading_bytes(&self, _: &Source) -> u64 {
         0
     }
@@ -63,7 +63,7 @@ pub(super) trait SolidFile {
     /// Reads the file and adds its solids.
     ///
     /// # Errors
-    /// When a key, the file or a solid in it is wrong.
+    /// If a key, the file or a solid in it is wrong.
     fn add(&self, context: &Context, solids: &mut SolidCollector) -> Result<(), SceneError>;
 }
 
@@ -72,15 +72,15 @@ pub(super) trait SolidFile {
 pub struct SolidFormatInfo {
     /// The key of scene files that names such files.
     pub key: &'static str,
-    /// What one of its files is, with an article.
+    /// A noun for its files, with an article.
     pub what: &'static str,
-    /// The endings of its files' names, in lower case.
+    /// The extensions of its files, in lower case.
     pub extensions: &'static [&'static str],
 }
 
 /// Calls a macro with the list of the formats: `for_each_solid_format!(callback arguments)`
 /// becomes `callback! { arguments rows }`, with a row `{ Keys name }` for each; `name` is the
-/// key of the scene file. Solids are numbered in this order, so new rows go to the end.
+/// key of the scene file. Solids are numbered in this order, so append new rows at the end.
 macro_rules! for_each_solid_format {
     ($callback:ident $($arguments:tt)*) => {
         $callback! {
@@ -94,7 +94,7 @@ macro_rules! for_each_solid_format {
 
 pub(super) use for_each_solid_format;
 
-/// What the formats share while a scene is loaded.
+/// The data that the formats share while a scene is loaded.
 pub(super) struct Context<'a> {
     pub source: &'a Source,
     pub tables: &'a Tables<'a>,
@@ -131,8 +131,8 @@ macro_rules! names {
         /// The keys of scene files that name files of solids.
         pub(super) const KEYS: &[&str] = &[$(stringify!($name)),*];
 
-        /// What a file of this ending is, and a scene file that names it `file`, if it is of
-        /// one of the formats.
+        /// The noun for a file with this extension, and an example of a scene file that
+        /// names it `file`; `None` if it is of no format.
         pub(super) fn example(extension: &str, file: &str) -> Option<(&'static str, String)> {
             $(
                 if <$keys as SolidFormat>::EXTENSIONS.contains(&extension) {

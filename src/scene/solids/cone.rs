@@ -27,11 +27,11 @@ solid_table! {
     }
 }
 
-/// The places of the keys that cones and rounded cones have.
+/// The places of the keys shared by cones and rounded cones.
 pub(super) struct ConePlaces<'a>(pub [&'a Triple; 2], pub [&'a Spanned<Number>; 2]);
 
 impl ConePlaces<'_> {
-    /// The place that an error is about.
+    /// The place of an error.
     pub fn of(&self, error: &ConeError) -> Range<usize> {
         let Self([p0, p1], [radius0, radius1]) = self;
         match error {

@@ -1,5 +1,5 @@
-//! Single solids in scene files, one file a kind: the keys of its table, the solid that they
-//! state and the solid where a pose puts it.
+//! Single solids in scene files, one file for each kind: the keys of its table, the solid
+//! given by them, and the solid moved by a pose.
 
 mod cone;
 mod cuboid;
@@ -21,15 +21,15 @@ use super::solid_keys::SolidTable;
 use super::source::Source;
 use crate::solid::{AnySolid, Caps, ConvexSolid};
 
-/// A kind of solid that scene files state.
+/// A kind of solid in scene files.
 pub(super) trait SceneSolid: ConvexSolid + Into<AnySolid> {
     /// The keys of its table.
     type Keys: SolidKeys + DeserializeOwned;
 
-    /// Why numbers are not such a solid.
+    /// Why numbers are not a valid solid of this kind.
     type Error: Display;
 
-    /// The solid where a motion takes it.
+    /// The solid moved by a rigid motion.
     fn moved(&self, motion: &RigidMotion) -> Result<Self, Self::Error>;
 
     /// States the solid without a pose.
@@ -41,15 +41,15 @@ pub(super) trait SolidKeys: SolidTable {
     /// The place of errors about the solid as a whole.
     fn place(&self) -> Range<usize>;
 
-    /// The place of the key that says which ends are closed.
+    /// The place of the key for the closed ends.
     fn caps_place(&self) -> Option<Range<usize>> {
         None
     }
 
-    /// The solid before its pose.
+    /// The solid before its pose is applied.
     fn unmoved(&self, source: &Source) -> Result<AnySolid, SceneError>;
 
-    /// The solid.
+    /// The solid in its pose.
     fn solid(&self, source: &Source) -> Result<AnySolid, SceneError> {
         let unmoved = self.unmoved(source)?;
         let motion = Motion::new(source, &self.pose(), self.place())?;
@@ -65,7 +65,7 @@ pub(super) const CAPS: [(&str, Caps); 4] = [
     ("both", Caps::Both),
 ];
 
-/// Which ends are closed.
+/// The closed ends of a solid.
 pub(super) fn caps(source: &Source, word: Option<&Spanned<String>>) -> Result<Caps, SceneError> {
     word.map_or(Ok(Caps::default()), |word| {
         source.choose("caps", word, &CAPS)

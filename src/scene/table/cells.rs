@@ -1,8 +1,8 @@
-//! From the text of a row to its cells.
+//! Splits the text of a row into cells.
 //!
-//! A row without a quote is split at its delimiters. One with quotes goes through
-//! `csv-core`, which knows how CSV nests them; between blanks a quoted cell simply
-//! ends at the next quote.
+//! A row without quotes is split at its delimiters. A row with quotes goes through
+//! `csv-core`, which implements CSV's rules for them. If blanks are the delimiter, a
+//! quoted cell simply ends at the next quote.
 
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
@@ -13,16 +13,16 @@ use crate::scene::limits::MOST_COLUMNS;
 #[derive(Debug, PartialEq)]
 pub(in crate::scene) struct TooManyCells;
 
-/// Splits rows; kept from row to row for its memory.
+/// Splits rows, and reuses its memory from row to row.
 #[derive(Default)]
 pub(in crate::scene) struct Splitter {
-    /// Where the cells are in their text.
+    /// The start and end of each cell in the text.
     places: Vec<(usize, usize)>,
     unquoted: String,
     quoted: Option<Quoted>,
 }
 
-/// What `csv-core` works with.
+/// The state and buffers of `csv-core`.
 struct Quoted {
     delimiter: u8,
     reader: Reader,
@@ -38,13 +38,13 @@ pub(in crate::scene) struct Cells<'a> {
 }
 
 impl<'a> Cells<'a> {
-    /// How many there are.
+    /// The number of cells.
     pub fn len(self) -> usize {
         self.places.len()
     }
 
-    /// A cell without the blanks around it, and without the quotes that are left when
-    /// blanks precede them. Empty where the row is too short.
+    /// A cell without surrounding blanks, and without quotes that remain because blanks
+    /// precede them. Empty if the row is too short.
     pub fn get(self, index: usize) -> &'a str {
         let Some(&(start, end)) = self.places.get(index) else {
             return "";
@@ -55,7 +55,7 @@ impl<'a> Cells<'a> {
             .map_or(cell, str::trim)
     }
 
-    /// All of them.
+    /// All cells.
     pub fn iter(self) -> impl Iterator<Item = &'a str> {
         (0..self.len()).map(move |index| self.get(index))
     }
@@ -95,7 +95,7 @@ impl Splitter {
         })
     }
 
-    /// Splits a row with quotes; its text without them is kept.
+    /// Splits a row with quotes, and stores its text without them.
     fn unquote(&mut self, row: &str, delimiter: u8) -> Result<(), TooManyCells> {
         let quoted = self.quoted.take();
         let quoted = quoted.filter(|quoted| quoted.delimiter == delimiter);
@@ -127,7 +127,7 @@ impl Splitter {
             start = end;
         }
         self.unquoted.clear();
-        // Delimiters and quotes are ASCII, so that what is left is text still.
+        // Delimiters and quotes are ASCII, so the text remains UTF-8 without them.
         self.unquoted
             .push_str(std::str::from_utf8(&quoted.text[..written]).unwrap_or_default());
         Ok(())
@@ -153,7 +153,7 @@ fn push(places: &mut Vec<(usize, usize)>, place: (usize, usize)) -> Result<(), T
     Ok(())
 }
 
-/// The cells between runs of blanks. One that begins with a quote ends at the next.
+/// Splits a row at runs of blanks. A cell that begins with a quote ends at the next one.
 fn between_blanks(row: &str, places: &mut Vec<(usize, usize)>) -> Result<(), TooManyCells> {
     let bytes = row.as_bytes();
     let is_blank = |byte: &u8| byte.is_ascii_whitespace();
@@ -195,7 +195,7 @@ mod tests {
         let blanks = |row| cells(row, Delimiter::Blanks);
         assert_eq!(blanks("  1 \t 2  3 "), ["1", "2", "3"]);
         assert_eq!(blanks("\"a b\" 2 \"c"), ["a b", "2", "\"c"]);
-        // One splitter for all of them.
+        // One splitter for several delimiters.
         let mut splitter = Splitter::default();
         for (row, delimiter) in [
             ("\"a\",b", Delimiter::Comma),
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn row_with_too_many_cells_is_refused_whatever_it_looks_like() {
+    fn row_with_too_many_cells_is_rejected_in_any_format() {
         let mut splitter = Splitter::default();
         for (cell, delimiter) in [
             ("1,", Delimiter::Comma),

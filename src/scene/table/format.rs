@@ -1,9 +1,9 @@
-//! How a table separates its cells and writes its numbers: as the user states it, or
-//! as its first lines show.
+//! The delimiter and decimal separator of a table, given by the user or detected in its
+//! first lines.
 
 use std::str::FromStr;
 
-/// What separates the cells of a row.
+/// The delimiter between the cells of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delimiter {
     /// `,`
@@ -16,7 +16,7 @@ pub enum Delimiter {
     Blanks,
 }
 
-/// What precedes the decimals of a number.
+/// The decimal separator of a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Decimal {
     /// `1.5`
@@ -26,12 +26,12 @@ pub enum Decimal {
     Comma,
 }
 
-/// What the user states about a table.
+/// The format of a table as given by the user.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TableFormat {
-    /// None where the table's first lines decide.
+    /// The delimiter; `None` detects it in the table's first lines.
     pub delimiter: Option<Delimiter>,
-    /// What precedes decimals.
+    /// The decimal separator.
     pub decimal: Decimal,
 }
 
@@ -48,7 +48,7 @@ impl Delimiter {
         ("blanks", Self::Blanks),
     ];
 
-    /// The byte between two cells; none where that is a run of blanks.
+    /// The byte between two cells; `None` for runs of blanks.
     pub(super) fn byte(self) -> Option<u8> {
         match self {
             Self::Comma => Some(b','),
@@ -92,15 +92,15 @@ fn named<T: Copy>(text: &str, names: &[(&str, T)]) -> Option<T> {
     found.map(|(_, meaning)| *meaning)
 }
 
-/// The delimiter that a first line such as `sep=;` states, which is for Excel.
+/// The delimiter in a first line such as `sep=;`, a convention of Excel.
 pub(super) fn stated_in(line: &str) -> Option<Delimiter> {
     let line = line.trim_matches([' ', '"']);
     let stated = line.strip_prefix("sep=")?;
     named(stated, &Delimiter::NAMES)
 }
 
-/// The delimiter of a line of names: the one of comma, semicolon and tab that is most
-/// frequent outside quotes, a comma in doubt, and blanks if the line has none of the three.
+/// The delimiter of a line of names: the most frequent of comma, semicolon and tab outside
+/// quotes, the first of these on a tie, and blanks if the line contains none of them.
 pub(in crate::scene) fn of_names(line: &[u8]) -> Delimiter {
     most_frequent(
         line,
@@ -108,8 +108,8 @@ pub(in crate::scene) fn of_names(line: &[u8]) -> Delimiter {
     )
 }
 
-/// The delimiter of a line of numbers. A decimal comma is no delimiter, unless all
-/// numbers with one are in quotes.
+/// The delimiter of a line of numbers. With decimal commas, a comma is the delimiter only if
+/// the line contains no other.
 pub(super) fn of_numbers(line: &[u8], decimal: Decimal) -> Delimiter {
     match decimal {
         Decimal::Point => of_names(line),
@@ -146,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn delimiter_of_names_is_the_commonest_outside_quotes() {
+    fn delimiter_of_names_is_the_most_frequent_outside_quotes() {
         assert_eq!(of_names(b"x"), Delimiter::Blanks);
         assert_eq!(of_names(b"a;b,c;d"), Delimiter::Semicolon);
         assert_eq!(of_names(b"a;b,c"), Delimiter::Comma);
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn decimal_comma_is_no_delimiter_unless_nothing_else_is() {
+    fn decimal_comma_is_a_delimiter_only_without_another() {
         let of = |line: &[u8]| of_numbers(line, Decimal::Comma);
         assert_eq!(of(b"1,5;2,5"), Delimiter::Semicolon);
         assert_eq!(of(b"1,5 2,5"), Delimiter::Blanks);

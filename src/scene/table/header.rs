@@ -1,9 +1,9 @@
-//! The layout that the first lines of a table show: the names of its columns, how its
-//! cells are separated, and how many a row has.
+//! Detects the layout of a table in its first lines: the names of its columns, the delimiter,
+//! and the number of cells in a row.
 //!
 //! The names are in the first row, or in a comment before it, as numpy and CloudCompare
-//! write them. The first row counts as names unless all of its cells are numbers. Where
-//! columns are wanted by their numbers, a table needs no names.
+//! write them. The first row counts as names unless all of its cells are numbers. If
+//! columns are selected by number, the table needs no names.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -14,14 +14,14 @@ use super::row::{is_missing, number_of};
 use crate::scene::error::SceneError;
 use crate::scene::names::{quoted, suggestion};
 
-/// A column as a user names it.
+/// The selection of a column.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ColumnKey {
-    /// By its name in the header, to the letter.
+    /// By its exact name in the header.
     Name(String),
-    /// By its name in upper or lower case, where no name is the same to the letter.
+    /// By its name, ignoring case unless a name matches exactly.
     AnyCase(&'static str),
-    /// By its place, from 0.
+    /// By its number, from 0.
     Number(u64),
 }
 
@@ -29,7 +29,7 @@ pub enum ColumnKey {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column(pub(super) usize);
 
-/// How a table is laid out.
+/// The columns and the format of a table.
 #[derive(Clone, Debug)]
 pub struct Layout {
     pub(super) path: PathBuf,
@@ -37,18 +37,18 @@ pub struct Layout {
     line: u64,
     pub(super) delimiter: Delimiter,
     pub(super) decimal: Decimal,
-    /// The names of the columns; empty where the table has none.
+    /// The names of the columns; empty if the table has none.
     header: Vec<String>,
-    /// Cells of a row, and those of them that must be there: behind those, delimiters
-    /// at the end of a line leave empty cells.
+    /// The number of cells in a row.
     cells: usize,
+    /// The number of cells that a row must have. The others are empty cells from
+    /// delimiters at the end of a line.
     needed: usize,
-    /// Whether each row begins with a name, which has no name in the header: so R
-    /// writes them.
+    /// Whether each row begins with a row name without a column name, as R writes them.
     has_row_names: bool,
 }
 
-/// The first row and what precedes it.
+/// The first row and the comments before it.
 pub(super) struct Beginning<'a> {
     pub path: &'a Path,
     pub line: u64,
@@ -83,7 +83,7 @@ impl From<&str> for ColumnKey {
     }
 }
 
-/// Where a header has the name of a key; nowhere if that is a number.
+/// The positions of a key's name in a header; none if the key is a number.
 fn places(header: &[String], key: &ColumnKey) -> Vec<usize> {
     let with = |is_same: &dyn Fn(&str) -> bool| -> Vec<usize> {
         let all = header.iter().enumerate();
@@ -100,7 +100,7 @@ fn places(header: &[String], key: &ColumnKey) -> Vec<usize> {
 }
 
 impl Beginning<'_> {
-    /// The layout that the first row shows, and whether that row is the header.
+    /// The layout given by the first row, and whether that row is the header.
     pub fn layout(&self, first: &str) -> (Layout, bool) {
         let stated = self.format.delimiter;
         let of_names = stated.unwrap_or_else(|| of_names(first.as_bytes()));
@@ -120,13 +120,14 @@ impl Beginning<'_> {
         }
     }
 
-    /// How many of the wanted columns are named.
+    /// The number of wanted columns among the names.
     fn wanted_names(&self, names: &[String]) -> usize {
         let wanted = self.wanted.iter();
         wanted.filter(|key| !places(names, key).is_empty()).count()
     }
 
-    /// Whether a cell of the first row, or one that is wanted by its number, is text.
+    /// Whether a cell of the first row is text. If columns are wanted by number, only those
+    /// count.
     fn has_text(&self, numbers: &[String]) -> bool {
         let is_value =
             |cell: &str| is_missing(cell) || number_of(cell, self.format.decimal).is_some();
@@ -139,14 +140,14 @@ impl Beginning<'_> {
             })
             .collect();
         match numbered.is_empty() {
-            // Columns that are not wanted may contain anything.
+            // Other columns may contain anything.
             false => numbered.iter().any(|cell| !is_value(cell)),
             true => numbers.iter().any(|cell| !is_value(cell)),
         }
     }
 
-    /// The names in a comment: the last that names a wanted column, one with as many
-    /// names as the row has cells before others.
+    /// The names in a comment. Comments with one name for each cell of the row take
+    /// precedence, then those with the most wanted columns, then the last one.
     fn commented_header(&self, cells: usize) -> Option<Vec<String>> {
         let comments = self.comments.iter();
         let candidates = comments.map(|comment| split(comment, of_names(comment.as_bytes())));
@@ -172,13 +173,13 @@ impl Beginning<'_> {
 }
 
 impl Layout {
-    /// What errors call the table.
+    /// The name of the table in errors.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Takes the number of cells from a row.
+    /// Sets the number of cells from a row.
     fn count<'a>(&mut self, cells: impl Iterator<Item = &'a str>) {
         (self.cells, self.needed) = (0, 0);
         for cell in cells {
@@ -189,12 +190,12 @@ impl Layout {
         }
     }
 
-    /// Adapts to the first row behind the header, `row`: without names that matter it
-    /// decides how many cells there are, and it shows names of rows.
+    /// Adapts to the first row after the header, `row`. If no column is wanted by name, this
+    /// row determines the number of cells. Otherwise it shows whether rows have names.
     pub(super) fn adapt(&mut self, row: &str, cells: Cells, wanted: &[ColumnKey]) {
         if wanted.iter().all(|key| key.name().is_none()) {
             self.count(cells.iter());
-            // A cell without a value at the end of the first row is one nevertheless.
+            // An empty cell at the end of the first row counts if it is wanted.
             self.needed = self
                 .needed
                 .max(wanted.iter().map(ColumnKey::end).max().unwrap_or(0));
@@ -203,13 +204,13 @@ impl Layout {
             }
             return;
         }
-        // R puts names of rows in quotes, and numbers never.
+        // R quotes the names of rows, but no numbers.
         let is_quoted = row.trim_start().starts_with('"');
         let are_all_quoted = row.matches('"').count() >= 2 * cells.len();
         self.has_row_names = cells.len() == self.cells + 1 && is_quoted && !are_all_quoted;
     }
 
-    /// The cells that a row must not have more of, or less.
+    /// The message if a row has too many or too few cells.
     pub(super) fn fault(&self, cells: Cells) -> Option<String> {
         let (names, found) = (usize::from(self.has_row_names), cells.len());
         let (least, most) = (self.needed + names, self.cells + names);
@@ -220,13 +221,13 @@ impl Layout {
             true => "the first row",
             false => "the header",
         };
-        Some(format!("the row has {found} cells, {other} has {most}"))
+        Some(format!("the row has {found} cells, but {other} has {most}"))
     }
 
     /// Finds a column.
     ///
     /// # Errors
-    /// When there is no such column, or more than one.
+    /// If the table has no such column, or several.
     pub fn column(&self, key: &ColumnKey) -> Result<Column, SceneError> {
         self.find(key).map_err(|(message, help)| SceneError::Row {
             path: self.path.clone(),
@@ -237,7 +238,8 @@ impl Layout {
         })
     }
 
-    /// Finds a column; otherwise returns what is wrong with the table and a help text.
+    /// Finds a column, or returns a message that begins after the name of the table, and a
+    /// help text.
     pub(in crate::scene) fn find(&self, key: &ColumnKey) -> Result<Column, (String, String)> {
         let names = usize::from(self.has_row_names);
         let name = match key {
@@ -257,7 +259,7 @@ impl Layout {
             [index] => Ok(Column(index + names)),
             [_, _, ..] => Err((
                 format!("has more than one column {}", quoted(name)),
-                "give each column a name of its own".to_owned(),
+                "column names must differ".to_owned(),
             )),
             [] => Err((
                 format!("has no column {}", quoted(name)),
@@ -266,19 +268,19 @@ impl Layout {
         }
     }
 
-    /// Whether any column has that name.
+    /// Whether any column has the name of a key.
     pub(in crate::scene) fn names(&self, key: &ColumnKey) -> bool {
         !places(&self.header, key).is_empty()
     }
 
     fn missing_help(&self, name: &str) -> String {
         if self.header.is_empty() {
-            return "its first line contains numbers: a header with the names of the columns is needed, or columns by their numbers from 0".to_owned();
+            return "its first line contains numbers: add a header with column names, or give columns by their numbers from 0".to_owned();
         }
         suggestion(name, self.header.iter().map(String::as_str), "columns")
     }
 
-    /// A column as messages name it.
+    /// The name of a column in messages.
     pub(super) fn name(&self, column: Column) -> String {
         let index = column.0.checked_sub(usize::from(self.has_row_names));
         match index.and_then(|index| self.header.get(index)) {
@@ -287,7 +289,7 @@ impl Layout {
         }
     }
 
-    /// A note on the columns that are not read, `None` if there are none.
+    /// A note on the columns that are not read; `None` if all are read.
     #[must_use]
     pub fn unread(&self, read: &[Column]) -> Option<String> {
         const MOST_NAMED: usize = 20;
@@ -296,7 +298,7 @@ impl Layout {
         let (named, unnamed): (Vec<usize>, Vec<usize>) = (0..self.cells.max(self.header.len()))
             .filter(|index| !is_read(index))
             .partition(|index| self.header.get(*index).is_some_and(|name| !name.is_empty()));
-        // Behind the last name there is nothing but what delimiters at line ends leave.
+        // After the last name only delimiters at line ends leave cells.
         let unnamed = unnamed.iter().filter(|index| **index < self.needed).count() + first;
         let mut names: Vec<String> = named
             .iter()
@@ -312,7 +314,7 @@ impl Layout {
         match names.is_empty() {
             true => None,
             false => Some(format!(
-                "{}: columns that are not read: {}",
+                "{}: ignored columns: {}",
                 self.path.display(),
                 names.join(", ")
             )),
@@ -321,7 +323,7 @@ impl Layout {
 }
 
 impl ColumnKey {
-    /// The cells that a row needs for it.
+    /// The number of cells that a row needs for this column.
     fn end(&self) -> usize {
         match self {
             Self::Name(_) | Self::AnyCase(_) => 0,
@@ -330,7 +332,7 @@ impl ColumnKey {
     }
 }
 
-/// The cells of a row, as far as there may be any.
+/// The cells of a row; none if it has too many.
 fn split(row: &str, delimiter: Delimiter) -> Vec<String> {
     let mut splitter = Splitter::default();
     let cells = splitter.split(row, delimiter);

@@ -1,5 +1,5 @@
-//! Opens files that are read from beginning to end: regular ones and pipes. Devices are
-//! refused, because most never end, and so is a named pipe without a writer.
+//! Opens files that are read from beginning to end: regular files and pipes. It rejects
+//! devices, because most never end, and named pipes without a writer.
 
 use std::fs::{self, File};
 use std::io;
@@ -10,7 +10,7 @@ use crate::scene::error::SceneError;
 /// Opens a file or a pipe.
 ///
 /// # Errors
-/// When it cannot be opened, is neither, or is a named pipe without a writer.
+/// If the file cannot be opened, is neither, or is a named pipe without a writer.
 pub(in crate::scene) fn open(path: &Path) -> Result<File, SceneError> {
     open_any(path).map_err(|source| SceneError::Unreadable {
         path: path.to_owned(),
@@ -19,7 +19,7 @@ pub(in crate::scene) fn open(path: &Path) -> Result<File, SceneError> {
 }
 
 fn open_any(path: &Path) -> io::Result<File> {
-    // The kind comes first: to open a pipe waits, and to open a device may do more.
+    // The kind is checked first: opening a pipe waits, and opening a device may have effects.
     let kind = fs::metadata(path)?.file_type();
     if kind.is_dir() {
         return Err(io::ErrorKind::IsADirectory.into());
@@ -32,7 +32,7 @@ fn open_any(path: &Path) -> io::Result<File> {
         return open_pipe(path);
     }
     Err(io::Error::other(
-        "it is a device or a socket, a file or a pipe is needed",
+        "it is a device or a socket: a file or a pipe is needed",
     ))
 }
 
@@ -51,7 +51,7 @@ fn open_pipe(path: &Path) -> io::Result<File> {
         .read(true)
         .custom_flags(OFlags::NONBLOCK.bits().cast_signed())
         .open(path)?;
-    // Ready is one that has bytes, or had a writer.
+    // A pipe is ready if it has bytes, or had a writer.
     let patience = Timespec {
         tv_sec: PIPE_PATIENCE.as_secs().cast_signed(),
         tv_nsec: 0,

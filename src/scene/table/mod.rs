@@ -1,10 +1,10 @@
-//! Tables: text with a row a line, and columns with names or numbers. This is the one
-//! reader for all of them: cylinders, placements, rays, points and hits.
+//! Tables: text with one row on each line, and columns with names or numbers. This is the
+//! reader for all tables: cylinders, placements, rays, points and hits.
 //!
-//! `input` opens files and pipes; `records` finds the rows in their text and keeps the
-//! limits of `scene::limits`; `format` is what separates cells, and how numbers are
-//! written; `header` finds out what the columns are; `cells` splits a row, and `row`
-//! reads numbers in it. `docs/formats.md` describes the formats to users.
+//! `input` opens files and pipes; `records` finds the rows in the text and enforces the
+//! limits of `scene::limits`; `format` defines delimiters and decimal separators; `header`
+//! detects the columns; `cells` splits a row, and `row` reads its numbers.
+//! `docs/formats.md` describes the formats to users.
 
 mod cells;
 mod format;
@@ -38,7 +38,7 @@ use super::limits::MOST_COLUMNS;
 pub struct Table<I> {
     records: Records<I>,
     layout: Layout,
-    /// The first rows, which are read for the layout.
+    /// The first row, which was read for the layout.
     first: Option<Block>,
 }
 
@@ -51,10 +51,10 @@ pub struct Rows<I> {
 }
 
 impl<I: Read> Table<I> {
-    /// Begins to read a table, which errors call `path`, for some columns.
+    /// Begins to read the wanted columns of a table; errors name it `path`.
     ///
     /// # Errors
-    /// When it cannot be read, is empty, is not UTF-8, or goes beyond a limit.
+    /// If the table cannot be read, is empty, is not UTF-8, or exceeds a limit.
     pub fn new(
         input: I,
         path: &Path,
@@ -72,8 +72,7 @@ impl<I: Read> Table<I> {
         if !is_there {
             let wanted: Vec<String> = wanted.iter().map(ToString::to_string).collect();
             let wanted = wanted.join(",");
-            let message =
-                format!("the table is empty: there is no header and no row with {wanted}");
+            let message = format!("the table is empty: it needs a header or rows with {wanted}");
             return Err(SceneError::row(path, records.line() + 1, message));
         }
         let (text, line) = first.text(path, 0)?;
@@ -105,16 +104,16 @@ impl<I: Read> Table<I> {
         })
     }
 
-    /// How it is laid out.
+    /// The layout of the table.
     #[must_use]
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
 
-    /// The next rows, `None` at the end.
+    /// The next rows, or `None` at the end.
     ///
     /// # Errors
-    /// When the table cannot be read or goes beyond a limit.
+    /// If the table cannot be read or exceeds a limit.
     pub fn next_block(&mut self) -> Result<Option<Block>, SceneError> {
         if let Some(first) = self.first.take() {
             return Ok(Some(first));
@@ -136,17 +135,17 @@ impl<I: Read> Table<I> {
 }
 
 impl<I: Read> Rows<I> {
-    /// How the table is laid out.
+    /// The layout of the table.
     #[must_use]
     pub fn layout(&self) -> &Layout {
         self.table.layout()
     }
 
-    /// The next row, `None` at the end.
+    /// The next row, or `None` at the end.
     ///
     /// # Errors
-    /// When the table cannot be read, goes beyond a limit, or the row is not UTF-8 or
-    /// has not as many cells as the header.
+    /// If the table cannot be read or exceeds a limit, or if the row is not UTF-8 or has
+    /// another number of cells than the header.
     pub fn next_row(&mut self) -> Result<Option<Row<'_>>, SceneError> {
         if self.next == self.block.len() {
             let Some(block) = self.table.next_block()? else {
@@ -161,11 +160,11 @@ impl<I: Read> Rows<I> {
 }
 
 impl Layout {
-    /// Reads the rows of a block in turn.
+    /// Calls `action` with each row of a block.
     ///
     /// # Errors
-    /// The first of `action`, or of a row that is not UTF-8 or has not as many cells as
-    /// the header.
+    /// The first error of `action`, or of a row that is not UTF-8 or has another number of
+    /// cells than the header.
     pub fn for_each_row(
         &self,
         block: &Block,
@@ -185,7 +184,7 @@ fn row<'a>(
 ) -> Result<Row<'a>, SceneError> {
     let (text, line) = block.text(&layout.path, index)?;
     let Ok(cells) = splitter.split(text, layout.delimiter) else {
-        let message = format!("the row has more than {MOST_COLUMNS} cells, the most that are read");
+        let message = format!("the row has more than {MOST_COLUMNS} cells, the limit for a row");
         return Err(SceneError::row(&layout.path, line, &message));
     };
     match layout.fault(cells) {

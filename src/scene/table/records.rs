@@ -1,9 +1,9 @@
-//! The rows of a table as pieces of text: lines, or several where quotes go over line
-//! ends. Comments and blank lines are left out, and limits are kept here, before a
-//! row takes memory.
+//! Splits the text of a table into rows. A row is one line, or several if quotes span line
+//! ends. Comments and blank lines are skipped. Limits are enforced here, before a row takes
+//! memory.
 //!
-//! Rows come in blocks, so that many threads can work on a table of any length and it
-//! needs little memory. A line ends with LF, CR LF or CR.
+//! Rows come in blocks, so that many threads can work on a table of any length with little
+//! memory. A line ends with LF, CR LF or CR.
 
 use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read};
@@ -15,15 +15,16 @@ use crate::scene::limits::{GREATEST_TABLE_BYTES, LONGEST_LINE};
 
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// What a comment begins with.
+/// The marks that begin a comment.
 const COMMENT_MARKS: [&[u8]; 2] = [b"#", b"//"];
 
-/// Bytes of a block, about 1000 rows: enough that handing it to a thread costs
-/// nothing, few enough to share the work evenly.
+/// Bytes of a block, about 1000 rows: large enough to pass to a thread at negligible cost,
+/// small enough to share the work evenly.
 const BLOCK_BYTES: usize = 1 << 16;
 
-/// Most comments that are kept for the names of columns in them, and the longest.
+/// The most comments that are stored, because they may contain column names.
 const MOST_COMMENTS: usize = 64;
+/// The longest comment that is stored, in bytes.
 const LONGEST_COMMENT: usize = 1 << 16;
 
 /// Some rows of a table.
@@ -41,27 +42,27 @@ struct Record {
     line: u64,
 }
 
-/// A table as it is read.
+/// Reads the rows of a table.
 pub(in crate::scene) struct Records<R> {
     path: PathBuf,
     input: BufReader<R>,
-    /// Lines that have been read.
+    /// The number of lines read.
     line: u64,
     bytes: u64,
-    /// Whether the last line ended with CR, so that LF belongs to it.
+    /// Whether the last line ended with CR, so that a following LF belongs to it.
     after_return: bool,
-    /// Those before the first row.
+    /// The comments before the first row.
     pub comments: VecDeque<String>,
 }
 
 impl Block {
-    /// How many rows it has.
+    /// The number of rows.
     #[must_use]
     pub fn len(&self) -> usize {
         self.records.len()
     }
 
-    /// Whether it has no row.
+    /// Whether the block has no rows.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.records.is_empty()
@@ -86,8 +87,8 @@ impl Block {
     }
 }
 
-/// The mark that a line begins with if it is a comment. A line that begins with what Excel
-/// writes for no value is a row.
+/// The mark at the beginning of a line that is a comment. A line that begins with Excel's
+/// `#N/A`, a missing value, is a row.
 fn comment_mark(line: &[u8]) -> Option<&'static [u8]> {
     let is_row = line
         .strip_prefix(b"#N/A")
@@ -97,7 +98,7 @@ fn comment_mark(line: &[u8]) -> Option<&'static [u8]> {
 }
 
 impl<R: Read> Records<R> {
-    /// The rows of a table, which errors call `path`.
+    /// Begins to read a table; errors name it `path`.
     pub fn new(input: R, path: &Path) -> Self {
         Self {
             path: path.to_owned(),
@@ -109,12 +110,12 @@ impl<R: Read> Records<R> {
         }
     }
 
-    /// Lines that have been read.
+    /// The number of lines read.
     pub fn line(&self) -> u64 {
         self.line
     }
 
-    /// The next rows; none at the end.
+    /// The next rows; an empty block at the end.
     pub fn next_block(&mut self, delimiter: Delimiter) -> Result<Block, SceneError> {
         let mut block = Block {
             text: Vec::with_capacity(BLOCK_BYTES + 256),
@@ -124,8 +125,8 @@ impl<R: Read> Records<R> {
         Ok(block)
     }
 
-    /// Adds the next row to a block; false at the end. Where the delimiter is not
-    /// known yet, each that there can be counts for quotes.
+    /// Adds the next row to a block; returns false at the end. If the delimiter is not
+    /// known yet, quotes may follow any delimiter.
     pub fn next_record(
         &mut self,
         block: &mut Block,
@@ -151,7 +152,7 @@ impl<R: Read> Records<R> {
             block.text.push(b'\n');
             fed = block.text.len();
             if !self.next_line(&mut block.text, start)? {
-                return Err(self.error(line, "a quote is opened in this row and never closed"));
+                return Err(self.error(line, "a quote opened in this row is never closed"));
             }
         }
         let end = block.text.len();
@@ -160,7 +161,7 @@ impl<R: Read> Records<R> {
     }
 
     /// Appends the next line, without its end, to the text of a row that begins at
-    /// `start`; false at the end of the table.
+    /// `start`; returns false at the end of the table.
     fn next_line(&mut self, text: &mut Vec<u8>, start: usize) -> Result<bool, SceneError> {
         let line_start = text.len();
         let mut is_ended = false;
@@ -185,9 +186,8 @@ impl<R: Read> Records<R> {
             let end = memchr::memchr2(b'\n', b'\r', buffer);
             let piece = &buffer[..end.unwrap_or(buffer.len())];
             if text.len() - start + piece.len() > LONGEST_LINE {
-                let message = format!(
-                    "the line is longer than {LONGEST_LINE} bytes, the most that a row may have"
-                );
+                let message =
+                    format!("the line is longer than {LONGEST_LINE} bytes, the limit for a row");
                 return Err(self.error(self.line + 1, &message));
             }
             text.extend_from_slice(piece);
@@ -202,7 +202,9 @@ impl<R: Read> Records<R> {
         }
         self.line += 1;
         if self.bytes > GREATEST_TABLE_BYTES {
-            let message = format!("the table has more than {GREATEST_TABLE_BYTES} bytes");
+            let message = format!(
+                "the table has more than {GREATEST_TABLE_BYTES} bytes, the limit for a table"
+            );
             return Err(self.error(self.line, &message));
         }
         if self.line == 1 {
@@ -211,7 +213,7 @@ impl<R: Read> Records<R> {
         Ok(true)
     }
 
-    /// Takes the byte order mark off the first line.
+    /// Removes the byte order mark from the first line.
     fn strip_mark(&self, text: &mut Vec<u8>) -> Result<(), SceneError> {
         if text.starts_with(&[0xff, 0xfe]) || text.starts_with(&[0xfe, 0xff]) {
             return Err(SceneError::Encoding {
@@ -225,7 +227,7 @@ impl<R: Read> Records<R> {
             text.drain(..BYTE_ORDER_MARK.len());
         }
         if text.contains(&0) {
-            let message = "the first line has a zero byte, so this is no text in UTF-8: save the table as UTF-8, not as UTF-16 or as a workbook";
+            let message = "the first line has a zero byte, so the file is not UTF-8 text: save the table as UTF-8, not as UTF-16 or as a workbook";
             return Err(self.error(1, message));
         }
         Ok(())
@@ -243,7 +245,7 @@ impl<R: Read> Records<R> {
         while let Some(rest) = text.strip_prefix(mark) {
             text = rest;
         }
-        // What is no UTF-8 is no name either.
+        // A comment that is not UTF-8 contains no names.
         self.comments
             .extend(std::str::from_utf8(text).map(str::to_owned));
     }
@@ -253,8 +255,8 @@ impl<R: Read> Records<R> {
     }
 }
 
-/// Whether quotes are open, from line to line of a row. As `csv-core` has it, a quote
-/// opens where a cell begins, and a doubled one within quotes is a character.
+/// Tracks from line to line of a row whether quotes are open. As in `csv-core`, a quote
+/// opens only at the beginning of a cell, and a doubled quote within quotes is a character.
 struct Quotes {
     delimiter: Option<Delimiter>,
     state: State,
@@ -265,7 +267,7 @@ enum State {
     CellStart,
     InCell,
     InQuotes,
-    /// Behind a quote within quotes: the end, unless it is doubled.
+    /// After a quote within quotes: the end, unless it is doubled.
     AfterQuote,
 }
 
@@ -284,7 +286,7 @@ impl Quotes {
         let bytes = match self.delimiter {
             Some(delimiter) => match delimiter.byte() {
                 Some(byte) => [byte; 3],
-                // Between blanks quotes end with the line.
+                // With blanks as delimiter, quotes end with the line.
                 None => return false,
             },
             None => [b',', b';', b'\t'],
@@ -323,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_have_their_lines_whatever_ends_them() {
+    fn rows_have_their_line_numbers_with_any_line_end() {
         let expected = [("a", 2), ("b", 4), ("c", 5)];
         let expected = expected.map(|(text, line)| (text.to_owned(), line));
         for end in ["\n", "\r\n", "\r"] {
@@ -335,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn quotes_go_over_line_ends_only_where_a_cell_begins_with_them() {
+    fn quotes_span_line_ends_only_if_they_begin_a_cell() {
         let text = b"1,\"a\n# b\",2\n5\" pipe,1\n\"\"\"\",\"\"\"\n\"\nlast";
         let expected = [
             ("1,\"a\n# b\",2", 1),
@@ -350,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn line_that_never_ends_is_refused_after_what_a_line_may_have() {
+    fn line_that_never_ends_is_rejected_at_the_limit() {
         let mut records = Records::new(io::repeat(0), Path::new("zero"));
         let error = records.next_block(Delimiter::Comma).map(|_| ());
         let message = error.expect_err("no row").to_string();

@@ -1,4 +1,4 @@
-//! A row of a table: its cells as numbers, and what is wrong with them.
+//! A row of a table: reads its cells as numbers, and reports errors in them.
 
 use std::path::Path;
 
@@ -18,17 +18,17 @@ pub struct Row<'a> {
     pub line: u64,
 }
 
-/// Why a row gives nothing.
+/// Why a row gives no value.
 #[derive(Debug)]
 pub enum Fault {
-    /// It is degenerate: a reader may leave it out.
+    /// The row is degenerate: a reader may skip it.
     Degenerate {
-        /// The column to blame, where there is one.
+        /// The column at fault, if it is a single one.
         column: Option<Column>,
         /// What is wrong.
         message: String,
     },
-    /// It is wrong.
+    /// The row is wrong.
     Wrong(SceneError),
 }
 
@@ -39,13 +39,13 @@ impl From<SceneError> for Fault {
 }
 
 impl Row<'_> {
-    /// What errors call the table.
+    /// The name of the table in errors.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.layout.path
     }
 
-    /// A cell, without what surrounds it.
+    /// A cell, without surrounding blanks and quotes.
     #[must_use]
     pub fn cell(&self, column: Column) -> &str {
         self.cells.get(column.0)
@@ -54,7 +54,7 @@ impl Row<'_> {
     /// The finite number in a cell. A cell without a value makes the row degenerate.
     ///
     /// # Errors
-    /// When the cell has no value, or another one.
+    /// If the cell is empty or contains anything else.
     pub fn number(&self, column: Column) -> Result<f64, Fault> {
         let number = self.any_number(column)?;
         match number.is_finite() {
@@ -66,7 +66,7 @@ impl Row<'_> {
     /// The number in a cell, which may be infinite.
     ///
     /// # Errors
-    /// When the cell has no value, or another one.
+    /// If the cell is empty or contains anything else.
     pub fn any_number(&self, column: Column) -> Result<f64, Fault> {
         let cell = self.cell(column);
         if let Some(number) = number_of(cell, self.layout.decimal) {
@@ -74,7 +74,7 @@ impl Row<'_> {
         }
         if is_missing(cell) {
             let message = match cell.is_empty() {
-                true => "the cell is empty, a number is needed".to_owned(),
+                true => "the cell is empty: a number is needed".to_owned(),
                 false => format!("{} is not a finite number", quoted(cell)),
             };
             return Err(Fault::Degenerate {
@@ -85,7 +85,7 @@ impl Row<'_> {
         if cell.len() > LONGEST_NUMBER {
             let length = cell.len();
             let message = format!(
-                "is not a number: the cell has {length} bytes, a number at most {LONGEST_NUMBER}"
+                "is not a number: the cell has {length} bytes, but a number may have at most {LONGEST_NUMBER}"
             );
             return Err(self.wrong(column, &message).into());
         }
@@ -99,7 +99,7 @@ impl Row<'_> {
             (Some(_), Decimal::Comma) => self.error_with_help(
                 Some(column),
                 format!("{} is not a number (such as 1.5 or 2e-3)", quoted(cell)),
-                Some("decimal = \",\" in a scene file and --decimal comma read decimal commas"),
+                Some("for decimal commas, set decimal = \",\" in the scene file or use --decimal comma"),
             ),
             (Some(_), Decimal::Point) => self.error_with_help(
                 Some(column),
@@ -107,7 +107,7 @@ impl Row<'_> {
                     "{} is not a number with a decimal comma (such as 1,5)",
                     quoted(cell)
                 ),
-                Some("without decimal = \",\" numbers have a decimal point"),
+                Some("for decimal points, remove decimal = \",\" or --decimal comma"),
             ),
         }
         .into())
@@ -116,7 +116,7 @@ impl Row<'_> {
     /// The finite numbers in some cells.
     ///
     /// # Errors
-    /// Those of [`Row::number`].
+    /// See [`Row::number`].
     pub fn numbers<const N: usize>(&self, columns: [Column; N]) -> Result<[f64; N], Fault> {
         let mut numbers = [0.0; N];
         for (number, column) in numbers.iter_mut().zip(columns) {
@@ -125,7 +125,7 @@ impl Row<'_> {
         Ok(numbers)
     }
 
-    /// Yes or no: `true`, `false`, `1`, `0` or another number of these values.
+    /// A flag: `true`, `false`, `1`, `0` or another number of these values.
     #[must_use]
     pub fn flag(&self, column: Column) -> Option<bool> {
         let cell = self.cell(column);
@@ -139,18 +139,18 @@ impl Row<'_> {
         (number == 0.0 || number == 1.0).then_some(number == 1.0)
     }
 
-    /// That a cell is wrong: its text, and `message`.
+    /// The error of a cell: its text, followed by `message`.
     fn wrong(&self, column: Column, message: &str) -> SceneError {
         let text = format!("{} {message}", quoted(self.cell(column)));
         self.error(Some(column), text)
     }
 
-    /// That `message` is true of the row, or of one cell of it.
+    /// An error in the row, or in one of its cells.
     pub fn error(&self, column: Option<Column>, message: impl Into<String>) -> SceneError {
         self.error_with_help(column, message, None)
     }
 
-    /// The same, and what to do about it.
+    /// As [`Row::error`], with advice.
     pub fn error_with_help(
         &self,
         column: Option<Column>,
@@ -166,13 +166,13 @@ impl Row<'_> {
         }
     }
 
-    /// The error of a fault where no row may be left out.
+    /// The error of a fault if no row may be skipped.
     #[must_use]
     pub fn refused(&self, fault: Fault) -> SceneError {
         self.refused_with_help(fault, None)
     }
 
-    /// The same, and what to do about a degenerate row.
+    /// As [`Row::refused`], with advice for a degenerate row.
     #[must_use]
     pub fn refused_with_help(&self, fault: Fault, help: Option<&str>) -> SceneError {
         match fault {
@@ -182,7 +182,7 @@ impl Row<'_> {
     }
 }
 
-/// Whether a cell states a missing value, in the words of pandas, R, Excel and others.
+/// Whether a cell marks a missing value, in the notation of pandas, R, Excel and others.
 pub(super) fn is_missing(cell: &str) -> bool {
     const WORDS: [&str; 10] = [
         "", "na", "n/a", "#n/a", "<na>", "nan", "-nan", "+nan", "null", "none",
@@ -190,7 +190,7 @@ pub(super) fn is_missing(cell: &str) -> bool {
     cell.len() <= 4 && WORDS.iter().any(|word| cell.eq_ignore_ascii_case(word))
 }
 
-/// The number in a cell, if there is one; NaN is none.
+/// The number in a cell, if it is one; NaN is not.
 pub(in crate::scene) fn number_of(cell: &str, decimal: Decimal) -> Option<f64> {
     if cell.len() > LONGEST_NUMBER {
         return None;
@@ -209,7 +209,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_in_either_decimal_and_words_for_none() {
+    fn numbers_with_either_separator_and_words_for_missing_values() {
         let point = |cell: &str| number_of(cell, Decimal::Point);
         let comma = |cell: &str| number_of(cell, Decimal::Comma);
         assert_eq!(point("-2.5e-1"), Some(-0.25));

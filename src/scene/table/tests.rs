@@ -1,4 +1,4 @@
-//! Tables as programs write them, whole.
+//! Whole tables as programs write them.
 
 use super::*;
 
@@ -21,7 +21,7 @@ fn rows(text: &str, format: TableFormat, columns: &[ColumnKey]) -> Result<Vec<Ve
     Ok(numbers)
 }
 
-/// Columns x and y of a table whose format is found out.
+/// Columns x and y of a table whose format is detected.
 fn of_x_and_y(text: &str) -> Result<Vec<Vec<f64>>, String> {
     rows(text, TableFormat::default(), &["x".into(), "y".into()])
 }
@@ -60,9 +60,9 @@ fn table_in_any_layout_gives_the_same_numbers() {
         "# x y are in m\n# x, y\n# the end\n1,2\n3,4\n",
         // CloudCompare.
         "//X Y x y\n0 0 1 2\n0 0 3 4\n",
-        // What states the delimiter to Excel.
+        // The line that gives the delimiter to Excel.
         "sep=;\r\nx;y\r\n1;2\r\n3;4\r\n",
-        // Text in columns that nobody reads.
+        // Text in ignored columns.
         "name,x,y\n\"oak, old\",1,2\nash \"B\",3,4\n",
         "# name,x,y\noak,1,2\nash,3,4\n",
     ] {
@@ -108,7 +108,7 @@ fn table_with_decimal_commas_gives_the_same_numbers() {
 }
 
 #[test]
-fn columns_by_number_need_no_header_and_pass_over_one() {
+fn columns_by_number_need_no_header_and_skip_one() {
     let numbers = [2, 0].map(ColumnKey::Number);
     for text in [
         "1 9 2\n3 9 4\n",
@@ -129,13 +129,13 @@ fn columns_by_number_need_no_header_and_pass_over_one() {
     );
     let message = rows("1,2,3\n1,2\n", TableFormat::default(), &numbers).expect_err("short");
     assert!(
-        message.contains("t.csv:2: the row has 2 cells, the first row has 3"),
+        message.contains("t.csv:2: the row has 2 cells, but the first row has 3"),
         "{message}"
     );
 }
 
 #[test]
-fn row_error_names_the_line_whatever_precedes_it() {
+fn row_error_names_the_line_after_any_beginning() {
     let beginnings = [
         ("x\n", 2),
         ("x\r\n", 2),
@@ -149,7 +149,7 @@ fn row_error_names_the_line_whatever_precedes_it() {
         for end in ["bad", "bad\n", "bad\r\n3\r\n", "bad\n\n# more\n4\n"] {
             let text = format!("{beginning}{end}");
             let message = rows(&text, TableFormat::default(), &["x".into()]);
-            let message = message.expect_err("bad is no number");
+            let message = message.expect_err("bad is not a number");
             let place = format!(":{line}: column \"x\": \"bad\" is not a number (such as 1.5");
             assert!(message.contains(&place), "{text:?}: {message}");
         }
@@ -157,7 +157,7 @@ fn row_error_names_the_line_whatever_precedes_it() {
 }
 
 #[test]
-fn tables_that_say_something_else_are_refused() {
+fn malformed_tables_are_rejected() {
     for (text, expected) in [
         ("", "t.csv:1: the table is empty"),
         ("# x,y\n\n", "t.csv:3: the table is empty"),
@@ -166,15 +166,15 @@ fn tables_that_say_something_else_are_refused() {
         ("x,Y\n1,2\n", "no column \"y\"; did you mean \"Y\"?"),
         (
             "x,y\n1,2\n1\n",
-            "t.csv:3: the row has 1 cells, the header has 2",
+            "t.csv:3: the row has 1 cells, but the header has 2",
         ),
         (
             "x,y\n1,2,3\n",
-            "t.csv:2: the row has 3 cells, the header has 2",
+            "t.csv:2: the row has 3 cells, but the header has 2",
         ),
         (
             "x,y\n\"1\",\"2\",\"3\"\n",
-            "the row has 3 cells, the header has 2",
+            "the row has 3 cells, but the header has 2",
         ),
         ("x,y\n1,\n", "t.csv:2: column \"y\": the cell is empty"),
         (
@@ -187,7 +187,7 @@ fn tables_that_say_something_else_are_refused() {
         ),
         (
             "x,y\n1,\"2\n3,4\n",
-            "t.csv:2: a quote is opened in this row and never closed",
+            "t.csv:2: a quote opened in this row is never closed",
         ),
     ] {
         let message = of_x_and_y(text).expect_err(text);
@@ -202,7 +202,7 @@ fn tables_that_say_something_else_are_refused() {
 }
 
 #[test]
-fn columns_that_nobody_reads_are_named() {
+fn ignored_columns_are_named() {
     let unread = |text: &str| {
         let wanted = ["x".into()];
         let table = Table::new(
@@ -222,16 +222,16 @@ fn columns_that_nobody_reads_are_named() {
     assert_eq!(unread("x;\n1;\n"), None);
     assert_eq!(
         unread(",x,y,x2,\n0,1,2,3\n").as_deref(),
-        Some("t.csv: columns that are not read: \"y\", \"x2\", 1 without a name")
+        Some("t.csv: ignored columns: \"y\", \"x2\", 1 without a name")
     );
     assert_eq!(
         unread("\"x\"\n\"1\" 2\n").as_deref(),
-        Some("t.csv: columns that are not read: 1 without a name")
+        Some("t.csv: ignored columns: 1 without a name")
     );
 }
 
 #[test]
-fn name_in_any_case_counts_where_none_is_the_same_to_the_letter() {
+fn name_in_any_case_counts_unless_one_matches_exactly() {
     let keys = ["x", "y"].map(ColumnKey::AnyCase);
     let of = |text| rows(text, TableFormat::default(), &keys);
     // As CloudCompare writes it.
@@ -242,7 +242,7 @@ fn name_in_any_case_counts_where_none_is_the_same_to_the_letter() {
 }
 
 #[test]
-fn row_that_begins_with_no_value_is_no_comment() {
+fn row_that_begins_with_a_missing_value_is_not_a_comment() {
     let error = of_x_and_y("x,y\n#N/A,2\n").unwrap_err();
     assert!(error.starts_with("t.csv:2: column \"x\""), "{error}");
     let commented = of_x_and_y("x,y\n#N/A is a word here\n1,2\n");
@@ -250,7 +250,7 @@ fn row_that_begins_with_no_value_is_no_comment() {
 }
 
 #[test]
-fn zero_byte_in_the_first_line_is_refused() {
+fn zero_byte_in_the_first_line_is_rejected() {
     let error = of_x_and_y("x\0,\0y\0\n\0").unwrap_err();
     assert!(
         error.starts_with("t.csv:1: the first line has a zero byte"),

@@ -275,11 +275,11 @@ fn bad_tables_of_hits_are_refused_with_file_and_line() {
         ),
         (
             "ray,hit,t\n0,0,\n0,0,\n",
-            "told.csv:3: column \"ray\": \"0\" where 1 is due",
+            "told.csv:3: column \"ray\": expected 1, found \"0\"",
         ),
         (
             "hit,t\n0,\n0\n",
-            "told.csv:3: the row has 1 cells, the header has 2",
+            "told.csv:3: the row has 1 cells, but the header has 2",
         ),
     ] {
         fs::write(folder.path().join("told.csv"), text).unwrap();

@@ -45,7 +45,7 @@ fn what_is_no_regular_file_is_refused_as_a_scene() {
         let (code, _, error) = cyltrace(folder.path(), &["info", path]);
         assert_eq!(code, 2, "{error}");
         let expected = format!(
-            "error: cannot read {path}: it is a device, a pipe or a socket, a regular file is needed\n"
+            "error: cannot read {path}: it is a device, a pipe or a socket: a regular file is needed\n"
         );
         assert_eq!(error, expected);
     }

@@ -92,7 +92,7 @@ fn bad_tables_of_points_are_refused_at_their_place() {
         ),
         (
             "x,y,z\n1,2,3\n1,2\n",
-            "points.csv:3: the row has 2 cells, the header has 3",
+            "points.csv:3: the row has 2 cells, but the header has 3",
         ),
         (
             "x,y,z\n1,inf,3\n",
@@ -100,7 +100,7 @@ fn bad_tables_of_points_are_refused_at_their_place() {
         ),
         (
             "# nothing\n",
-            "points.csv:2: the table is empty: there is no header and no row with x,y,z",
+            "points.csv:2: the table is empty: it needs a header or rows with x,y,z",
         ),
     ] {
         let directory = workplace(points);

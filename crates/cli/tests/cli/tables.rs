@@ -71,12 +71,12 @@ fn rays_as_pandas_numpy_r_and_excel_write_them_meet_the_same() {
 fn columns_that_are_not_read_are_named_once_and_not_by_the_quiet() {
     let table = ",ox,oy,oz,dx,dy,dz,t_maxx\n0,5,0,0,-1,0,0,1\n";
     let (_, err) = traced(table, "");
-    let note = "note: table.csv: columns that are not read: \"t_maxx\", 1 without a name\n";
+    let note = "note: table.csv: ignored columns: \"t_maxx\", 1 without a name\n";
     assert_eq!(err, note);
     assert_eq!(traced(table, "--quiet").1, "");
     let line = "trace scene.toml --rays table.csv -o h.csv --json -";
     let (_folder, _, out, _) = with_table(table, line);
-    assert!(out.contains("not read: \\\"t_maxx\\\""), "{out}");
+    assert!(out.contains("ignored columns: \\\"t_maxx\\\""), "{out}");
 }
 
 #[test]
@@ -92,7 +92,7 @@ fn points_by_number_are_located() {
     let line = "trace scene.toml --points table.csv -o - --columns 0,1";
     let (_folder, code, _, err) = with_table("0 0 0\n", line);
     assert!(
-        code == 2 && err.contains("2 columns are numbered, 3 are needed: x,y,z"),
+        code == 2 && err.contains("2 column numbers are given: 3 are needed, for x,y,z"),
         "{err}"
     );
 }
@@ -209,7 +209,7 @@ fn placements_and_notes_of_tables_of_a_scene() {
     assert_eq!(placement.translation, DVec3::new(1.5, 2.0, 3.0));
     assert_eq!(placement.matrix3.x_axis, DVec3::X * 0.5);
     assert!(
-        found.notes[0].ends_with("p.csv: columns that are not read: \"n\""),
+        found.notes[0].ends_with("p.csv: ignored columns: \"n\""),
         "{:?}",
         found.notes
     );
@@ -278,7 +278,7 @@ fn neurons_in_any_layout_are_the_same() {
     for (text, message) in [
         (
             "1 1 0 0 0 2 # -1\n",
-            "n.swc:1: the row has 6 cells, SWC has 7",
+            "n.swc:1: the row has 6 cells: SWC has 7",
         ),
         (
             "1,1,0,,0,2,-1\n",

@@ -129,8 +129,8 @@ radius = 1
     let (code, _, err) = tessellate(directory.path(), "composed.toml -o composed.obj");
     assert_eq!(code, 2, "{err}");
     for words in [
-        "solids composed by union, intersection or difference have no mesh of their own, and the scene holds 1",
-        "leave them out, or state the solids that they are composed of by themselves",
+        "solids composed by union, intersection or difference cannot be tessellated, and the scene contains 1",
+        "remove them, or list their parts as separate solids",
     ] {
         assert!(err.contains(words), "{words:?} not in {err}");
     }

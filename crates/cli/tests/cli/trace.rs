@@ -159,8 +159,8 @@ fn bad_ray_rows_refused_by_place_and_value_and_nothing_written() {
     let header = "ox,oy,oz,dx,dy,dz";
     let ranged = "ox,oy,oz,dx,dy,dz,t_min,t_max";
     for (rays, expected) in [
-        (String::new(), &["rays.csv", "no header", header][..]),
-        ("# only a comment\n".into(), &["rays.csv", "no header"]),
+        (String::new(), &["rays.csv", "needs a header", header][..]),
+        ("# only a comment\n".into(), &["rays.csv", "needs a header"]),
         (
             "ox,oy,oz,dx,dy\n".into(),
             &["rays.csv:1", "no column \"dz\""],

@@ -1,9 +1,9 @@
 //! Wavefront OBJ: vertices (`v`) and faces (`f`).
 //!
 //! A line that ends in `\` continues in the next one, and `#` begins a comment anywhere; a `\`
-//! at the end of a comment belongs to the comment. What follows three coordinates (a weight,
-//! a color) is ignored, and so is every other keyword, except those of free-form surfaces:
-//! without these a part of the object would be missing.
+//! at the end of a comment belongs to the comment. The reader ignores values after the three
+//! coordinates (a weight, a color) and all other keywords, except those of free-form surfaces:
+//! it rejects these because a part of the object would be missing.
 
 use glam::DVec3;
 
@@ -22,8 +22,8 @@ const FREE_FORM: [&[u8]; 8] = [
 /// Reads a mesh from the bytes of an OBJ file.
 ///
 /// # Errors
-/// When a line is malformed, a number is out of range, a face names a vertex that does not
-/// exist, or there is no face.
+/// If a line is malformed, a number is out of range, a face names a vertex that does not
+/// exist, or the mesh has no faces.
 pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, MeshError> {
     let mut builder = Builder::default();
     let mut remarks = Remarks::default();
@@ -64,7 +64,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, MeshError> {
 /// A statement over several lines.
 #[derive(Default)]
 struct Statement {
-    /// The first of them.
+    /// The first line.
     line: u64,
     text: Vec<u8>,
 }
@@ -83,7 +83,7 @@ fn add(builder: &mut Builder, line: u64, text: &[u8]) -> Result<(), MeshError> {
             let point = point(&mut words).map_err(|message| MeshError::in_line(line, message))?;
             builder.push_vertex(point, MeshPlace::Line(line))
         }
-        // `fo` is what the first versions of the format called it.
+        // The first versions of the format called it `fo`.
         Some(b"f" | b"fo") => {
             let vertices = builder.vertices();
             let corners = words.zip(0..).map(|(word, number)| match number {
@@ -97,7 +97,7 @@ fn add(builder: &mut Builder, line: u64, text: &[u8]) -> Result<(), MeshError> {
         Some(keyword) if FREE_FORM.contains(&keyword) => Err(MeshError::in_line(
             line,
             format!(
-                "{} states free-form geometry, which is not read: export the object as polygons",
+                "{} begins free-form geometry, which is not supported: export the object as polygons",
                 shown(keyword)
             ),
         )),
@@ -117,22 +117,22 @@ fn point<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Result<DVec3, String
     Ok(DVec3::new(coordinate()?, coordinate()?, coordinate()?))
 }
 
-/// The vertex, from 0, that a corner `i`, `i/t`, `i//n` or `i/t/n` names: from 1, or
-/// backwards from the last one so far with a minus.
+/// The vertex, from 0, that a corner `i`, `i/t`, `i//n` or `i/t/n` names. A positive `i`
+/// counts from 1, a negative one backwards from the last vertex so far.
 fn corner(word: &[u8], vertices: u64) -> Result<u64, String> {
     let index = before(word, b"/");
     let index = std::str::from_utf8(index).ok();
     let Some(index) = index.and_then(|index| index.parse::<i64>().ok()) else {
         return Err(format!(
-            "the corner {} of the face does not begin with the number of a vertex",
+            "the corner {} of the face does not begin with a vertex number",
             shown(word)
         ));
     };
     match index {
-        0 => Err("a corner of the face is 0: vertices count from 1".to_owned()),
+        0 => Err("a corner of the face is 0: vertex numbers begin at 1".to_owned()),
         1.. => Ok(index as u64 - 1),
         _ => vertices.checked_sub(index.unsigned_abs()).ok_or_else(|| {
-            format!("a corner of the face is {index}: there are only {vertices} vertices before it")
+            format!("a corner of the face is {index}, but only {vertices} vertices precede it")
         }),
     }
 }
@@ -176,7 +176,7 @@ mod tests {
             "f +1 -3/2 3",
             "fo 1 2 3",
             "f 1 2\nf\nf 1 2 3",
-            "# a comment does not go on \\\nf 1 2 3",
+            "# a comment does not continue \\\nf 1 2 3",
             "usemtl caf\u{e9}\nvt 0 0\nvn 0 0 1\ns off\nf 1 2 3",
         ] {
             assert_eq!(
@@ -209,18 +209,18 @@ mod tests {
             ),
             ("f 1 2 x", 5, "\"x\" of the face"),
             ("f 1 2 /3", 5, "\"/3\" of the face"),
-            ("f 1 2 0", 5, "count from 1"),
-            ("f 1 2 -5", 5, "only 4 vertices before it"),
+            ("f 1 2 0", 5, "begin at 1"),
+            ("f 1 2 -5", 5, "only 4 vertices precede it"),
             (
                 "f 1 2 3\nf 1 2 9\nf 1 2 7",
                 6,
-                "number 8 from 0, 9 from 1; there are 4",
+                "vertex 8 (9 if counted from 1), but the mesh has 4 vertices",
             ),
-            ("f 1 2 5\nf 1 2 9\nv 0 0 0", 6, "9 from 1"),
+            ("f 1 2 5\nf 1 2 9\nv 0 0 0", 6, "9 if counted from 1"),
             (
                 "f 1 2 99999999999999999999",
                 5,
-                "does not begin with the number",
+                "does not begin with a vertex number",
             ),
             ("f 1 2 9999999999", 5, "names vertex 9999999998"),
             ("surf 0 1 0 1 1 2", 5, "free-form"),
@@ -230,7 +230,7 @@ mod tests {
             assert_eq!(error.place, MeshPlace::Line(line), "{text:?}: {error}");
             assert!(error.message.contains(message), "{text:?}: {error}");
         }
-        for (bytes, message) in [(&b""[..], "there is no face"), (b"\xff\xfev\0", "UTF-16")] {
+        for (bytes, message) in [(&b""[..], "has no faces"), (b"\xff\xfev\0", "UTF-16")] {
             let error = parse(bytes).unwrap_err();
             assert!(error.message.contains(message), "{error}");
         }

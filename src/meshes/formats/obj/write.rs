@@ -1,9 +1,9 @@
 //! Wavefront OBJ: `v` and `f` lines, and a `g` line for each placed prototype.
 //!
-//! A group is called after its prototype and the numbers of the placements from
-//! the scene inward, as `trace` has them: `tree/3/0`; the scene's own solids are
-//! `scene`. The characters that OBJ or its readers give a meaning become `_`.
-//! Numbers are f64 in the shortest form that reads back exactly.
+//! A group is named after its prototype and the numbers of the placements from
+//! the scene inward, as `trace` reports them: `tree/3/0`. The group of the scene's
+//! own solids is `scene`. Characters with a meaning in OBJ or to its readers become
+//! `_`. Numbers are f64 in the shortest form that reads back exactly.
 
 use std::fmt::Write as _;
 use std::io::Write;
@@ -17,7 +17,7 @@ use crate::solid::tessellation::triangles_of;
 /// point, and `e-308` or the zeros of `0.0000`.
 const LONGEST_NUMBER: u128 = 24;
 
-/// What the root's own group is called.
+/// The name of the root's own group.
 const ROOT: &str = "scene";
 
 pub(super) fn write(
@@ -62,7 +62,7 @@ pub(super) fn write(
     })
 }
 
-/// At least the size of the file.
+/// An upper bound of the size of the file.
 pub(super) fn most_bytes(plan: &Plan, name: &str) -> u128 {
     let digits = 1 + u128::from(plan.vertices().checked_ilog10().unwrap_or(0));
     let (names, groups) = plan.group_names();
@@ -70,7 +70,7 @@ pub(super) fn most_bytes(plan: &Plan, name: &str) -> u128 {
         // "v x y z" and "f a b c", with the end of the line.
         (plan.vertices(), 5 + 3 * LONGEST_NUMBER),
         (plan.triangles(), 5 + 3 * digits),
-        // "g name", where the root has a name of its own.
+        // "g name"; the root's name is counted below.
         (groups, 3),
         (names, 1),
         (1, (ROOT.len() + comment(plan, name).len()) as u128),

@@ -1,22 +1,22 @@
 //! The elements of a PLY file, one record after the other.
 //!
-//! In a text a record begins on a line of its own and may span several; `{` and `#`
-//! begin a comment, as in the format's first description, and a `\` at the end of a line is
-//! no more than that. A binary record follows the one before it.
+//! In an ASCII file a record begins on a new line and may span several. `{` and `#` begin a
+//! comment, as in the format's first description, and a `\` at the end of a line is ignored.
+//! In a binary file each record directly follows the previous one.
 
 use super::header::{Element, Form, Header, Kind, Property};
 use crate::meshes::error::{MeshError, MeshPlace};
 use crate::meshes::reading::text::{before, number, shown, words};
 
-/// What follows the header.
+/// The content after the header.
 pub(super) struct Data<'a> {
     form: Form,
-    /// What is not read yet.
+    /// The unread bytes.
     rest: &'a [u8],
-    /// The words of the present line that are not read yet, the first of them last.
+    /// The unread words of the current line, the next one last.
     words: Vec<&'a [u8]>,
     line: u64,
-    /// Records of the present element.
+    /// Records of the current element that were begun.
     count: u64,
     numbers: Vec<f64>,
 }
@@ -33,7 +33,7 @@ impl<'a> Data<'a> {
         }
     }
 
-    /// Begins an element, and refuses more of it than the rest of a binary file can contain.
+    /// Begins an element, and rejects more records than the rest of a binary file can contain.
     pub fn check_length(&mut self, element: &Element) -> Result<(), MeshError> {
         self.count = 0;
         let needed = u128::from(element.count) * element.least_bytes() as u128;
@@ -43,13 +43,13 @@ impl<'a> Data<'a> {
         }
         let (name, count) = (shown(element.name.as_bytes()), element.count);
         let message = format!(
-            "{count} of the element {name} take at least {needed} bytes, and the file has {left} left"
+            "{count} records of the element {name} take at least {needed} bytes, but the file has only {left} left"
         );
         Err(MeshError::in_line(element.line, message))
     }
 
-    /// Reads the next record of an element: where it is, and the numbers of the properties
-    /// that `is_wanted` by their places and lengths.
+    /// Reads the next record of an element. Returns its place and the numbers of the
+    /// properties that `is_wanted` selects by position and length.
     pub fn record(
         &mut self,
         element: &Element,
@@ -83,27 +83,27 @@ impl<'a> Data<'a> {
             Some(word) => Err(MeshError::in_line(
                 self.line,
                 format!(
-                    "{} is left over after the numbers of the {}",
+                    "unexpected {} after the last number of the element {}",
                     shown(word),
-                    element.name
+                    shown(element.name.as_bytes())
                 ),
             )),
             None => Ok((place, &self.numbers)),
         }
     }
 
-    /// Refuses words after the last record of a text, which say that the header counts less.
+    /// Rejects words after the last record of an ASCII file.
     pub fn check_end(&mut self) -> Result<(), MeshError> {
         match self.form == Form::Ascii && self.fill() {
             true => {
-                let message = "there are numbers after the last element that the header counts";
+                let message = "the file continues after the last element that the header declares";
                 Err(MeshError::in_line(self.line, message))
             }
             false => Ok(()),
         }
     }
 
-    /// Takes the words of the next line that has any; whether there is one.
+    /// Reads the words of the next line that has any. Returns whether such a line exists.
     fn fill(&mut self) -> bool {
         while !self.rest.is_empty() {
             let end = self.rest.iter().position(|&byte| byte == b'\n');
@@ -128,11 +128,13 @@ impl<'a> Data<'a> {
         }
     }
 
-    /// That the file ends before an element does.
+    /// The error that the file ends before an element does.
     fn ended(&self, element: &Element, place: MeshPlace) -> MeshError {
         let (read, count) = (self.count, element.count);
         let name = shown(element.name.as_bytes());
-        let message = format!("the file ends within element {name}: {read} of {count} were begun");
+        let message = format!(
+            "the file ends within the element {name}: the header declares {count} records, but only {read} begin"
+        );
         MeshError::new(place, message)
     }
 
@@ -199,7 +201,7 @@ impl<'a> Data<'a> {
     }
 }
 
-/// What messages call the records of an element.
+/// The name of an element's records in messages.
 fn place_name(element: &Element) -> &'static str {
     match element.name.as_str() {
         "vertex" => "vertex",
@@ -208,7 +210,7 @@ fn place_name(element: &Element) -> &'static str {
     }
 }
 
-/// A binary number of a kind, which has all the bytes.
+/// Decodes a binary number of a kind from all of its bytes.
 fn decoded(bytes: &[u8], kind: Kind, is_big_endian: bool) -> f64 {
     let mut ordered = [0; 8];
     let ordered = &mut ordered[..bytes.len()];

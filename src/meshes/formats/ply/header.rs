@@ -1,11 +1,11 @@
-//! The header of a PLY file: its form, and the elements with their properties.
+//! The header of a PLY file: its encoding, and the elements with their properties.
 
 use crate::meshes::error::MeshError;
 use crate::meshes::reading::remarks::Remarks;
 use crate::meshes::reading::text::{before, shown, words};
 use crate::scene::{MOST_PLY_HEADER_BYTES, MOST_PLY_PROPERTIES};
 
-/// How the elements are written.
+/// The encoding of the elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
     Ascii,
@@ -26,7 +26,7 @@ pub(super) enum Kind {
     F64,
 }
 
-/// The names of the kinds, of the first version of the format and of later ones.
+/// The names of the kinds in the first version of the format and in later ones.
 const KINDS: [(&str, Kind); 16] = [
     ("char", Kind::I8),
     ("int8", Kind::I8),
@@ -50,7 +50,7 @@ const KINDS: [(&str, Kind); 16] = [
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Property {
     pub name: String,
-    /// The kind of a list's length, where it is a list.
+    /// The kind of the list's length, if the property is a list.
     pub length: Option<Kind>,
     pub kind: Kind,
 }
@@ -92,16 +92,13 @@ impl Kind {
         let found = KINDS.iter().find(|(name, _)| name.as_bytes() == word);
         found.map(|(_, kind)| *kind).ok_or_else(|| {
             let names = KINDS.map(|(name, _)| name).join(", ");
-            format!(
-                "{} is not a type of numbers: these are {names}",
-                shown(word)
-            )
+            format!("{} is not a number type: use one of {names}", shown(word))
         })
     }
 }
 
 impl Element {
-    /// The least bytes that one takes in a binary file.
+    /// The least size of a record in a binary file.
     pub fn least_bytes(&self) -> usize {
         let kinds = self.properties.iter();
         let kinds = kinds.map(|property| property.length.unwrap_or(property.kind));
@@ -147,7 +144,7 @@ impl Header {
             if header.lines == 1 {
                 match first {
                     Some(b"ply") => continue,
-                    _ => return Err(wrong("a PLY file begins with a line \"ply\"".into())),
+                    _ => return Err(wrong("a PLY file must begin with the line \"ply\"".into())),
                 }
             }
             match first {
@@ -164,7 +161,7 @@ impl Header {
                     if let Some(same) = same {
                         let name = shown(element.name.as_bytes());
                         let line = same.line;
-                        let message = format!("line {line} has an element {name} already");
+                        let message = format!("line {line} already declares an element {name}");
                         return Err(wrong(message));
                     }
                     header.elements.push(element);
@@ -173,7 +170,7 @@ impl Header {
                     properties += 1;
                     if properties > MOST_PLY_PROPERTIES {
                         let message =
-                            format!("there are more than {MOST_PLY_PROPERTIES} properties");
+                            format!("the header has more than {MOST_PLY_PROPERTIES} properties");
                         return Err(wrong(message));
                     }
                     let property = property(&mut words).map_err(wrong)?;
@@ -182,7 +179,7 @@ impl Header {
                     };
                     if element.position(&property.name).is_some() {
                         let name = shown(property.name.as_bytes());
-                        return Err(wrong(format!("the element has a property {name} already")));
+                        return Err(wrong(format!("the element already has a property {name}")));
                     }
                     element.properties.push(property);
                 }
@@ -190,7 +187,7 @@ impl Header {
                 None => {}
                 Some(other) => {
                     return Err(wrong(format!(
-                        "{} is not a word of the header: these are format, comment, obj_info, element, property and end_header",
+                        "{} is not a header keyword: use format, comment, obj_info, element, property or end_header",
                         shown(other)
                     )));
                 }
@@ -202,14 +199,15 @@ impl Header {
         Ok(header)
     }
 
-    /// Refuses elements without properties: no byte of the file bounds their number.
+    /// Rejects elements without properties: the size of the file would not bound their number.
     fn check(&self) -> Result<(), MeshError> {
         let mut elements = self.elements.iter();
         let empty = elements.find(|one| one.properties.is_empty() && one.count > 0);
         empty.map_or(Ok(()), |element| {
             let (name, count) = (shown(element.name.as_bytes()), element.count);
-            let message =
-                format!("the element {name} has no properties, so there cannot be {count}");
+            let message = format!(
+                "the element {name} has {count} records but no properties: declare a property"
+            );
             Err(MeshError::in_line(element.line, message))
         })
     }
@@ -221,7 +219,7 @@ fn form_of(word: &[u8]) -> Result<Form, String> {
         b"binary_little_endian" => Ok(Form::LittleEndian),
         b"binary_big_endian" => Ok(Form::BigEndian),
         _ => Err(format!(
-            "{} is not a format: these are ascii, binary_little_endian and binary_big_endian",
+            "{} is not a PLY format: use ascii, binary_little_endian or binary_big_endian",
             shown(word)
         )),
     }
@@ -236,7 +234,7 @@ fn element<'a>(words: &mut impl Iterator<Item = &'a [u8]>, line: u64) -> Result<
         name: String::from_utf8_lossy(name).into_owned(),
         count: number.ok_or_else(|| {
             let count = shown(count);
-            format!("{count} is not a number of elements: it must be a whole number, 0 or more")
+            format!("the number of records is {count}: it must be a whole number, 0 or more")
         })?,
         line,
         properties: Vec::new(),

@@ -1,9 +1,9 @@
 //! Stanford PLY: the elements `vertex` and `face`, as text or binary in either byte order.
 //!
-//! The properties `x`, `y` and `z` of a vertex and the list `vertex_indices` (or
-//! `vertex_index`) of a face are read, numbers of any kind; others are skipped, and so are
-//! other elements, but for triangle strips, without which faces would be missing. What is
-//! skipped is not stored.
+//! The reader uses the properties `x`, `y` and `z` of a vertex and the list `vertex_indices`
+//! (or `vertex_index`) of a face, with numbers of any kind. It skips other properties and
+//! other elements without storing them. It rejects triangle strips, because faces would be
+//! missing.
 
 use glam::DVec3;
 
@@ -18,8 +18,8 @@ use crate::scene::MOST_FACE_CORNERS;
 /// Reads a mesh from the bytes of a PLY file.
 ///
 /// # Errors
-/// When the header or a number is malformed or out of range, the file ends early, a face
-/// names a vertex that does not exist, or there is no face.
+/// If the header or a number is malformed or out of range, the file ends early, a face
+/// names a vertex that does not exist, or the mesh has no faces.
 pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, MeshError> {
     let bytes = without_mark(bytes)?;
     let header = Header::new(bytes)?;
@@ -34,12 +34,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, MeshError> {
     };
     let (vertex, face) = (needed("vertex")?, needed("face")?);
     if let Some(strips) = header.elements.iter().find(|one| one.name == "tristrips") {
-        let message = "triangle strips are not read: write the mesh with faces";
+        let message = "triangle strips are not supported: write the mesh with faces";
         return Err(MeshError::in_line(strips.line, message));
     }
     let [x, y, z] = ["x", "y", "z"].map(|name| coordinate_of(vertex, name));
     let coordinates = [x?, y?, z?];
-    // A record has its numbers in the order of the properties.
+    // The numbers of a record are in the order of the properties.
     let ranks = coordinates.map(|at| coordinates.iter().filter(|&&other| other < at).count());
     let corners = corners_of(face)?;
 
@@ -78,19 +78,18 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, MeshError> {
     })
 }
 
-/// The place of a coordinate among the properties of vertices.
+/// The position of a coordinate among the properties of vertices.
 fn coordinate_of(vertex: &Element, name: &str) -> Result<usize, MeshError> {
     let found = vertex.position(name);
     found
         .filter(|&at| vertex.properties[at].length.is_none())
         .ok_or_else(|| {
-            let message =
-                format!("the element \"vertex\" has no property \"{name}\" of one number");
+            let message = format!("the element \"vertex\" has no scalar property \"{name}\"");
             MeshError::in_line(vertex.line, message)
         })
 }
 
-/// The place of the list of corners among the properties of faces.
+/// The position of the list of corners among the properties of faces.
 fn corners_of(face: &Element) -> Result<usize, MeshError> {
     let names = ["vertex_indices", "vertex_index"].iter();
     let mut found = names.filter_map(|name| face.position(name));
@@ -105,12 +104,12 @@ fn corners_of(face: &Element) -> Result<usize, MeshError> {
 /// The number of a vertex.
 fn index(number: f64, place: MeshPlace) -> Result<u64, MeshError> {
     match number >= 0.0 && number.fract() == 0.0 {
-        // Numbers beyond u64 become its greatest, which is beyond all vertices.
+        // Numbers beyond u64 become `u64::MAX`, which is beyond all vertices.
         true => Ok(number as u64),
         false => Err(MeshError::new(
             place,
             format!(
-                "a corner of the face is {number:?}: it must be the number of a vertex, from 0"
+                "a corner of the face is {number:?}: it must be a vertex number, counted from 0"
             ),
         )),
     }
@@ -196,9 +195,9 @@ mod tests {
                 good.as_str(),
                 "0 0 0\n1 0 0\n0 1\n3 0 1 2",
                 13,
-                "\"0\" is left over",
+                "unexpected \"0\"",
             ),
-            (&good, "0 0 0\n1 0 0 5\n", 11, "\"5\" is left over"),
+            (&good, "0 0 0\n1 0 0 5\n", 11, "unexpected \"5\""),
             (&good, "0 0 0\n1 0,5 0\n", 11, "\"0,5\" is not a number"),
             (&good, "0 0 0\n1 0 1e160\n", 11, "at most 1.4e45"),
             (&good, "0 0 0\n1 nan 0\n", 11, "finite"),
@@ -207,7 +206,7 @@ mod tests {
                 &good,
                 "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
                 13,
-                "number 3 from 0",
+                "vertex 3 (4 if counted from 1)",
             ),
             (
                 &good,
@@ -240,40 +239,40 @@ mod tests {
                 &good.replace("uint", "uint64"),
                 "",
                 8,
-                "\"uint64\" is not a type",
+                "\"uint64\" is not a number type",
             ),
             (&good.replace("uchar", "float"), "", 8, "whole number"),
             (
                 &good.replace("property double z\n", ""),
                 "",
                 3,
-                "no property \"z\"",
+                "no scalar property \"z\"",
             ),
             (&good.replace("vertex_indices", "corners"), "", 7, "no list"),
             (
                 &good.replace("vertex 3", "vertex many"),
                 "",
                 3,
-                "\"many\" is not a number of",
+                "the number of records is \"many\"",
             ),
             (&good.replace("vertex 3", "vertex"), "", 3, "needs a number"),
             (
                 &format!("{good}{FACES}"),
                 "",
                 9,
-                "line 7 has an element \"face\" already",
+                "line 7 already declares an element \"face\"",
             ),
             (
                 &good.replace("double y", "double x"),
                 "",
                 5,
-                "has a property \"x\" already",
+                "already has a property \"x\"",
             ),
             (
                 &format!("{good}elements 3\n"),
                 "",
                 9,
-                "\"elements\" is not a word",
+                "\"elements\" is not a header keyword",
             ),
             (
                 &format!("property int a\n{good}"),
@@ -291,7 +290,7 @@ mod tests {
                 &format!("{good}element foo 1000000000\n"),
                 "",
                 9,
-                "no properties, so there cannot be 1000000000",
+                "has 1000000000 records but no properties",
             ),
         ] {
             let error = error(&ascii(elements, data));
@@ -300,7 +299,7 @@ mod tests {
         }
         for (bytes, line, message) in [
             (&b"plyx\n"[..], 1, "\"ply\""),
-            (b"ply\nformat text 1.0\n", 2, "\"text\" is not a format"),
+            (b"ply\nformat text 1.0\n", 2, "\"text\" is not a PLY format"),
             (b"ply\nend_header\n", 2, "no line \"format\""),
             (b"ply\nformat ascii 1.0", 2, "end_header is missing"),
         ] {
@@ -311,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_binary_file_promises_is_compared_with_its_length() {
+    fn declared_sizes_are_compared_with_the_length_of_a_binary_file() {
         let header = |elements: &str| {
             format!("ply\nformat binary_little_endian 1.0\n{elements}end_header\n").into_bytes()
         };

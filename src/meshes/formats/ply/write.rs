@@ -1,7 +1,7 @@
 //! Stanford PLY, `binary_little_endian 1.0`: three f64 a vertex, and triangles
 //! as lists of a `uchar` count and `uint` vertices.
 //!
-//! All vertices stand before all triangles, so the scene is walked twice.
+//! All vertices precede all triangles, so the writer walks the scene twice.
 
 use std::io::Write;
 
@@ -16,7 +16,7 @@ const VERTEX_BYTES: u128 = 24;
 /// A `uchar` and three `uint`.
 const TRIANGLE_BYTES: u128 = 13;
 
-/// Refuses more vertices than faces can name.
+/// Rejects more vertices than faces can index.
 pub(super) fn check(plan: &Plan) -> Result<(), MeshFileError> {
     let vertices = plan.vertices();
     if vertices > u128::from(u32::MAX) {
@@ -62,7 +62,7 @@ pub(super) fn write(
                 writer.write_all(&bytes)?;
                 proceed(progress, triangles.len())?;
             }
-            // The greatest first is the number of all vertices, which fits.
+            // The last sum is the number of all vertices, which fits.
             first += mesh_size_of(&solid, plan.segments()).0 as u32;
         }
         Ok(())

@@ -1,4 +1,4 @@
-//! The zip archive that a 3MF file is.
+//! The zip archive of a 3MF file.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -14,7 +14,7 @@ use crate::scene::limits::MOST_PART_BYTES;
 use crate::scene::names::quoted;
 use crate::scene::source::Source;
 
-/// An archive, and where the scene file names it.
+/// An archive, with its place in the scene file.
 pub(super) struct Package<'a> {
     source: &'a Source,
     file: &'a Spanned<String>,
@@ -52,13 +52,13 @@ impl<'a> Package<'a> {
         })
     }
 
-    /// The error that something is wrong with the archive as a whole.
+    /// An error of the archive as a whole.
     pub fn error(&self, message: String) -> SceneError {
         let message = format!("{}: {message}", self.path.display());
         self.source.error(self.file.span(), message)
     }
 
-    /// The name of a part in the archive: names are compared without case.
+    /// The name of a part in the archive; case is ignored.
     fn stored_name(&self, name: &str) -> String {
         if self.archive.index_for_name(name).is_some() {
             return name.to_owned();
@@ -73,8 +73,8 @@ impl<'a> Package<'a> {
         let path = self.path.join(name);
         let mut bytes = Vec::new();
         let stored = self.stored_name(name);
-        // The stated length of a part is checked before it is unpacked. As it may be wrong,
-        // unpacking stops at the limit too.
+        // The stated length of a part is checked before it is unpacked. It may be wrong, so
+        // unpacking also stops at the limit.
         let read = self.archive.by_name(&stored).and_then(|part| {
             let stated = part.size();
             if stated <= MOST_PART_BYTES {
@@ -86,12 +86,12 @@ impl<'a> Package<'a> {
             Ok(length) if length <= MOST_PART_BYTES => {}
             Ok(_) => {
                 return Err(self.error(format!(
-                    "{} is larger than {MOST_PART_BYTES} bytes, the most that is read",
+                    "{} is larger than the limit of {MOST_PART_BYTES} bytes",
                     quoted(name)
                 )));
             }
             Err(ZipError::FileNotFound) => {
-                return Err(self.error(format!("the archive holds no {}", quoted(name))));
+                return Err(self.error(format!("the archive contains no {}", quoted(name))));
             }
             Err(error) => {
                 return Err(self.error(format!("cannot read {}: {error}", quoted(name))));

@@ -1,7 +1,7 @@
-//! The number of solids of a beam lattice, before any is made.
+//! Counts the solids of a beam lattice before they are made.
 //!
-//! The model is read for it and forgotten: an object is in the file once and may be
-//! placed many times, so that only the model as a whole says how many solids there will be.
+//! This reads the whole model and drops it: an object may be placed many times, so only
+//! the whole model determines the number of solids.
 
 use std::collections::BTreeSet;
 
@@ -17,8 +17,8 @@ use crate::scene::error::SceneError;
 use crate::scene::source::Source;
 use crate::solid::SolidKind;
 
-/// Counts the solids of a `[[beam_lattice]]`. Half a ball counts also if a greater ball at its
-/// vertex will contain it.
+/// Counts the solids of a `[[beam_lattice]]`. A half ball counts even if a greater ball at
+/// its vertex will contain it.
 pub(super) fn count(
     source: &Source,
     file: &Spanned<String>,
@@ -27,7 +27,7 @@ pub(super) fn count(
 ) -> Result<(), SceneError> {
     let part = package::model_part(source, file)?;
     let document = package::parsed(&part)?;
-    // Meshes make no solids, whether they are an error or not.
+    // Meshes add no solids, whether they are an error or not.
     let model = Model::new(&Element::root(&part.path, &document), true)?;
     for placed in &model.placed {
         let kinds = Kinds::of(&placed.lattice);

@@ -1,4 +1,4 @@
-//! An element of the model's XML: its attributes, and errors that name its line.
+//! An XML element of the model: its attributes, and errors that name its line.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use roxmltree::{Document, Node};
 use crate::scene::error::SceneError;
 use crate::scene::names::{quoted, suggestion};
 
-/// 3MF itself.
+/// The core of 3MF.
 pub(super) const CORE: &str = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
 /// The extension for beam lattices.
 pub(super) const BEAM_LATTICE: &str =
@@ -16,16 +16,16 @@ pub(super) const BEAM_LATTICE: &str =
 /// Its extension for balls.
 pub(super) const BALLS: &str =
     "http://schemas.microsoft.com/3dmanufacturing/beamlattice/balls/2020/07";
-/// Objects in several parts. Its identifiers change nothing; its paths are refused.
+/// Objects in several parts. Its identifiers have no effect; its paths are rejected.
 pub(super) const PRODUCTION: &str =
     "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
 
-/// How far `MᵀM` may be from `s² 1`, as a share of `s²`, for `M` to count as a
-/// rotation and a scale. Files state entries in decimals: with four of them those of
-/// a rotation are off by 5e-5 each, so an entry of `MᵀM`, the product of two unit
-/// columns, by 5e-5 times the sums of their entries' sizes, at most `2 √3 · 5e-5`.
-/// `s²` is the mean of three of them, from which one is 4/3 of that away at most:
-/// `4/3 · 2 √3 · 5e-5 < 2.4e-4`.
+/// How far an entry of `MᵀM` may be from that of `s² 1`, relative to `s²`, for `M` to
+/// count as a rotation and a scale. Files state entries in decimals. With four
+/// decimals the entries of a rotation are off by up to 5e-5, so an entry of `MᵀM`, the
+/// product of two unit columns, is off by 5e-5 times the sums of the sizes of their
+/// entries, at most `2 √3 · 5e-5`. `s²` is the mean of three entries, and one of them
+/// differs from the mean by at most 4/3 of that: `4/3 · 2 √3 · 5e-5 < 2.4e-4`.
 const LARGEST_UNEVENNESS: f64 = 2.4e-4;
 
 /// An element.
@@ -44,7 +44,7 @@ pub(super) struct Similarity {
 }
 
 impl Similarity {
-    /// Leaves everything as it is.
+    /// The identity.
     pub const IDENTITY: Self = Self {
         parent_from_child: DAffine3::IDENTITY,
         scale: 1.0,
@@ -72,22 +72,22 @@ impl<'a, 'input> Element<'a, 'input> {
         format!("{}:{line}", self.path.display())
     }
 
-    /// Where it begins, in bytes.
+    /// The byte at which it begins.
     pub fn place(&self) -> usize {
         self.node.range().start
     }
 
-    /// That `message` is true of this element.
+    /// An error about this element.
     pub fn error(&self, message: impl Into<String>) -> SceneError {
         self.error_at(self.place(), message, None)
     }
 
-    /// That `message` is true of this element, and what to do about it.
+    /// An error about this element, with advice.
     pub fn error_with_help(&self, message: impl Into<String>, help: &str) -> SceneError {
         self.error_at(self.place(), message, Some(help))
     }
 
-    /// That `message` is true of a place in this element's document.
+    /// An error about a place in this element's document.
     pub fn error_at(
         &self,
         place: usize,
@@ -103,19 +103,19 @@ impl<'a, 'input> Element<'a, 'input> {
         }
     }
 
-    /// Whether it is the element of a name in 3MF itself.
+    /// Whether it is the core element of this name.
     pub fn is(&self, name: &str) -> bool {
         self.node.has_tag_name((CORE, name))
     }
 
-    /// Whether it is the element of a name in one of the two extensions for
-    /// beam lattices.
+    /// Whether it is the element of this name in one of the two extensions for beam
+    /// lattices.
     fn is_of_lattice(&self, name: &str) -> bool {
         self.node.has_tag_name((BEAM_LATTICE, name)) || self.node.has_tag_name((BALLS, name))
     }
 
-    /// Refuses a child with one of these names that is in no namespace of a beam
-    /// lattice: what it states would be left out silently.
+    /// Rejects a child with one of these names that is in no namespace of beam lattices:
+    /// its content would be ignored silently.
     pub fn refuse_foreign(&self, names: &[&str]) -> Result<(), SceneError> {
         let mut children = self.children();
         let foreign = children
@@ -124,29 +124,29 @@ impl<'a, 'input> Element<'a, 'input> {
             let name = child.name();
             let namespace = quoted(child.node.tag_name().namespace().unwrap_or_default());
             Err(child.error(format!(
-                "<{name}> is in the namespace {namespace}: that of beam lattices is {BEAM_LATTICE}"
+                "<{name}> is in the namespace {namespace}: the namespace of beam lattices is {BEAM_LATTICE}"
             )))
         })
     }
 
-    /// The elements in it.
+    /// The child elements.
     fn children(&self) -> impl Iterator<Item = Self> + use<'a, 'input> {
         let path = self.path;
         let elements = self.node.children().filter(Node::is_element);
         elements.map(move |node| Self { path, node })
     }
 
-    /// The elements in it of a name in 3MF itself.
+    /// The core child elements of a name.
     pub fn all<'n>(&self, name: &'n str) -> impl Iterator<Item = Self> + use<'a, 'input, 'n> {
         self.children().filter(move |child| child.is(name))
     }
 
-    /// The first of them.
+    /// The first core child element of a name.
     pub fn first(&self, name: &str) -> Option<Self> {
         self.all(name).next()
     }
 
-    /// The elements in it of a name in the extensions for beam lattices.
+    /// The child elements of a name in the extensions for beam lattices.
     pub fn all_of_lattice<'n>(
         &self,
         name: &'n str,
@@ -155,7 +155,7 @@ impl<'a, 'input> Element<'a, 'input> {
             .filter(move |child| child.is_of_lattice(name))
     }
 
-    /// An attribute of no namespace.
+    /// An attribute without a namespace.
     pub fn attribute(&self, name: &str) -> Option<&'a str> {
         self.node.attribute(name).map(str::trim)
     }
@@ -165,7 +165,7 @@ impl<'a, 'input> Element<'a, 'input> {
         self.node.attribute((namespace, name)).map(str::trim)
     }
 
-    /// The namespace that a prefix means.
+    /// The namespace of a prefix.
     pub fn namespace(&self, prefix: &str) -> Option<&'a str> {
         self.node.lookup_namespace_uri(Some(prefix))
     }
@@ -175,17 +175,17 @@ impl<'a, 'input> Element<'a, 'input> {
         self.node.tag_name().name()
     }
 
-    /// That an attribute must be there.
+    /// The error of a missing attribute.
     fn missing(&self, name: &str) -> SceneError {
         self.error(format!("<{}> has no {name}", self.name()))
     }
 
-    /// An attribute that must be there.
+    /// A required attribute.
     pub fn required(&self, name: &str) -> Result<&'a str, SceneError> {
         self.attribute(name).ok_or_else(|| self.missing(name))
     }
 
-    /// The number of a resource, which must be stated.
+    /// The number of a resource, a required attribute.
     pub fn id(&self, name: &str) -> Result<u32, SceneError> {
         let text = self.required(name)?;
         let id = text.parse().ok();
@@ -199,7 +199,7 @@ impl<'a, 'input> Element<'a, 'input> {
         })
     }
 
-    /// The finite number that a text of this element is.
+    /// Parses a text of this element as a finite number.
     fn finite(&self, name: &str, text: &str) -> Result<f64, SceneError> {
         let number = text.parse().ok().filter(|number: &f64| number.is_finite());
         number.ok_or_else(|| {
@@ -221,7 +221,7 @@ impl<'a, 'input> Element<'a, 'input> {
         ))
     }
 
-    /// A length that is stated here, 0 or more.
+    /// An optional length, 0 or more.
     pub fn length(&self, name: &str) -> Result<Option<f64>, SceneError> {
         let text = self
             .attribute(name)
@@ -238,25 +238,25 @@ impl<'a, 'input> Element<'a, 'input> {
         .transpose()
     }
 
-    /// A length that must be stated here.
+    /// A required length.
     pub fn required_length(&self, name: &str) -> Result<f64, SceneError> {
         self.length(name)?.ok_or_else(|| self.missing(name))
     }
 
-    /// The number of one of `count` vertices.
+    /// The number of a vertex, below `count`.
     pub fn vertex(&self, name: &str, count: usize) -> Result<usize, SceneError> {
         let text = self.required(name)?;
         let number = text.parse().ok().filter(|&number: &usize| number < count);
         number.ok_or_else(|| {
             let element = self.name();
             self.error(format!(
-                "{name} of <{element}> is {}: it must be the number of one of the {count} vertices, which count from 0",
+                "{name} of <{element}> is {}: it must be a vertex number, from 0 and below {count}",
                 quoted(text)
             ))
         })
     }
 
-    /// The meaning of an attribute that is one of a few words, where it is stated.
+    /// The meaning of an optional attribute that is one of a few words.
     pub fn choose<T: Copy>(
         &self,
         name: &str,
@@ -278,8 +278,8 @@ impl<'a, 'input> Element<'a, 'input> {
         })
     }
 
-    /// The `transform`, four rows of three numbers for points as rows, or the
-    /// identity.
+    /// The `transform`: four rows of three numbers, for points as row vectors. The
+    /// default is the identity.
     pub fn transform(&self) -> Result<Similarity, SceneError> {
         let Some(text) = self.attribute("transform") else {
             return Ok(Similarity::IDENTITY);
@@ -291,7 +291,7 @@ impl<'a, 'input> Element<'a, 'input> {
             let count = numbers.len();
             return Err(self.error(format!("transform has {count} numbers: it needs 12")));
         };
-        // Rows for points as rows are columns for points as columns.
+        // The rows for row vectors are the columns for column vectors.
         let parent_from_child = DAffine3::from_cols_array(&numbers);
         let matrix = parent_from_child.matrix3;
         let gram = matrix.transpose() * matrix;
@@ -299,11 +299,11 @@ impl<'a, 'input> Element<'a, 'input> {
         let off = gram - DMat3::from_diagonal(DVec3::splat(squared));
         let off = off.to_cols_array().into_iter();
         let off = off.fold(0.0, |greatest: f64, entry| greatest.max(entry.abs()));
-        // Neither zeros nor numbers beyond f64 pass this.
+        // Zeros and numbers beyond f64 fail this.
         if !(off <= LARGEST_UNEVENNESS * squared && squared > 0.0 && squared.is_finite()) {
             return Err(self.error_with_help(
-                "transform does more than to turn, mirror, scale evenly and move: beams would no longer be round",
-                "take it out of the file, put the lattice into a [[prototype]] and the transform into the matrix of an [[instance]]",
+                "transform does more than rotate, mirror, scale uniformly and translate: beams would no longer be round",
+                "remove it from the file, put the lattice into a [[prototype]] and place that by an [[instance]] with the transform as its matrix",
             ));
         }
         Ok(Similarity {

@@ -8,18 +8,18 @@ use super::element::Element;
 use super::notes::ObjectNotes;
 use crate::scene::error::SceneError;
 
-/// How a beam ends.
+/// The cap at an end of a beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Cap {
-    /// With a ball of the end's radius.
+    /// A ball of the end's radius.
     Sphere,
-    /// With the outer half of that ball.
+    /// The outer half of that ball.
     Hemisphere,
     /// Flat.
     Butt,
 }
 
-/// How a mesh clips a lattice.
+/// The ways in which a mesh clips a lattice.
 const CLIPPING: [(&str, ()); 3] = [("none", ()), ("inside", ()), ("outside", ())];
 
 const CAPS: [(&str, Cap); 3] = [
@@ -28,33 +28,33 @@ const CAPS: [(&str, Cap); 3] = [
     ("butt", Cap::Butt),
 ];
 
-/// A part of a cone between two vertices.
+/// A cylinder or truncated cone between two vertices.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beam {
-    /// Where it is in the file, in bytes.
+    /// The byte at which it begins in the file.
     pub place: usize,
     /// The numbers of its vertices.
     pub vertices: [usize; 2],
     pub radii: [f64; 2],
     pub caps: [Cap; 2],
-    /// Whether it is shorter than the lattice's `minlength`: then it is not there.
+    /// Whether it is shorter than the lattice's `minlength`: such a beam is ignored.
     pub is_short: bool,
 }
 
-/// What is added at an end of a beam.
+/// The solid added at an end of a beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum End {
     /// Nothing.
     Flat,
     /// The ball of the end's radius.
     Ball,
-    /// The half of it that is beyond the end.
+    /// The half of that ball beyond the end.
     Half,
 }
 
 impl Beam {
-    /// What is added at end 0 or 1, for these radii and this length. Half a ball is the
-    /// whole one where its other half is inside the beam.
+    /// The solid added at end 0 or 1, for these radii and this length. A whole ball
+    /// replaces a half ball if its other half is inside the beam.
     pub fn end(&self, end: usize, radii: [f64; 2], length: f64) -> End {
         let fits = radii[end] <= radii[1 - end] && length >= radii[end];
         match self.caps[end] {
@@ -70,7 +70,7 @@ impl Beam {
 pub(super) struct Lattice {
     pub vertices: Vec<DVec3>,
     pub beams: Vec<Beam>,
-    /// The radii of the balls that are stated, by the numbers of their vertices.
+    /// The radii of the balls, by vertex number.
     pub balls: BTreeMap<usize, f64>,
 }
 
@@ -78,37 +78,39 @@ pub(super) struct Lattice {
 #[derive(Clone, Copy, PartialEq)]
 enum BallMode {
     None,
-    /// Those with a stated ball.
+    /// Those with a `<ball>`.
     Mixed,
-    /// All at which a beam ends.
+    /// All ends of beams.
     All,
 }
 
 impl Lattice {
-    /// The lattice of a `<mesh>`, if it has one. With `skips_meshes`, triangles are left
-    /// out; they are an error otherwise.
+    /// The lattice of a `<mesh>`, if it has one. With `skips_meshes` triangles are ignored;
+    /// otherwise they are an error.
     pub fn new(
         mesh: &Element,
         skips_meshes: bool,
         notes: &mut ObjectNotes,
     ) -> Result<Option<Self>, SceneError> {
-        let mut refused = |what: &Element, message: &str, note: &str| match skips_meshes {
+        let mut reject = |what: &Element, message: &str, note: &str| {
+            match skips_meshes {
             true => {
                 notes.add(note);
                 Ok(())
             }
             false => Err(what.error_with_help(
                 message,
-                "cyltrace traces no triangles; meshes = \"skip\" in the scene file leaves them out",
+                "cyltrace does not trace triangles; meshes = \"skip\" in the scene file ignores them",
             )),
+        }
         };
         if let Some(triangles) = mesh.first("triangles")
             && triangles.first("triangle").is_some()
         {
-            refused(
+            reject(
                 &triangles,
                 "this object has triangles",
-                "its triangles are left out, which are a part of what the file builds",
+                "its triangles are ignored, although they are part of the object",
             )?;
         }
         mesh.refuse_foreign(&["beamlattice"])?;
@@ -117,20 +119,19 @@ impl Lattice {
             return Ok(None);
         };
         if let Some(second) = lattices.next() {
-            return Err(
-                second.error("a mesh has one <beamlattice> at most: put its beams into the first")
-            );
+            return Err(second
+                .error("a mesh can have only one <beamlattice>: put its beams into the first"));
         }
         keys.refuse_foreign(&["beams", "balls"])?;
-        // The drafts called it `clipping`, and their files are still about.
+        // Drafts of the extension called it `clipping`, and such files are still in use.
         let clipping = keys.attribute("clippingmode");
         let clipping = clipping.or_else(|| keys.attribute("clipping"));
         if clipping.is_some_and(|mode| mode != "none") {
             keys.choose("clippingmode", &CLIPPING)?;
-            refused(
+            reject(
                 &keys,
                 "this lattice is clipped by a mesh",
-                "its lattice is clipped by a mesh, which is left out: all of the lattice is read",
+                "its lattice is clipped by a mesh: the mesh is ignored and the whole lattice is read",
             )?;
         }
         let vertices = mesh.first("vertices");
@@ -172,9 +173,9 @@ fn beams(keys: &Element, vertices: &[DVec3]) -> Result<Vec<Beam>, SceneError> {
             (None, None) => [radius; 2],
             (None, Some(r2)) => {
                 return Err(element.error_with_help(
-                    "<beam> has an r2 but no r1: state both, or r1, or none",
+                    "<beam> has an r2 but no r1: give both, only r1, or neither",
                     &format!(
-                        "programs that read it nevertheless take the lattice's radius for r1: write r1=\"{radius}\" r2=\"{r2}\" for that"
+                        "some programs use the lattice's radius as r1: to do the same, write r1=\"{radius}\" r2=\"{r2}\""
                     ),
                 ));
             }
@@ -207,12 +208,12 @@ fn balls(
     let mut lists = keys.all_of_lattice("balls").peekable();
     if mode == BallMode::None {
         if lists.peek().is_some() {
-            notes.add("it states balls but no ballmode, which means that there are none: write ballmode=\"mixed\" and a ballradius for those that are stated");
+            notes.add("its balls are ignored because it has no ballmode: add ballmode=\"mixed\" and a ballradius to read them");
         }
         return Ok(balls);
     }
     let Some(radius) = keys.length("ballradius")? else {
-        let message = "<beamlattice> has a ballmode but no ballradius";
+        let message = "<beamlattice> has a ballmode but no ballradius: add one";
         return Err(keys.error(message));
     };
     let mut ends = vec![false; vertices];
@@ -228,14 +229,14 @@ fn balls(
         let vertex = element.vertex("vindex", vertices)?;
         if !ends[vertex] {
             return Err(element.error(format!(
-                "vindex of <ball> is {vertex}: no beam ends at this vertex"
+                "vindex of <ball> is {vertex}: a ball must be at an end of a beam"
             )));
         }
         let radius = element.length("r")?.unwrap_or(radius);
         if radius == 0.0 {
             return Err(element.error("the ball has the radius 0: it must be positive"));
         }
-        // The balls of a lattice are united: of two at a vertex the greater one stays.
+        // A lattice is the union of its balls, so the larger of two at a vertex remains.
         let greatest = stated.entry(vertex).or_insert(radius);
         *greatest = radius.max(*greatest);
     }

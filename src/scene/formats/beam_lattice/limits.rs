@@ -1,15 +1,18 @@
-//! Refuses texts in XML that take more time to read than is linear in their length.
+//! Rejects XML texts whose parsing takes more than linear time.
 //!
 //! The parser compares each attribute of an element with those before it, and an element
-//! that declares a namespace copies those of the elements around it. So the attributes of an
-//! element and the prefixes of namespaces are limited before it runs, in one pass over the
-//! bytes that knows no more of XML than where tags, quotes and comments end.
+//! that declares a namespace copies those of the elements around it. So the number of
+//! attributes of an element and of namespace prefixes is limited before the parser runs, in
+//! one pass over the bytes that only detects where tags, quotes and comments end.
 
 use std::collections::HashSet;
 
 use crate::scene::limits::{MOST_ATTRIBUTES, MOST_NAMESPACES};
 
-/// What is too much in a text, and the byte where it is.
+/// Checks the limits.
+///
+/// # Errors
+/// The byte at which a limit is exceeded, and a message.
 pub(super) fn check(text: &str) -> Result<(), (usize, String)> {
     let bytes = text.as_bytes();
     let mut prefixes = HashSet::new();
@@ -26,7 +29,7 @@ pub(super) fn check(text: &str) -> Result<(), (usize, String)> {
     Ok(())
 }
 
-/// Goes through the tag at `start` and to its end.
+/// Checks the tag at `start` and returns its end.
 fn tag<'a>(
     bytes: &'a [u8],
     start: usize,
@@ -52,7 +55,8 @@ fn tag<'a>(
             .find(|word| !word.is_empty())
             .unwrap_or_default();
         if name.starts_with(b"xmlns") && prefixes.insert(name) && prefixes.len() > MOST_NAMESPACES {
-            let message = format!("the text declares more than {MOST_NAMESPACES} prefixes");
+            let message =
+                format!("the text declares more than {MOST_NAMESPACES} namespace prefixes");
             return Err((start, message));
         }
         at = after(bytes, end + 1, &bytes[end..=end]);
@@ -83,7 +87,7 @@ mod tests {
         let (at, message) = check(&more).unwrap_err();
         assert!(more[at..].starts_with("<b"), "{at}");
         assert!(message.contains("more than 256 attributes"), "{message}");
-        // Not what is no tag.
+        // Text outside of tags is not limited.
         for (start, end) in [
             ("<!--", "-->"),
             ("<![CDATA[", "]]>"),
@@ -104,7 +108,10 @@ mod tests {
         };
         assert_eq!(check(&nested(MOST_NAMESPACES).repeat(3)), Ok(()));
         let (_, message) = check(&nested(MOST_NAMESPACES + 1)).unwrap_err();
-        assert!(message.contains("more than 256 prefixes"), "{message}");
+        assert!(
+            message.contains("more than 256 namespace prefixes"),
+            "{message}"
+        );
     }
 
     #[test]

@@ -1,23 +1,22 @@
-//! Beam lattices in 3MF: `archive` unpacks the file, `package` finds the model, `model` the
-//! objects that it builds, `lattice` the beams and balls of one, `element` reads
-//! XML, `limits` refuses what would take too long, `notes` collects notes for the user,
-//! `counted` computes the number of solids beforehand. Here they become solids.
+//! Beam lattices in 3MF: `archive` unpacks the file, `package` finds the model, `model`
+//! reads the objects that it builds, `lattice` the beams and balls of one, `element` reads
+//! XML, `limits` rejects texts that would take too long, `notes` collects notes for the
+//! user, `counted` counts the solids in advance. This file makes the solids.
 //!
-//! **What a beam is.** The specification (3MF Beam Lattice Extension, 2.1.1) makes it
-//! a frustum, united at either end with what the end's cap is: nothing for `butt`, the
-//! ball of the end's radius for `sphere`, the outer half of that ball for
-//! `hemisphere`. All beams and balls of a lattice are united. So a frustum is a
-//! [`Cylinder`] or, where its radii differ, a [`Cone`], and at each vertex there is one
-//! [`Sphere`]: of all the balls there the greatest, which contains the others. (A rounded
-//! cone is another solid: its flank touches its balls, a beam's goes through the
-//! circles at its vertices.)
+//! **Beams.** The specification (3MF Beam Lattice Extension, 2.1.1) defines a beam as the
+//! union of a frustum and a cap at either end: nothing for `butt`, the ball of the end's
+//! radius for `sphere`, the outer half of that ball for `hemisphere`. A lattice is the
+//! union of its beams and balls. So a frustum becomes a [`Cylinder`] or, if its radii
+//! differ, a [`Cone`], and each vertex gets one [`Sphere`]: the largest of its balls, which
+//! contains the others. (A rounded cone is another solid: its side is tangent to its balls,
+//! while a beam's passes through the circles at its vertices.)
 //!
-//! **Half a ball** is the whole one to the union wherever its other half is inside the
-//! frustum, whose radius is nowhere less than the end's: at the end where the beam is
-//! not thicker than at the other, if the beam is at least as long as that radius.
-//! Where it is not, it is the intersection of the ball with a cylinder that begins at
-//! the end and is wider and higher than the half; unless the ball at the vertex contains
-//! it anyway.
+//! **Half balls.** If the other half is inside the frustum, the whole ball gives the same
+//! union. It is inside where the radius of the frustum is nowhere less than the end's: at
+//! the end that is not thicker than the other, if the beam is at least as long as that
+//! radius. Otherwise the half ball is the intersection of the ball with a cylinder that
+//! begins at the end and is wider and higher than the half. It is omitted if the ball at
+//! the vertex contains it.
 
 #[cfg_attr(not(feature = "three-mf"), path = "no_archive.rs")]
 mod archive;
@@ -61,11 +60,11 @@ pub(in crate::scene) struct BeamLatticeKeys {
     material: Option<Spanned<String>>,
 }
 
-/// How a file is read.
+/// The settings for reading a file.
 struct BeamLattice {
-    /// The unit of the scene, in micrometers; without it, the file's.
+    /// The unit of the scene, in micrometers; the file's unit by default.
     unit: Option<f64>,
-    /// Whether meshes are left out; they are an error otherwise.
+    /// Whether meshes are ignored; otherwise they are an error.
     skips_meshes: bool,
     material: MaterialIndex,
     degenerate: Degenerate,
@@ -82,7 +81,7 @@ impl SolidFile for BeamLatticeKeys {
     }
 
     fn count(&self, source: &Source, records: Records, solids: &mut ExpectedSolids) {
-        // Loading makes nothing of what cannot be read.
+        // Loading reports the errors, and adds no solids then.
         let _ = count(source, &self.file, records, solids);
     }
 
@@ -132,11 +131,10 @@ impl BeamLatticeKeys {
     }
 }
 
-/// The number of beams that the model part of a 3MF file builds: what is read of it, without
-/// the archive around it.
+/// The number of beams in the model part of a 3MF file, given its text without the archive.
 ///
 /// # Errors
-/// Those of [`scene::load`](crate::scene::load()) for the file.
+/// The same as [`scene::load`](crate::scene::load()) for such a file.
 pub fn beams_of_model(text: &str) -> Result<u64, SceneError> {
     let part = package::Part {
         path: "model".into(),
@@ -149,7 +147,7 @@ pub fn beams_of_model(text: &str) -> Result<u64, SceneError> {
     Ok(beams.sum())
 }
 
-/// Two whole numbers without their common factors.
+/// Divides two whole numbers by their greatest common divisor.
 fn lowest(one: f64, other: f64) -> (f64, f64) {
     let (mut factor, mut rest) = (one, other);
     while rest != 0.0 {
@@ -158,14 +156,13 @@ fn lowest(one: f64, other: f64) -> (f64, f64) {
     (one / factor, other / factor)
 }
 
-/// A lattice on its way into a scene.
+/// Turns a lattice into solids of a scene.
 struct Lowering<'a, 'input> {
     source: &'a Source,
     file: &'a Spanned<String>,
     root: Element<'a, 'input>,
     place: &'a Similarity,
-    /// What to multiply lengths with and to divide them by: one rounding where one of
-    /// them is 1.
+    /// The factor and divisor of lengths; they cause one rounding if one of them is 1.
     units: (f64, f64),
     keys: &'a BeamLattice,
     solids: &'a mut SolidCollector,
@@ -239,13 +236,13 @@ impl Lowering<'_, '_> {
         pushed.map_err(|refusal| self.refused(&refusal))
     }
 
-    /// That a solid is not added.
+    /// The error that a solid cannot be added.
     fn refused(&self, refusal: &Refusal) -> SceneError {
         let in_file = |message, help: Option<&str>| self.root.error_at(0, message, help);
         refusal.in_row(self.source, self.file, in_file)
     }
 
-    /// The beam without its caps, or `None` where it is to be left out.
+    /// The beam without its caps, or `None` if it is skipped.
     fn frustum(
         &self,
         beam: &Beam,
@@ -277,7 +274,7 @@ impl Lowering<'_, '_> {
 struct Half {
     vertex: usize,
     center: DVec3,
-    /// Along the beam, of its length.
+    /// The outward vector along the beam, of the beam's length.
     outward: DVec3,
     radius: f64,
 }

@@ -1,5 +1,5 @@
-//! The model of a 3MF file: which objects its `<build>` puts where, through
-//! however many components, and how long its unit is.
+//! The model of a 3MF file: its unit, and the objects that its `<build>` places directly
+//! or through components.
 
 use std::collections::HashMap;
 
@@ -10,8 +10,8 @@ use crate::scene::error::SceneError;
 use crate::scene::limits::MOST_PLACES;
 use crate::scene::names::quoted;
 
-/// Extensions without which a file may not be read, and which are: of materials
-/// and of production only what does not matter here.
+/// The extensions that a file may require. Materials do not affect geometry; of the
+/// production extension only the identifiers are accepted.
 const EXTENSIONS: [&str; 4] = [
     BEAM_LATTICE,
     BALLS,
@@ -19,7 +19,7 @@ const EXTENSIONS: [&str; 4] = [
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
 ];
 
-/// What an object is for, and whether it may have a beam lattice.
+/// The types of objects, and whether each may have a beam lattice.
 const TYPES: [(&str, Type); 5] = [
     ("model", Type::WithLattice),
     ("solidsupport", Type::WithLattice),
@@ -33,11 +33,11 @@ const TYPES: [(&str, Type); 5] = [
 enum Type {
     WithLattice,
     WithoutLattice,
-    /// It may not be built by itself either.
+    /// Without a lattice, and not an item of the build either.
     Other,
 }
 
-/// The units of lengths, and how many micrometers each is.
+/// The units of length in micrometers.
 pub(super) const UNITS: [(&str, f64); 6] = [
     ("micron", 1.0),
     ("millimeter", 1e3),
@@ -47,19 +47,19 @@ pub(super) const UNITS: [(&str, f64); 6] = [
     ("meter", 1e6),
 ];
 
-/// An object with a lattice, and where it is.
+/// An object with a lattice, and its placements.
 pub(super) struct Placed {
     pub lattice: Lattice,
     pub places: Vec<Similarity>,
 }
 
-/// What a file contains, in its own unit.
+/// The content of a file, in its own unit.
 pub(super) struct Model {
     /// The unit, in micrometers.
     pub unit: f64,
     /// In the order of the objects in the file.
     pub placed: Vec<Placed>,
-    /// What is left out, and what other programs may read differently.
+    /// Notes on ignored content, and on content that other programs may read differently.
     pub notes: Vec<String>,
 }
 
@@ -67,7 +67,9 @@ impl Model {
     /// Reads the model from its outermost element.
     pub fn new(model: &Element, skips_meshes: bool) -> Result<Self, SceneError> {
         if !model.is("model") {
-            return Err(model.error(format!("this is no 3MF model: {CORE} has <model>")));
+            return Err(model.error(format!(
+                "this is not a 3MF model: the root must be <model> in {CORE}"
+            )));
         }
         check_extensions(model)?;
         let unit = model.choose("unit", &UNITS)?.unwrap_or(1e3);
@@ -86,12 +88,12 @@ impl Model {
             }
         }
         if placed.iter().all(|placed| placed.lattice.beams.is_empty()) {
-            return Err(model.error("the file builds no object with beams"));
+            return Err(model.error("the <build> of the file contains no object with beams"));
         }
         if !requires(model, BEAM_LATTICE) {
             notes.add(
                 model,
-                "the model does not require the extension for beam lattices, so that other programs may leave them out: write its prefix into requiredextensions",
+                "the model does not require the extension for beam lattices, so other programs may ignore them: add its prefix to requiredextensions",
             );
         }
         let notes = notes.into_lines();
@@ -103,13 +105,13 @@ impl Model {
     }
 }
 
-/// Notes a lattice in an object that may not have one.
+/// Adds a note if an object has a lattice although its type does not allow one.
 fn check_type(object: &Element, notes: &mut Notes) -> Result<(), SceneError> {
     let is_for = object.choose("type", &TYPES)?.unwrap_or(Type::WithLattice);
     if is_for != Type::WithLattice {
         let word = quoted(object.attribute("type").unwrap_or_default());
         notes.of(object).add(&format!(
-            "its type is {word}, and only objects of type \"model\" or \"solidsupport\" may have a beam lattice: it is read, where other programs may leave it out"
+            "its type is {word}, but only objects of type \"model\" or \"solidsupport\" may have a beam lattice: cyltrace reads it, other programs may ignore it"
         ));
     }
     Ok(())
@@ -122,7 +124,7 @@ fn requires(model: &Element, extension: &str) -> bool {
     required.any(|prefix| model.namespace(prefix) == Some(extension))
 }
 
-/// Refuses a model that requires an extension that is not known here.
+/// Rejects a model that requires an unsupported extension.
 fn check_extensions(model: &Element) -> Result<(), SceneError> {
     let required = model.attribute("requiredextensions").unwrap_or_default();
     for prefix in required.split_whitespace() {
@@ -130,18 +132,18 @@ fn check_extensions(model: &Element) -> Result<(), SceneError> {
         if !namespace.is_some_and(|namespace| EXTENSIONS.contains(&namespace)) {
             let what = quoted(namespace.unwrap_or(prefix));
             return Err(model.error_with_help(
-                format!("the file requires the extension {what}, which cyltrace does not know"),
-                "known are beam lattices, their balls, materials and production",
+                format!("the file requires the extension {what}, which cyltrace does not support"),
+                "the supported extensions are beam lattices, their balls, materials and production",
             ));
         }
     }
     Ok(())
 }
 
-/// The objects of a file, by their places in it.
+/// The objects of a file, in its order.
 struct Objects<'a, 'input> {
     list: Vec<Element<'a, 'input>>,
-    /// By their ids.
+    /// The positions in `list` by id.
     index: HashMap<u32, usize>,
 }
 
@@ -154,30 +156,33 @@ impl<'a, 'input> Objects<'a, 'input> {
             let id = object.id("id")?;
             if index.insert(id, place).is_some() {
                 let id = object.required("id")?;
-                return Err(object.error(format!("the id {} occurs twice", quoted(id))));
+                return Err(object.error(format!(
+                    "the id {} occurs twice: ids must be unique",
+                    quoted(id)
+                )));
             }
         }
         Ok(Self { list, index })
     }
 
-    /// The object that a build item or a component names, one of the first `end`.
+    /// The object that a build item or a component names, among the first `end`.
     fn named(&self, element: &Element, end: usize) -> Result<usize, SceneError> {
         if element.attribute_of(PRODUCTION, "path").is_some() {
             return Err(element.error(
-                "the object is in another part of the archive: only what is in the first part is read",
+                "the object is in another part of the archive: only objects of the first part are read",
             ));
         }
         let place = self.index.get(&element.id("objectid")?).copied();
         place.filter(|&place| place < end).ok_or_else(|| {
             let id = quoted(element.attribute("objectid").unwrap_or_default());
             element.error(format!(
-                "there is no object {id} before this: objectid must be the id of one"
+                "objectid is {id}: it must be the id of an object before this element"
             ))
         })
     }
 
-    /// Where each object is. Components name objects before their own only, so
-    /// that going backwards each is complete before its parts are placed.
+    /// The placements of each object. Components only name objects before their own, so in
+    /// reverse order the placements of each object are complete before its parts are placed.
     fn places(&self, model: &Element) -> Result<Vec<Vec<Similarity>>, SceneError> {
         let mut places = vec![Vec::new(); self.list.len()];
         let mut count = 0;
@@ -195,8 +200,8 @@ impl<'a, 'input> Objects<'a, 'input> {
             let of = self.named(&item, self.list.len())?;
             if self.list[of].attribute("type") == Some("other") {
                 return Err(item.error_with_help(
-                    "the object is of type \"other\", which is no item of the <build>",
-                    "write type=\"model\" at the object, or build it as a component of one",
+                    "the object is of type \"other\", which cannot be an item of the <build>",
+                    "give the object type=\"model\", or use it as a component of such an object",
                 ));
             }
             add(&mut places[of], vec![item.transform()?], &item)?;

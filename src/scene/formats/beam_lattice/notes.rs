@@ -1,22 +1,22 @@
-//! Notes on a 3MF file: what is left out, what the specification forbids, and what other
-//! programs may read differently.
+//! Notes on a 3MF file: ignored content, violations of the specification, and content that
+//! other programs may read differently.
 
 use super::element::Element;
 
-/// Objects that a note names; it counts the others.
+/// The most objects that a note names; it counts the others.
 const MOST_NAMED: usize = 8;
 
-/// The notes on a file, each once with the objects that it is about.
+/// The notes on a file, each listed once with its objects.
 #[derive(Default)]
 pub(super) struct Notes {
     list: Vec<Note>,
 }
 
 struct Note {
-    /// The file, and the line of the first element that it is about.
+    /// The file, and the line of the first element concerned.
     place: String,
     text: String,
-    /// The ids of the objects that it is about; none where it is about the file.
+    /// The ids of the objects concerned; empty for a note on the file.
     objects: Vec<String>,
 }
 
@@ -27,7 +27,7 @@ pub(super) struct ObjectNotes<'n, 'a, 'input> {
 }
 
 impl Notes {
-    /// For notes on an object.
+    /// Access to the notes on an object.
     pub fn of<'n, 'a, 'input>(
         &'n mut self,
         object: &'n Element<'a, 'input>,
@@ -70,7 +70,7 @@ impl Notes {
 }
 
 impl ObjectNotes<'_, '_, '_> {
-    /// Adds a note on the object, once.
+    /// Adds a note on the object, unless it has that note already.
     pub fn add(&mut self, text: &str) {
         let id = self.object.attribute("id").unwrap_or_default().to_owned();
         let list = &mut self.notes.list;

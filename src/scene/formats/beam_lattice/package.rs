@@ -1,4 +1,4 @@
-//! The parts of a 3MF file: `_rels/.rels` names the part that is the model, a text in XML.
+//! The parts of a 3MF file: `_rels/.rels` names the part with the model, an XML text.
 
 use std::path::PathBuf;
 
@@ -18,12 +18,12 @@ const MODEL: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmode
 
 /// A part of the file.
 pub(super) struct Part {
-    /// The archive's path and, below it, the part's.
+    /// The archive's path, followed by the part's.
     pub path: PathBuf,
     pub text: String,
 }
 
-/// Reads the model of the 3MF file that a scene file names.
+/// Reads the model of a 3MF file named in a scene file.
 pub(super) fn model_part(source: &Source, file: &Spanned<String>) -> Result<Part, SceneError> {
     let mut package = Package::open(source, file)?;
     let relationships = package.read(RELATIONSHIPS)?;
@@ -44,7 +44,7 @@ pub(super) fn model_part(source: &Source, file: &Spanned<String>) -> Result<Part
     package.read(model.trim_start_matches('/'))
 }
 
-/// The elements of a part.
+/// Parses the XML of a part.
 pub(super) fn parsed(part: &Part) -> Result<Document<'_>, SceneError> {
     let error = |line: u64, message| SceneError::Row {
         path: part.path.clone(),
@@ -65,6 +65,6 @@ pub(super) fn parsed(part: &Part) -> Result<Document<'_>, SceneError> {
     Document::parse_with_options(&part.text, options).map_err(|wrong| {
         let line = u64::from(wrong.pos().row);
         let wrong = printable(&wrong.to_string());
-        error(line, format!("this is no XML: {wrong}"))
+        error(line, format!("this is not valid XML: {wrong}"))
     })
 }

@@ -1,10 +1,10 @@
-//! Neurons in SWC: one sample a line (`id type x y z radius parent`), and a
-//! solid for every sample that has a parent, from the parent's point to the
-//! sample's own: a cylinder with the sample's radius or, where joints are stated, a
-//! cone or a rounded cone with the radii of both.
+//! Neurons in SWC: each line is a sample (`id type x y z radius parent`). Every sample
+//! with a parent gives a solid from the parent's point to the sample's own: a cylinder
+//! with the sample's radius or, if `joints` is set, a cone or a rounded cone with the
+//! radii of both.
 //!
-//! `samples` reads the lines, `tree` finds the parents, `soma` the balls and cylinders
-//! of cell bodies.
+//! `samples` reads the lines, `tree` finds the parents, and `soma` finds the balls and
+//! cylinders of cell bodies.
 
 mod samples;
 mod soma;
@@ -47,21 +47,21 @@ pub(in crate::scene) struct SwcKeys {
     material: Option<Spanned<String>>,
 }
 
-/// Bytes that a sample takes while a file is read: its own, and its places in the
-/// index and among the parents.
+/// The bytes of a sample while a file is read: its own, and those in the index and the
+/// list of parents.
 const SAMPLE_BYTES: u64 = 160;
 
-/// What solids a neuron has.
+/// The kinds of solids of a neuron.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shape {
     pub joints: Joints,
     pub has_soma: bool,
 }
 
-/// What the segments are, and so how they meet.
+/// The shape of the segments, and so of their joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Joints {
-    /// Cylinders, of the radius of the segment's own sample.
+    /// Cylinders with the radius of the segment's own sample.
     Steps,
     /// Cones, which end flat.
     Flat,
@@ -70,7 +70,7 @@ enum Joints {
 }
 
 impl Shape {
-    /// What an `[[swc]]` states.
+    /// Reads the shape of an `[[swc]]`.
     pub fn new(source: &Source, keys: &SwcKeys) -> Result<Self, SceneError> {
         const JOINTS: [(&str, Joints); 2] = [("flat", Joints::Flat), ("round", Joints::Round)];
         const SOMATA: [(&str, bool); 2] = [("standard", true), ("none", false)];
@@ -81,7 +81,7 @@ impl Shape {
         if let (Some(caps), Joints::Round) = (&keys.caps, joints) {
             return Err(source.error(
                 caps.span(),
-                "caps are for flat ends: with joints = \"round\" segments end in balls",
+                "caps apply only to flat ends: with joints = \"round\" segments end in balls",
             ));
         }
         let soma = keys.soma.as_ref();
@@ -93,7 +93,7 @@ impl Shape {
     }
 }
 
-/// Why a segment is no solid.
+/// Why a segment is not a valid solid.
 struct Fault {
     message: String,
     is_of_radius: bool,
@@ -154,11 +154,11 @@ impl Fault {
     }
 }
 
-/// What becomes of a sample.
+/// The part of a neuron that a sample gives.
 enum Part {
-    /// A solid, or a reason why there is none.
+    /// A solid, or why it is invalid.
     Solid(Result<AnySolid, Fault>),
-    /// Nothing; the number of a segment stays free.
+    /// Nothing; the number of the segment stays unused.
     Free,
 }
 
@@ -183,7 +183,7 @@ impl SolidFile for SwcKeys {
         }
     }
 
-    /// The samples, which are read before the first becomes a record.
+    /// The bytes of all samples, which are read before the first solid is made.
     fn reading_bytes(&self, source: &Source) -> u64 {
         rows(source, &self.file).saturating_mul(SAMPLE_BYTES)
     }
@@ -223,11 +223,11 @@ impl SolidFile for SwcKeys {
     }
 }
 
-/// Reads the samples of a neuron in SWC and checks that they form trees, as a scene
-/// does. Errors call the file `path`.
+/// Reads the samples of a neuron in SWC and checks that they form trees, as loading a
+/// scene does. Errors name the file `path`.
 ///
 /// # Errors
-/// When the text is no SWC, or goes beyond a limit.
+/// If the text is not SWC, or exceeds a limit.
 pub fn check_swc(input: impl Read, path: &Path) -> Result<(), SceneError> {
     let file = SwcFile { path };
     let (samples, _) = file.samples(input, |_| Ok(()))?;
@@ -235,8 +235,8 @@ pub fn check_swc(input: impl Read, path: &Path) -> Result<(), SceneError> {
         .map(|parents| drop(Somata::of(&samples, &parents)))
 }
 
-/// The most balls that the somata of a file are: one for each sample of a soma. 0 of what
-/// cannot be read, or only once, such as a pipe.
+/// An upper bound of the balls of a file's somata: one for each sample of a soma. 0 if the
+/// file cannot be read, or only once, such as a pipe.
 fn most_balls(path: &Path) -> u64 {
     if !path.is_file() {
         return 0;
@@ -244,7 +244,7 @@ fn most_balls(path: &Path) -> u64 {
     input::open(path).map_or(0, |input| SwcFile { path }.soma_samples(input))
 }
 
-/// A file that has been read.
+/// The samples of a file and their parents.
 struct Neuron {
     samples: Vec<Sample>,
     parents: Vec<Option<usize>>,
@@ -262,13 +262,13 @@ impl Neuron {
         })?;
         if has_more_cells {
             let path = file.path.display();
-            tables.note(format!("{path}: cells behind the seventh are not read"));
+            tables.note(format!("{path}: cells after the seventh are ignored"));
         }
         let parents = file.parents(&samples)?;
         Ok(Self { samples, parents })
     }
 
-    /// What becomes of the samples, in the order of the numbers.
+    /// Calls `add` with the parts of the neuron, in the order of their numbers.
     fn parts(
         &self,
         shape: Shape,

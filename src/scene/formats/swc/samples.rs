@@ -1,7 +1,7 @@
 //! The samples of a neuron, line by line.
 //!
-//! A sample has seven cells between blanks, commas or semicolons; more are ignored, as
-//! is a comment behind them. A line of names may precede the samples.
+//! A sample has seven cells separated by blanks, commas or semicolons. Further cells and a
+//! comment after them are ignored. A line of column names may precede the samples.
 
 use std::io::Read;
 use std::path::Path;
@@ -20,7 +20,7 @@ const COLUMNS: [&str; 7] = ["id", "type", "x", "y", "z", "radius", "parent"];
 /// The column of the type.
 const TYPE: usize = 1;
 
-/// The greatest whole number that f64 has without its neighbours rounding to it.
+/// The greatest whole number such that no other whole number rounds to it in f64.
 const GREATEST_WHOLE: f64 = 9_007_199_254_740_991.0;
 
 /// The type of samples of the soma.
@@ -60,7 +60,7 @@ impl SwcFile<'_> {
     }
 
     /// All samples, in the order of the file, and whether any has more than seven
-    /// cells. `admit` refuses a sample of some line for its memory.
+    /// cells. `admit` gets the line of each sample and may reject it for lack of memory.
     pub fn samples(
         &self,
         input: impl Read,
@@ -72,7 +72,7 @@ impl SwcFile<'_> {
             if cells.len() < COLUMNS.len() {
                 let count = cells.len();
                 let message =
-                    format!("the row has {count} cells, SWC has 7: id type x y z radius parent");
+                    format!("the row has {count} cells: SWC has 7, id type x y z radius parent");
                 return Err(self.error(line, None, message, None));
             }
             if std::mem::take(&mut is_first) && self.is_header(line, &all)? {
@@ -91,7 +91,7 @@ impl SwcFile<'_> {
         Ok((samples, has_more_cells))
     }
 
-    /// How many samples are of a soma, up to the first row that cannot be read.
+    /// The number of samples of somata, up to the first row that cannot be read.
     pub fn soma_samples(&self, input: impl Read) -> u64 {
         let mut count = 0;
         // Loading reports the row.
@@ -123,7 +123,7 @@ impl SwcFile<'_> {
                 };
                 let cells = splitter.split(text, delimiter(text));
                 let cells = cells.map_err(|_| {
-                    let message = format!("the row has more than {MOST_COLUMNS} cells, SWC has 7");
+                    let message = format!("the row has more than {MOST_COLUMNS} cells: SWC has 7");
                     self.error(line, None, message, None)
                 })?;
                 visit(line, cells)?;
@@ -131,8 +131,8 @@ impl SwcFile<'_> {
         }
     }
 
-    /// Whether the first row names the columns. Names of samples' own columns must be
-    /// where SWC has them.
+    /// Whether the first row names the columns. The names of SWC's columns must be in their
+    /// places.
     fn is_header(&self, line: u64, cells: &[&str]) -> Result<bool, SceneError> {
         if cells
             .iter()
@@ -146,7 +146,7 @@ impl SwcFile<'_> {
                 .position(|name| cell.eq_ignore_ascii_case(name));
             if known.is_some_and(|known| known != place) {
                 let message = format!(
-                    "{} is column {}, SWC has: id type x y z radius parent",
+                    "{} is column {}: the columns of SWC are id type x y z radius parent",
                     quoted(cell),
                     place + 1
                 );
@@ -178,7 +178,7 @@ impl SwcFile<'_> {
     }
 }
 
-/// What separates the cells of a sample: blanks, unless there is a comma or a semicolon.
+/// The delimiter of a sample's cells: blanks, unless the row contains a comma or a semicolon.
 fn delimiter(text: &str) -> Delimiter {
     match memchr::memchr2(b',', b';', text.as_bytes()) {
         Some(_) => delimiter_of(text.as_bytes()),
@@ -186,12 +186,12 @@ fn delimiter(text: &str) -> Delimiter {
     }
 }
 
-/// A whole number, which programs that know floats only write as `1.0`.
+/// Parses a whole number, which some programs write as `1.0`.
 fn whole(cell: &str) -> Option<i64> {
     cell.parse().ok().or_else(|| {
         let number = number_of(cell, Decimal::Point)?;
         let is_whole = number.trunc() == number && number.abs() <= GREATEST_WHOLE;
-        // Exact, for it is whole and small.
+        // The conversion is exact: the number is whole and small.
         is_whole.then_some(number as i64)
     })
 }

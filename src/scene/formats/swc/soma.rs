@@ -1,13 +1,13 @@
 //! Cell bodies.
 //!
-//! The samples of type 1 that are joined are a soma. What it is depends on how many
-//! they are, as <http://neuromorpho.org/SomaFormat.html> has it and other readers do:
+//! Connected samples of type 1 form a soma. Its shape depends on their number, as
+//! <http://neuromorpho.org/SomaFormat.html> defines and other readers implement:
 //!
 //! - One sample is a ball.
 //! - Three samples, a center `(x, y, z)` with the radius `r` and two children of it at
-//!   `(x, y - r, z)` and `(x, y + r, z)` with the same radius, are a cylinder from the
-//!   one child to the other: of length `2 r`, so that its wall has the area of a ball.
-//! - Others are what their segments are.
+//!   `(x, y - r, z)` and `(x, y + r, z)` with the same radius, are a cylinder from one
+//!   child to the other. Its length is `2 r`, so its side has the area of a ball.
+//! - Other somata consist of their segments.
 
 use std::collections::HashMap;
 
@@ -15,32 +15,32 @@ use glam::DVec3;
 
 use super::samples::Sample;
 
-/// The share of the radius that the samples of a cylinder may be off. It trades files
-/// whose numbers are rounded, to two decimals at a radius of a tenth, for somata that
-/// are no such cylinder and would be moved by as much.
+/// The error of the samples of a cylinder that is allowed, relative to the radius. It
+/// accepts rounded numbers, such as two decimals at a radius of a tenth. In return, a soma
+/// that is not such a cylinder may be displaced by as much.
 const TOLERANCE: f64 = 1.0 / 16.0;
 
-/// The somata of a file that are more than their segments.
+/// The somata of a file that do not consist of their segments.
 #[derive(Default)]
 pub(super) struct Somata {
     /// The samples that are balls.
     pub balls: Vec<usize>,
-    /// By both of their ends.
+    /// The cylinders, by each of their two end samples.
     cylinders: HashMap<usize, SomaCylinder>,
 }
 
-/// Three samples that are a cylinder.
+/// Three samples that form a cylinder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SomaCylinder {
     pub center: usize,
-    /// In the order of the file.
+    /// The end samples, in the order of the file.
     pub ends: [usize; 2],
 }
 
 impl Somata {
-    /// Those of some samples with their parents.
+    /// Finds the somata among samples with their parents.
     pub fn of(samples: &[Sample], parents: &[Option<usize>]) -> Self {
-        // How many samples of a soma descend from each of one, up to three.
+        // The number of children within the soma of each sample, up to three.
         let mut children = vec![0_u8; samples.len()];
         let parent_in_soma = |place: usize| {
             let parent = parents[place]?;
@@ -76,13 +76,13 @@ impl Somata {
         somata
     }
 
-    /// The cylinder that a sample is an end of.
+    /// The cylinder with an end at this sample.
     pub fn cylinder_at(&self, place: usize) -> Option<&SomaCylinder> {
         self.cylinders.get(&place)
     }
 }
 
-/// Whether the ends are where those of the cylinder of a center are.
+/// Whether the samples are the ends of the cylinder about a center.
 fn is_cylinder(center: &Sample, ends: [&Sample; 2]) -> bool {
     let (radius, allowed) = (center.radius, center.radius * TOLERANCE);
     let is_end = |end: &Sample, y: f64| {
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn soma_of_one_sample_is_a_ball() {
         assert_eq!(somata("1 1 0 0 0 2 -1\n2 3 9 0 0 1 1\n").0, [0]);
-        // In the middle of the tree, too, and one a neuron.
+        // Also in the middle of a tree, and once for each neuron.
         assert_eq!(
             somata("1 3 0 0 0 2 -1\n2 1 9 0 0 1 1\n3 1 0 0 0 1 -1\n").0,
             [1, 2]
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn soma_of_three_samples_is_a_cylinder_where_they_are_as_neuromorpho_has_them() {
+    fn soma_of_three_samples_is_a_cylinder_if_they_follow_neuromorpho() {
         let cylinder = [SomaCylinder {
             center: 0,
             ends: [1, 3],

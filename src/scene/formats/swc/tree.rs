@@ -1,4 +1,4 @@
-//! The parents of samples: every id is there once, and no sample descends from
+//! The parents of samples. Every id must be unique, and no sample may descend from
 //! itself.
 
 use std::collections::HashMap;
@@ -6,11 +6,11 @@ use std::collections::HashMap;
 use super::samples::{Sample, SwcFile};
 use crate::scene::error::SceneError;
 
-/// The parent of a sample that has none.
+/// The parent number of a sample without a parent.
 const NO_PARENT: i64 = -1;
 
 impl SwcFile<'_> {
-    /// The place of each sample's parent in the list of samples.
+    /// The position of each sample's parent in the list of samples.
     pub fn parents(&self, samples: &[Sample]) -> Result<Vec<Option<usize>>, SceneError> {
         let index = self.index(samples)?;
         let parents = self.places(samples, &index)?;
@@ -18,20 +18,20 @@ impl SwcFile<'_> {
         Ok(parents)
     }
 
-    /// The place of each id in the list of samples.
+    /// The position of each id in the list of samples.
     fn index(&self, samples: &[Sample]) -> Result<HashMap<i64, usize>, SceneError> {
         let mut index = HashMap::with_capacity(samples.len());
         for (place, sample) in samples.iter().enumerate() {
             if let Some(first) = index.insert(sample.id, place) {
                 let (id, line) = (sample.id, samples[first].line);
-                let message = format!("the id {id} is on line {line} already");
+                let message = format!("the id {id} is already on line {line}: ids must be unique");
                 return Err(self.error(sample.line, Some("id"), message, None));
             }
         }
         Ok(index)
     }
 
-    /// The place of each parent, whether samples descend from themselves or not.
+    /// The position of each parent, without a check for cycles.
     fn places(
         &self,
         samples: &[Sample],
@@ -43,7 +43,7 @@ impl SwcFile<'_> {
                 Some(_) if sample.parent == sample.id => "the sample is its own parent".to_owned(),
                 Some(&place) => return Ok(Some(place)),
                 None => format!(
-                    "there is no sample {}: the parent must be the id of a sample, or -1 for none",
+                    "no sample has the id {}: the parent must be the id of a sample, or -1 for none",
                     sample.parent
                 ),
             };
@@ -52,13 +52,13 @@ impl SwcFile<'_> {
         samples.iter().map(parent).collect()
     }
 
-    /// That no sample descends from itself.
+    /// Checks that no sample descends from itself.
     fn check_cycles(
         &self,
         samples: &[Sample],
         parents: &[Option<usize>],
     ) -> Result<(), SceneError> {
-        // For each sample the start of the walk that came by first.
+        // For each sample, the start of the first walk that reached it.
         let mut seen = vec![usize::MAX; samples.len()];
         for start in 0..samples.len() {
             let mut place = start;
@@ -69,7 +69,7 @@ impl SwcFile<'_> {
                     None => break,
                 }
             }
-            // The walk returned to its own trail, not to an end or to an older one.
+            // The walk returned to its own path, not to an end or an earlier path.
             if seen[place] == start && parents[place].is_some() {
                 return Err(self.cycle(samples, parents, place));
             }
@@ -77,8 +77,8 @@ impl SwcFile<'_> {
         Ok(())
     }
 
-    /// That the sample at `place` descends from itself. The error is about
-    /// the first sample of the cycle in the file.
+    /// The error that the sample at `place` descends from itself. It names the first
+    /// sample of the cycle in the file.
     fn cycle(&self, samples: &[Sample], parents: &[Option<usize>], place: usize) -> SceneError {
         const MOST_SHOWN: usize = 12;
         let mut round = vec![place];
@@ -94,7 +94,7 @@ impl SwcFile<'_> {
         }
         ids.push(id(round[0]));
         let message = format!(
-            "the parents form a cycle: {}; a neuron is a tree, a sample must not descend from itself",
+            "the parents form a cycle: {}; a sample must not descend from itself",
             ids.join(" -> ")
         );
         self.error(samples[round[0]].line, Some("parent"), message, None)

@@ -73,7 +73,7 @@ pub fn cases() -> Vec<Case> {
             "table_that_is_missing",
             TABLE,
             &[
-                "tree.csv: there is no such file",
+                "tree.csv: the file does not exist",
                 "scene.toml:3:8",
                 "relative to the folder",
             ],
@@ -129,7 +129,7 @@ pub fn cases() -> Vec<Case> {
         Case::new(
             "neuron_that_is_missing",
             SWC,
-            &["neuron.swc: there is no such file", "scene.toml:3:8"],
+            &["neuron.swc: the file does not exist", "scene.toml:3:8"],
         ),
         Case::new(
             "neuron_that_is_blank",
@@ -146,7 +146,7 @@ pub fn cases() -> Vec<Case> {
             SWC,
             &[
                 "neuron.swc:1",
-                "the row has more than 16384 cells, SWC has 7",
+                "the row has more than 16384 cells: SWC has 7",
             ],
         )
         .with("neuron.swc", "1 ".repeat(5_000_000)),

@@ -56,7 +56,7 @@ pub fn cases() -> Vec<Case> {
             "[cylinder]\np0 = [0, 0, 0]\np1 = [0, 0, 1]\nradius = 1\n",
             &[
                 "scene.toml:1:1",
-                "[cylinder] is one table",
+                "[cylinder] is a single table",
                 "write [[cylinder]]",
             ],
         ),
@@ -85,7 +85,11 @@ pub fn cases() -> Vec<Case> {
         with_solid(
             "camera_stated_as_a_list",
             "[[camera]]\nframe = \"auto\"\n",
-            &["scene.toml:5:1", "there is only one", "write [camera]"],
+            &[
+                "scene.toml:5:1",
+                "camera must be a single table",
+                "write [camera] once",
+            ],
         ),
         with_solid(
             "background_behind_a_table",
@@ -126,12 +130,18 @@ pub fn cases() -> Vec<Case> {
         Case::new(
             "point_of_two_numbers",
             "[[cylinder]]\np0 = [0, 0]\np1 = [0, 0, 1]\nradius = 1\n",
-            &["scene.toml:2:6", "invalid length 2, expected an array of 3"],
+            &[
+                "scene.toml:2:6",
+                "invalid length 2, expected an array of length 3",
+            ],
         ),
         Case::new(
             "point_of_four_numbers",
             "[[cylinder]]\np0 = [0, 0, 0, 0]\np1 = [0, 0, 1]\nradius = 1\n",
-            &["scene.toml:2:6", "invalid length 4, expected an array of 3"],
+            &[
+                "scene.toml:2:6",
+                "invalid length 4, expected an array of length 3",
+            ],
         ),
         with_solid(
             "width_with_a_fraction",
@@ -214,14 +224,17 @@ pub fn cases() -> Vec<Case> {
             "material = \"brak\"\n[[material]]\nname = \"bark\"\ncolor = [1, 1, 1]\n",
             &[
                 "scene.toml:5:12",
-                "no material \"brak\"",
+                "unknown material \"brak\"",
                 "did you mean \"bark\"?",
             ],
         ),
         with_solid(
             "material_name_twice",
             "[[material]]\nname = \"a\"\ncolor = [1, 1, 1]\n[[material]]\nname = \"a\"\ncolor = [1, 1, 1]\n",
-            &["scene.toml:9:8", "a material \"a\" already, on line 6"],
+            &[
+                "scene.toml:9:8",
+                "the material \"a\" is already defined on line 6",
+            ],
         ),
         with_solid(
             "material_name_empty",

@@ -149,12 +149,12 @@ fn load_of_no_file_and_of_a_folder_says_so() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let missing = refusal("missing", &folder.path().join("missing.toml"));
     assert!(
-        missing.contains("missing.toml: there is no such file"),
+        missing.contains("missing.toml: the file does not exist"),
         "{missing}"
     );
     let directory = refusal("folder", folder.path());
     assert!(
-        directory.contains("it is a directory, a file is needed"),
+        directory.contains("it is a directory: a file is needed"),
         "{directory}"
     );
 }
@@ -198,7 +198,7 @@ fn load_of_data_or_a_picture_shows_the_scene_that_it_needs() {
         }
     }
     let missing = refusal("missing", &folder.path().join("missing.csv"));
-    assert!(missing.contains("there is no such file"), "{missing}");
+    assert!(missing.contains("the file does not exist"), "{missing}");
 }
 
 #[test]
@@ -218,7 +218,7 @@ fn render_of_every_broken_scene_exits_with_2_and_leaves_no_picture() {
         &folder.path().join("missing.toml"),
     );
     assert!(
-        missing.contains("missing.toml: there is no such file"),
+        missing.contains("missing.toml: the file does not exist"),
         "{missing}"
     );
 }

@@ -33,7 +33,7 @@ pub fn cases() -> Vec<Case> {
             "[[prototype]]\nname = \"spruce\"\n[[instance]]\nof = \"sprucce\"\n",
             &[
                 "scene.toml:10:6",
-                "no prototype \"sprucce\"",
+                "unknown prototype \"sprucce\"",
                 "did you mean \"spruce\"?",
                 "\"a\"",
             ],
@@ -49,12 +49,15 @@ pub fn cases() -> Vec<Case> {
         with_a(
             "prototype_without_solids",
             "[[prototype]]\nname = \"b\"\n[[instance]]\nof = \"b\"\n",
-            &["scene.toml:10:6", "\"b\" holds no solids"],
+            &["scene.toml:10:6", "\"b\" contains no solids"],
         ),
         with_a(
             "prototype_name_twice",
             "[[prototype]]\nname = \"a\"\n",
-            &["scene.toml:8:8", "a prototype \"a\" already, on line 2"],
+            &[
+                "scene.toml:8:8",
+                "the prototype \"a\" is already defined on line 2",
+            ],
         ),
         with_a(
             "prototype_that_places_itself",
@@ -80,7 +83,7 @@ pub fn cases() -> Vec<Case> {
             "nesting_that_grows_out_of_range",
             nested(4, "scale = 1e9\n"),
             &[
-                "scale what is in \"level 2\" by factors from",
+                "scale the content of \"level 2\" by factors from",
                 "to 1.0e27",
                 "scene.toml:20:6",
             ],
@@ -101,7 +104,7 @@ pub fn cases() -> Vec<Case> {
         with_a(
             "scale_too_uneven",
             "[[instance]]\nof = \"a\"\nscale = [1e9, 1, 1]\n",
-            &["scene.toml:9:9", "too uneven", "at most 2^27"],
+            &["scene.toml:9:9", "too unevenly", "at most 2^27"],
         ),
         with_a(
             "scale_zero",
@@ -123,7 +126,7 @@ pub fn cases() -> Vec<Case> {
             "[[instance]]\nof = \"a\"\nmatrix = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n",
             &[
                 "scene.toml:9:11",
-                "invalid length 3, expected an array of 4",
+                "invalid length 3, expected an array of length 4",
             ],
         ),
         with_a(

@@ -69,7 +69,7 @@ pub fn cases() -> Vec<Case> {
             format!("records = \"f32\"\n{POINTS}"),
             &[
                 "tree.csv:3:",
-                "rounded to f32 this is no cylinder",
+                "this cylinder is invalid after rounding to f32",
                 "0.0 apart",
                 "records = \"f64\"",
             ],
@@ -83,14 +83,14 @@ pub fn cases() -> Vec<Case> {
             "records = \"f32\"\n[[cylinder]]\np0 = [0, 0, 0]\np1 = [0, 0, 1e40]\nradius = 1\n",
             &[
                 "scene.toml:3:6",
-                "rounded to f32 this is no cylinder",
+                "this cylinder is invalid after rounding to f32",
                 "records = \"f64\"",
             ],
         ),
         Case::new(
             "sample_that_is_no_cylinder_in_f32",
             format!("records = \"f32\"\n{SWC}"),
-            &["neuron.swc:2:", "rounded to f32 this is no cylinder"],
+            &["neuron.swc:2:", "this cylinder is invalid after rounding to f32"],
         )
         .with("neuron.swc", "1 1 0 0 0 1 -1\n2 1 0 0 1 1e39 1\n"),
         Case::new(
@@ -144,12 +144,12 @@ pub fn cases() -> Vec<Case> {
         points(
             "row_too_short",
             "0,0,0,0,0,1",
-            &["tree.csv:5: the row has 6 cells, the header has 7"],
+            &["tree.csv:5: the row has 6 cells, but the header has 7"],
         ),
         points(
             "row_too_long",
             "0,0,0,0,0,1,1,1",
-            &["tree.csv:5: the row has 8 cells, the header has 7"],
+            &["tree.csv:5: the row has 8 cells, but the header has 7"],
         ),
         points(
             "row_with_zero_radius",
@@ -193,7 +193,7 @@ pub fn cases() -> Vec<Case> {
         Case::new(
             "rows_of_a_prototype_all_skipped",
             "[[instance]]\nof = \"a\"\n[[prototype]]\nname = \"a\"\n[[prototype.swc]]\nfile = \"n.swc\"\ndegenerate = \"skip\"\n",
-            &["scene.toml:2:6", "\"a\" holds no solids", "all 1 rows were skipped"],
+            &["scene.toml:2:6", "\"a\" contains no solids", "all 1 rows were skipped"],
         )
         .with("n.swc", "1 1 0 0 0 1 -1\n2 1 0 0 0 1 1\n"),
         Case::new(
@@ -233,7 +233,7 @@ pub fn cases() -> Vec<Case> {
         swc(
             "sample_of_six_cells",
             "2 3 0 0 1 1\n",
-            &["neuron.swc:3: the row has 6 cells, SWC has 7"],
+            &["neuron.swc:3: the row has 6 cells: SWC has 7"],
         ),
         swc(
             "sample_with_a_broken_id",
@@ -249,7 +249,7 @@ pub fn cases() -> Vec<Case> {
             "sample_with_an_unknown_parent",
             "2 3 0 0 1 1 7\n",
             &[
-                "neuron.swc:3: column \"parent\": there is no sample 7",
+                "neuron.swc:3: column \"parent\": no sample has the id 7",
                 "-1",
             ],
         ),
@@ -271,7 +271,7 @@ pub fn cases() -> Vec<Case> {
         swc(
             "sample_with_an_id_used_before",
             "\n1 3 0 0 1 1 1\n",
-            &["neuron.swc:4: column \"id\": the id 1 is on line 2 already"],
+            &["neuron.swc:4: column \"id\": the id 1 is already on line 2"],
         ),
         swc(
             "sample_with_zero_radius",

@@ -40,17 +40,13 @@ pub fn cases() -> Vec<Case> {
             "{ }",
             &[
                 "scene.toml:3:1",
-                "an operand is one solid, and this states 0",
+                "an operand must be one solid, but this has 0",
             ],
         ),
         minus(
             "operand_of_two_kinds",
             "{ sphere = { center = [0, 0, 0], radius = 1 }, union = { of = [] } }",
-            &[
-                "scene.toml:3:1",
-                "this states 2",
-                "between braces of its own",
-            ],
+            &["scene.toml:3:1", "but this has 2", "each in its own braces"],
         ),
         minus(
             "operand_without_an_inside",
@@ -75,7 +71,7 @@ pub fn cases() -> Vec<Case> {
         minus(
             "operand_with_a_material",
             "{ sphere = { center = [0, 0, 0], radius = 1, material = \"a\" } }",
-            &["scene.toml:3:57", "one material", "beside of"],
+            &["scene.toml:3:57", "one material", "next to the key of"],
         ),
         minus(
             "operation_within_with_a_material",
@@ -99,7 +95,11 @@ pub fn cases() -> Vec<Case> {
         Case::new(
             "operation_moved_beyond_all_numbers",
             format!("[[union]]\ntranslate = [1e60, 0, 0]\nof = [{BALL}]\n"),
-            &["scene.toml:2:13", "where the solid is moved to", "1e60"],
+            &[
+                "scene.toml:2:13",
+                "after the solid is rotated and translated",
+                "1e60",
+            ],
         ),
         Case::new(
             "operations_within_each_other_without_end",

@@ -34,7 +34,7 @@ pub fn cases() -> Vec<Case> {
             "[[cuboid]]\nhalf_widths = [1, 2]\n",
             &[
                 "scene.toml:2:15",
-                "invalid length 2, expected an array of 3",
+                "invalid length 2, expected an array of length 3",
             ],
         ),
         Case::new(
@@ -95,14 +95,14 @@ pub fn cases() -> Vec<Case> {
         Case::new(
             "pose_by_nan_degrees",
             "[[cuboid]]\nhalf_widths = [1, 2, 3]\nrotate_y = nan\n",
-            &["scene.toml:3:12", "the number must be finite"],
+            &["scene.toml:3:12", "the number is NaN: it must be finite"],
         ),
         Case::new(
             "pose_beyond_all_numbers",
             "[[cylinder]]\np0 = [0, 0, 0]\np1 = [0, 0, 1]\nradius = 1\ntranslate = [0, 0, 1e60]\n",
             &[
                 "scene.toml:5:13",
-                "where the solid is moved to, p0 is (0.0, 0.0, 1e60)",
+                "after the solid is rotated and translated, p0 is (0.0, 0.0, 1e60)",
             ],
         ),
         Case::new(
@@ -110,7 +110,7 @@ pub fn cases() -> Vec<Case> {
             "[[cylinder]]\np0 = [0, 0, 0]\np1 = [0, 0, 1]\nradius = 1\ntranslate = [0, 0, 1e30]\n",
             &[
                 "scene.toml:5:13",
-                "where the solid is moved to, p0 and p1 are 0.0 apart",
+                "after the solid is rotated and translated, p0 and p1 are 0.0 apart",
             ],
         ),
         Case::new(
@@ -131,7 +131,7 @@ pub fn cases() -> Vec<Case> {
         Case::new(
             "material_of_a_sphere_that_is_not_there",
             "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"bark\"\n",
-            &["scene.toml:4:12", "there is no material \"bark\""],
+            &["scene.toml:4:12", "unknown material \"bark\""],
         ),
         Case::new(
             "neuron_of_unknown_joints",
@@ -146,7 +146,7 @@ pub fn cases() -> Vec<Case> {
         Case::new(
             "neuron_of_round_joints_and_caps",
             "[[swc]]\nfile = \"neuron.swc\"\njoints = \"round\"\ncaps = \"both\"\n",
-            &["scene.toml:4:8", "caps are for flat ends"],
+            &["scene.toml:4:8", "caps apply only to flat ends"],
         )
         .with("neuron.swc", "1 1 0 0 0 1 -1\n"),
         Case::new(

@@ -17,12 +17,12 @@ pub fn cases() -> Vec<Case> {
         cylinder(
             "radius_nan",
             "p0 = [0, 0, 0]\np1 = [0, 0, 1]\nradius = nan",
-            &["scene.toml:4:10", "NaN is not accepted", "must be finite"],
+            &["scene.toml:4:10", "the number is NaN", "must be finite"],
         ),
         cylinder(
             "radius_infinite",
             "p0 = [0, 0, 0]\np1 = [0, 0, 1]\nradius = +inf",
-            &["scene.toml:4:10", "inf is not accepted"],
+            &["scene.toml:4:10", "the number is inf"],
         ),
         cylinder(
             "coordinate_that_overflows",
@@ -140,7 +140,7 @@ pub fn cases() -> Vec<Case> {
         with_solid(
             "material_color_above_one",
             "[[material]]\nname = \"a\"\ncolor = [1, 1.5, 1]\n",
-            &["scene.toml:7:9", "between 0 and 1", "[0, 1]"],
+            &["scene.toml:7:9", "must be in [0, 1]"],
         ),
     ]
 }
