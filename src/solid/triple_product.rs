@@ -16,31 +16,29 @@
 //! D = radius² |n|² - w²,   t = (-(m·n) ∓ |a| √D) / |n|²                    (2)
 //! ```
 //!
-//! `|w| / |n|` is the distance between the two lines. Why this form: `w` does
-//! not change when the origin slides along the ray or along the axis, so no
-//! square of the distance or of the length enters `D` and is taken off again;
-//! the relative error of `D` is a few units of 2^-53 times `1 + |x| / radius`.
-//! `|a|` and `√D` are rooted apart, which halves the exponents in play.
+//! `|w| / |n|` is the distance between the two lines. Why this form: `w` does not change when
+//! the origin slides along the ray or along the axis, so no square of the distance or of the
+//! length enters `D` and cancels later; the relative error of `D` is a few units of 2^-53 times
+//! `1 + |x| / radius`. The roots of `|a|²` and `D` are computed separately, which halves the
+//! exponents in play.
 //!
-//! `w` is that only if `n` is perpendicular to `a`. Rounded products leave an
-//! error along `a` of some 2^-53 `|a| |d|`, which `x·n` multiplies with the
-//! whole axial way to the origin: for a ray nearly along a long cylinder it
-//! would exceed all else. So where the sine of the angle is below 1/4 the products
-//! of `n` are exact.
+//! This is true of `w` only if `n` is perpendicular to `a`. Rounded products leave an error
+//! along `a` of some 2^-53 `|a| |d|`, which `x·n` multiplies by the whole axial distance to the
+//! origin: for a ray nearly along a long cylinder it would exceed everything else. So if the
+//! sine of the angle is below 1/4, the products of `n` are exact.
 //!
-//! Where the two terms of a root of (2) cancel, the root is `C / q`, `C` the
-//! constant term of (1) and `q = -(m·n) ± |a| √D` the sum that does not cancel.
-//! For an origin next to the wall `C` cancels as well, and is computed from
-//! exact products.
+//! If the two terms of a root of (2) cancel, the root is `C / q`, `C` the constant term of (1)
+//! and `q = -(m·n) ± |a| √D` the sum that does not cancel. For an origin next to the wall `C`
+//! cancels as well, and is computed from exact products.
 //!
-//! The axial position of a point is `y = x·a + t d·a`, inside the slab between
-//! the disks iff `0 <= y <= |a|²`; `slab.rs` overlaps wall and slab, and asks for
-//! the second root only where the first does not settle the answer.
+//! The axial position of a point is `y = x·a + t d·a`, inside the slab between the disks iff
+//! `0 <= y <= |a|²`. `slab.rs` intersects wall and slab, and requests the second root only if
+//! the first does not decide.
 //!
-//! `ties.rs` has what is decided by exact arithmetic at the rims.
+//! `ties.rs` has the exact decisions at the rims.
 //!
-//! A derivation of the error bounds is in `docs/derivations.md`, section 2. It
-//! is for f64, in which the tracer solves; f32 exists for comparison.
+//! `docs/derivations.md`, section 2, derives the error bounds. They are for f64, the precision
+//! of the tracer; f32 exists for comparison.
 
 use glam::DVec3;
 
@@ -48,16 +46,15 @@ use super::slab::{FirstIntersection, Question, Slab, Wall, WholeChord};
 use super::{Chord, Cylinder, Intersection, ties};
 use crate::math::{Real, RealVector, Wide, power_of_two, wide_cross, wide_square};
 
-/// Below this (2^-700), `radius² |n|²` could lose bits to underflow and the ray
-/// is taken as parallel to the axis. `|a| |d|` is at least 2^-250 (the least
-/// length of a cylinder times the least direction), so the angle is then below
-/// 2^-100: along any chord of a cylinder in range the ray leaves the parallel
-/// by far less than an ulp of its origin. f32 does not reach that far, and
-/// there the limit is its least normal number.
+/// Below this (2^-700), `radius² |n|²` could lose bits to underflow and the ray counts as
+/// parallel to the axis. `|a| |d|` is at least 2^-250 (the least length of a cylinder times the
+/// least direction), so the angle is then below 2^-100: along any chord of a cylinder in range
+/// the ray leaves the parallel by far less than an ulp of its origin. The range of f32 is
+/// smaller; there the limit is its least normal number.
 const PARALLEL_BELOW: f64 = power_of_two(-700);
 
-/// The square of the sine between ray and axis below which the products of
-/// `a × d` have to be exact: `docs/derivations.md`, section 2.
+/// The square of the sine of the angle between ray and axis below which the products of `a × d`
+/// have to be exact: `docs/derivations.md`, section 2.
 ///
 /// It trades time for the constants of the bounds: at 1/16, a sine of 1/4, the
 /// exact products are needed for 3 % of random directions and (3) and (5) have
@@ -67,13 +64,13 @@ pub(super) const LEAST_SQUARED_SINE: f64 = 1.0 / 16.0;
 /// Below this, relative to `radius² |a|²`, the constant term of (1) is computed
 /// from exact products.
 ///
-/// It trades time for bits of a `t` near zero: at 2^-20, the rounded term has
-/// 30 bits left, more than an f32 has; and rays spawned at a wall, whose offset
-/// is an ulp of f32 of their coordinates, rarely need the exact products.
+/// It trades time for bits of a `t` near zero: at 2^-20, the rounded term has 30 bits left,
+/// more than an f32 has. Rays spawned at a wall, whose offset is an ulp of f32 of their
+/// coordinates, rarely need the exact products.
 const LEAST_CONSTANT_TERM: f64 = power_of_two(-20);
 
-/// What the solver reads of a cylinder: its axis `a`, its radius, and products
-/// of them that may be kept or computed when requested.
+/// The solver's view of a cylinder: its axis `a`, its radius, and products of them, which may
+/// be stored or computed on request.
 pub trait Axis<S: Real>: Copy {
     /// `a = p1 - p0`.
     fn a(&self) -> S::Vector;
@@ -94,7 +91,7 @@ pub trait Axis<S: Real>: Copy {
     }
 }
 
-/// An axis of which nothing is kept that can be computed.
+/// An axis without stored products.
 #[derive(Clone, Copy, Debug)]
 pub struct StatedAxis<S: Real> {
     /// `p1 - p0`.
@@ -141,13 +138,13 @@ impl<S: Real> Axis<S> for StatedAxis<S> {
     }
 }
 
-/// The first point, among those with `t_min <= t + shift <= t_max`, of the line
-/// `p0 + from_p0 + t * direction` on the cylinder's surface.
+/// The first intersection with `t_min <= t + shift <= t_max` of the line
+/// `p0 + from_p0 + t * direction` with the cylinder's surface.
 ///
-/// `from_p0` is the ray's origin as seen from the cylinder's `p0`, and `shift`
-/// is where it is on the whole ray, as in [`Chord::first`]. `direction` has a
-/// largest component between 2^-100 and 2^100 in size; with the range of
-/// [`Cylinder`] nothing then overflows. A non-finite argument is a miss.
+/// `from_p0` is the ray's origin relative to the cylinder's `p0`, and `shift` is its position
+/// on the whole ray, as in [`Chord::first`]. The largest component of `direction` is between
+/// 2^-100 and 2^100 in size; with the range of [`Cylinder`] nothing then overflows. A
+/// non-finite argument is a miss.
 // Always inlined: callbacks are compiled for several instruction sets, and it is their loop.
 #[inline(always)]
 #[must_use]
@@ -168,16 +165,16 @@ pub fn first(
     answer(&StatedAxis::of(cylinder), from_p0, direction, question)
 }
 
-/// The interval in which that line is inside the closed solid, or `None` where
-/// it is not; under the conditions of [`first`].
+/// The interval in which that line is inside the closed solid, or `None` if it misses; under
+/// the conditions of [`first`].
 #[inline]
 #[must_use]
 pub fn chord(cylinder: &Cylinder, from_p0: DVec3, direction: DVec3) -> Option<Chord> {
     answer(&StatedAxis::of(cylinder), from_p0, direction, WholeChord)
 }
 
-/// The answer to what is computed of that chord, for any form of the cylinder and
-/// either precision. `None` if there is no chord.
+/// The result of a function of that chord, for any form of the cylinder and either precision.
+/// `None` if there is no chord.
 #[inline(always)]
 pub fn answer<S: Real, A: Axis<S>, Q: Question<S>>(
     axis: &A,
@@ -188,11 +185,11 @@ pub fn answer<S: Real, A: Axis<S>, Q: Question<S>>(
     let (x, d) = (from_p0, direction);
     let line = Line::new(axis, x, d);
     if line.is_parallel() {
-        // From disk to disk, if it is not farther from the axis than the wall.
+        // From disk to disk, if the line is not farther from the axis than the wall.
         let chord = parallel_chord(constant_term(axis, x, axis.a().cross(x)), slab(axis, x, d))?;
         return question.of_chord(chord);
     }
-    // Does it reach the infinite wall? Written so that NaN is a miss.
+    // A miss of the infinite wall. Written so that NaN is a miss.
     if !(line.discriminant >= S::ZERO) {
         return None;
     }
@@ -200,7 +197,7 @@ pub fn answer<S: Real, A: Axis<S>, Q: Question<S>>(
     question.of_overlap(&slab(axis, x, d).overlap(roots))
 }
 
-/// How a line passes an axis.
+/// The position of a line relative to an axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line<S: Real> {
     /// `a × d`.
@@ -241,13 +238,13 @@ impl<S: Real> Line<S> {
         }
     }
 
-    /// Whether rounded products do not do.
+    /// Whether rounded products are not accurate enough.
     #[inline(always)]
     pub fn is_near_axis(&self, axis: &impl Axis<S>, d: S::Vector) -> bool {
         self.nn < S::from_f64(LEAST_SQUARED_SINE) * (axis.aa() * d.dot(d))
     }
 
-    /// Whether the line is taken as parallel to the axis.
+    /// Whether the line counts as parallel to the axis.
     #[inline]
     pub fn is_parallel(&self) -> bool {
         self.nn < parallel_below()
@@ -270,12 +267,12 @@ pub(super) struct Roots<S: Real, A> {
     pub s: S,
 }
 
-/// Which of two roots.
+/// One of the two roots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Root {
-    /// With the minus sign in (2), where the line comes in.
+    /// With the minus sign in (2), where the line enters.
     First,
-    /// With the plus sign.
+    /// With the plus sign, where the line leaves.
     Second,
 }
 
@@ -297,7 +294,7 @@ impl<S: Real, A: Axis<S>> Roots<S, A> {
         }
     }
 
-    /// Of what is read of a line that is neither near the axis nor grazes the wall.
+    /// From the terms of a line that is neither near the axis nor grazes the wall.
     #[inline(always)]
     pub fn of_ordinary(
         axis: &A,
@@ -320,7 +317,7 @@ impl<S: Real, A: Axis<S>> Roots<S, A> {
         }
     }
 
-    /// A root by the form in which its terms do not cancel.
+    /// A root in the form in which its terms do not cancel.
     #[inline(always)]
     pub fn quotient(&self, root: Root) -> Quotient<S> {
         let (sum, other) = match root {
@@ -396,16 +393,16 @@ impl<S: Real, A: Axis<S>> Wall<S> for Roots<S, A> {
     }
 }
 
-/// `a × d` from exact products. Those below 2^-960 are not exact in f64, but
-/// then they are nothing against a vector that is not taken for zero.
+/// `a × d` from exact products. Products below 2^-960 are not exact in f64, but they are
+/// negligible in a vector that does not count as zero.
 #[inline(always)]
 fn exact_normal<S: Real>(a: S::Vector, d: S::Vector) -> S::Vector {
     let ([ax, ay, az], [dx, dy, dz]) = (a.components(), d.components());
     S::Vector::of(cross_of_exact_products(ax, ay, az, dx, dy, dz))
 }
 
-/// Takes numbers one by one: they are handed over in registers, and the caller
-/// need not have its vectors in memory for a case that is rare.
+/// Takes separate numbers: they are passed in registers, and the caller does not need its
+/// vectors in memory for this rare case.
 #[cold]
 #[inline(never)]
 fn cross_of_exact_products<S: Real>(ax: S, ay: S, az: S, dx: S, dy: S, dz: S) -> [S; 3] {
@@ -413,8 +410,8 @@ fn cross_of_exact_products<S: Real>(ax: S, ay: S, az: S, dx: S, dy: S, dz: S) ->
     wide_cross::<S>(a, d).map(S::Wide::rounded)
 }
 
-/// The chord of a line along the axis, of which the constant term says how far
-/// it is from the wall.
+/// The chord of a line along the axis, from the constant term, whose sign is that of its
+/// distance from the wall.
 #[cold]
 fn parallel_chord<S: Real>(constant_term: S, slab: Slab<S>) -> Option<Chord<S>> {
     if !(constant_term <= S::ZERO) {
