@@ -1,6 +1,6 @@
 //! Ends the process, naming the callback, when a callback panics.
 //!
-//! Unwinding through Embree's C++ frames is undefined behaviour, and resuming the panic after
+//! Unwinding through Embree's C++ frames is undefined behavior, and resuming the panic after
 //! the C call would leave queries half finished. A panic in an `extern "C"` function aborts by
 //! itself, but without the name of the callback.
 

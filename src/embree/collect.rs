@@ -28,7 +28,7 @@ pub struct MeshHit {
     pub primitive: u32,
     /// The ray's parameter.
     pub t: f32,
-    /// Geometric normal, not normalised; it points to the side from which the
+    /// Geometric normal, not normalized; it points to the side from which the
     /// vertices run counter-clockwise.
     pub normal: [f32; 3],
 }

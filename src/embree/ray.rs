@@ -128,7 +128,7 @@ impl Box32 {
 pub struct NativeHit {
     /// The ray's parameter.
     pub t: f32,
-    /// Geometric normal, not normalised; for a triangle it points to the side
+    /// Geometric normal, not normalized; for a triangle it points to the side
     /// from which the vertices run counter-clockwise. Zero for user geometry.
     pub normal: [f32; 3],
     /// First coordinate on the primitive; for a curve, along it. Zero for user

@@ -1,7 +1,7 @@
 //! The bindings that `build.rs` generated from the installed headers.
 //!
 //! C enumerations are newtypes over integers: a Rust enum with a value of another version of
-//! Embree would be undefined behaviour.
+//! Embree would be undefined behavior.
 
 #![allow(
     non_camel_case_types,

@@ -5,7 +5,7 @@
 //! loop over the lanes for the lines, one for the ends at which they enter if any reaches its
 //! wall, one for the ends at which they leave if any is inside and undecided. The loop bodies
 //! are inlined calls without an early exit and without an `Option`, so the compiler can compute
-//! both sides of each branch and vectorise the loops. What it could not inline is left to the
+//! both sides of each branch and vectorize the loops. What it could not inline is left to the
 //! scalar solver, lane by lane: exact products, lines along or across the axis, lines that
 //! graze the wall, and open ends.
 //!

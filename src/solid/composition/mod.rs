@@ -1,8 +1,8 @@
-//! Solids composed of others by regularised set operations.
+//! Solids composed of others by regularized set operations.
 //!
 //! **The set.** A leaf is a closed solid with an open interior. The operations are a formula
 //! over the interiors: a point on no leaf's boundary satisfies it or not. The composition is
-//! the closure of the points that do (Requicha's regularised operations): a point belongs to it
+//! the closure of the points that do (Requicha's regularized operations): a point belongs to it
 //! if every neighbourhood contains an open set in which the formula is true. So a solid minus
 //! itself is empty, solids that only touch have nothing in common, solids that touch in a face
 //! unite without a face between them, and a cut that ends in the plane of another face leaves

@@ -2,7 +2,7 @@
 //!
 //! Surfaces that pass through a point `p` divide a small ball around it into open cells. In
 //! each cell every leaf is inside or outside, so the formula of the operations has one value
-//! there. The regularised set contains `p` if the value is true in some cell, and `p` is
+//! there. The regularized set contains `p` if the value is true in some cell, and `p` is
 //! interior if it is true in all. A piece of a leaf's surface is part of the set's surface if
 //! the values on its two sides differ.
 //!
@@ -59,7 +59,7 @@ pub(super) struct Neighbourhood {
 }
 
 impl Neighbourhood {
-    /// The location of the point in the regularised set.
+    /// The location of the point in the regularized set.
     pub fn location(&self) -> Location {
         match (self.has_inside, self.has_outside) {
             (true, true) => Location::Boundary,

@@ -1,6 +1,6 @@
 //! Packets of rays in prototypes: the steps of single rays, in rows of lanes.
 //!
-//! The loops call functions without a branch, and the compiler vectorises them for the
+//! The loops call functions without a branch, and the compiler vectorizes them for the
 //! instruction set for which they are [run](crate::embree::Instructions::run).
 
 use super::{Entry, Frame, Level, LocalRay, Window};
