@@ -20,7 +20,7 @@ impl<Q: Query> SceneBuilder<Q> {
     /// Adds a geometry whose primitives `geometry` bounds and intersects.
     ///
     /// # Errors
-    /// When Embree refuses.
+    /// When Embree reports an error.
     pub fn attach_user<G>(&mut self, geometry: G) -> Result<GeometryId, Error>
     where
         G: UserGeometry<Query = Q>,
@@ -31,8 +31,8 @@ impl<Q: Query> SceneBuilder<Q> {
     }
 }
 
-/// Makes an Embree geometry that calls `geometry`. The data has to outlive the
-/// handle and the scene that it is attached to.
+/// Creates an Embree geometry that calls `geometry`. The data has to outlive the handle and the
+/// scene that the geometry is attached to.
 fn new_user_geometry<G: UserGeometry>(
     device: &Device,
     geometry: G,
@@ -66,15 +66,14 @@ unsafe extern "C" fn bounds<G: UserGeometry>(args: *const sys::RTCBoundsFunction
         let data = unsafe { &*args.geometryUserPtr.cast::<Registered<G>>() };
         let mut bounds = with_default_float_mode(|| data.geometry.bounds(args.primID));
         if !bounds.is_legal() {
-            // The commit fails for it; until then Embree gets a box it knows
-            // how to handle.
+            // The commit returns an error for it. Until then Embree gets a box that it accepts.
             data.refused.fetch_min(args.primID, Ordering::Relaxed);
             bounds = Box32 {
                 lower: [0.0; 3],
                 upper: [0.0; 3],
             };
         }
-        // SAFETY: invariant 7: Embree waits for the box there.
+        // SAFETY: invariant 7: Embree reads the box from there.
         unsafe { *args.bounds_o = bounds.to_embree() };
     });
 }

@@ -1,13 +1,13 @@
 //! The functions that Embree calls for a user geometry during a query.
 //!
-//! They find the state of the query in the context, turn lanes into rays, and
-//! hand both to the methods of [`UserGeometry`]. Each is compiled once for every
-//! set of instructions that are worth a copy of the code, so that a geometry's
-//! methods, if they are `#[inline(always)]`, become code for that set; which one
-//! Embree calls is settled when the geometry is made.
+//! Each callback takes the state of the query from the context, turns lanes into rays, and
+//! passes both to a method of [`UserGeometry`]. The callbacks are compiled once for each
+//! instruction set that is worth a copy of the code. A geometry's methods become code for that
+//! set if they are `#[inline(always)]`. The geometry gets one set of callbacks when it is
+//! created.
 //!
-//! A closure would not do for a body here: it is a function of its own, compiled
-//! for the least set unless the compiler chooses to inline it.
+//! No body here is a closure: a closure is a function of its own, compiled for the baseline
+//! unless the compiler chooses to inline it.
 
 use super::abort::AbortOnPanic;
 use super::isa::MaxIsa;
@@ -28,8 +28,8 @@ pub(super) struct Callbacks {
 }
 
 impl Callbacks {
-    /// The callbacks for the instruction set that Embree uses, which the
-    /// processor has; `None` is one that goes by no name.
+    /// The callbacks for the instruction set that Embree uses, which the processor supports.
+    /// `None` is an unnamed set.
     pub fn of<G: UserGeometry>(isa: Option<MaxIsa>) -> Self {
         #[cfg(target_arch = "x86_64")]
         if isa >= Some(MaxIsa::Avx512) {
@@ -41,7 +41,7 @@ impl Callbacks {
     }
 }
 
-/// A module with the callbacks, compiled with the features that it names.
+/// Defines a module with the callbacks, compiled with the given features.
 macro_rules! callbacks {
     ($set:ident $(, $feature:meta)?) => {
         mod $set {
@@ -87,7 +87,7 @@ callbacks!(
     )
 );
 
-/// What Embree calls back for in a context, which names the instance on the way.
+/// The primitive of a callback, and the instance that the context names.
 #[inline(always)]
 fn reached(primitive: u32, context: &sys::cyltrace_context) -> Reached {
     let instance = context.embree.instID[0];
@@ -135,16 +135,16 @@ unsafe fn intersect<G: UserGeometry>(args: *const sys::RTCIntersectFunctionNArgu
         // SAFETY: invariant 7: one lane.
         let ray = unsafe { ray32(words) };
         let guard = AbortOnPanic::new("intersect");
-        // SAFETY: invariant 4: behind Embree's part of the context is the query.
+        // SAFETY: invariant 4: the query follows Embree's part of the context.
         let query = unsafe { &mut *context.query.cast::<G::Query>() };
         let hit = geometry.intersect(at, &ray, query);
         guard.passed();
         // SAFETY: invariant 7: one mask a lane.
         unsafe { *args.valid = -i32::from(hit.is_some()) };
         let Some(t_far) = hit else { return };
-        // SAFETY: invariant 7: the components are where `sys::word` says, which
-        // is asserted there for one lane; every component is a 32-bit word, all
-        // whose bits are all allowed in f32 as in u32.
+        // SAFETY: invariant 7: the components are at the positions in `sys::word`, which are
+        // asserted for one lane; every component is a 32-bit word, and any bits are valid as
+        // f32 and as u32.
         unsafe {
             let end = words.add(word::RAY_T_FAR).cast::<f32>();
             *end = (*end).min(t_far);
@@ -153,7 +153,7 @@ unsafe fn intersect<G: UserGeometry>(args: *const sys::RTCIntersectFunctionNArgu
             }
             *words.add(word::HIT_PRIMITIVE) = args.primID;
             *words.add(word::HIT_GEOMETRY) = args.geomID;
-            // A hit in an instance may have been there before.
+            // The ray may have a hit in an instance from before.
             for (level, &instance) in context.embree.instID.iter().enumerate() {
                 *words.add(word::HIT_INSTANCE + level) = instance;
             }
@@ -175,7 +175,7 @@ unsafe fn intersect<G: UserGeometry>(args: *const sys::RTCIntersectFunctionNArgu
     }
 }
 
-/// The part of a packet that Embree calls back for, intersected.
+/// Intersects the part of a packet that Embree calls back for.
 ///
 /// # Safety
 /// Invariant 7: there are `N` masks and `N` lanes of rays and hits.
@@ -198,7 +198,7 @@ unsafe fn intersect_lanes<G: UserGeometry, const N: usize>(
     let hits = geometry.intersect_packet(at, rays, &rays32, &mut t_far, packet) & rays;
     guard.passed();
 
-    // SAFETY: the caller's promise, here and below; alignment is that of words.
+    // SAFETY: the caller's promise, here and below; the alignment is that of words.
     let valid = unsafe { &mut *valid.cast::<[i32; N]>() };
     *valid = [0; N];
     // SAFETY: as above; these are three different components.
@@ -265,7 +265,7 @@ unsafe fn occluded<G: UserGeometry>(args: *const sys::RTCOccludedFunctionNArgume
     }
 }
 
-/// The part of a packet that Embree calls back for, in a query for any hit.
+/// Tests the part of a packet that Embree calls back for, in a query for any hit.
 ///
 /// # Safety
 /// As [`intersect_lanes`], without hits.
@@ -298,20 +298,20 @@ unsafe fn occluded_lanes<G: UserGeometry, const N: usize>(
     }
 }
 
-/// Ends the process: no Embree that is known has packets of that width.
+/// Ends the process: no known version of Embree has packets of that width.
 #[cold]
 fn unknown_width(callback: &'static str, lanes: u32) -> ! {
     let _guard = AbortOnPanic::new(callback);
     panic!("Embree called back with {lanes} lanes");
 }
 
-/// The lanes of a callback, and which rays they are of.
+/// The lanes of a callback, and the numbers of their rays.
 struct Lanes<const N: usize> {
     /// Bit `i` says whether lane `i` is active.
     active: u32,
     id: [u32; N],
-    /// Where the lanes are rays in a row, the number of the first one. Embree's
-    /// widest code leaves them so, and then there is nothing to move.
+    /// The number of the first ray if the rays are consecutive. Embree's widest code keeps them
+    /// so, and then nothing has to be moved.
     first: Option<usize>,
 }
 
@@ -320,7 +320,7 @@ impl<const N: usize> Lanes<N> {
     /// Invariant 7: there are `N` masks and `N` lanes of rays.
     #[inline(always)]
     unsafe fn read(valid: *const i32, words: *const u32) -> Self {
-        // SAFETY: the caller's promise; alignment is that of words.
+        // SAFETY: the caller's promise; the alignment is that of words.
         let (valid, t_near, t_far, id) = unsafe {
             (
                 &*valid.cast::<[i32; N]>(),
@@ -336,19 +336,19 @@ impl<const N: usize> Lanes<N> {
         }
         let bits = is_active.map(|mask| u32::from(mask.bits()));
         let active = bits[0] | bits[1] << LANES;
-        let mut astray = 0;
+        let mut mismatch = 0;
         for lane in 0..N {
-            astray |= id[lane] ^ id[0].wrapping_add(lane as u32);
+            mismatch |= id[lane] ^ id[0].wrapping_add(lane as u32);
         }
         let first = id[0] as usize;
         Self {
             active,
             id: *id,
-            first: (astray == 0 && first <= GREATEST_PACKET - N).then_some(first),
+            first: (mismatch == 0 && first <= GREATEST_PACKET - N).then_some(first),
         }
     }
 
-    /// The ray of a lane; the query that made the lanes numbered them.
+    /// The number of a lane's ray, as the query assigned it.
     #[inline(always)]
     fn ray(&self, lane: usize) -> usize {
         self.id[lane] as usize % GREATEST_PACKET
@@ -364,7 +364,7 @@ impl<const N: usize> Lanes<N> {
         RaySet::from_bits((0..N).fold(0, |bits, lane| bits | of_lane(lane)))
     }
 
-    /// Embree's rays by their numbers; what is at other numbers has no meaning.
+    /// Embree's rays, indexed by ray number. Entries of other rays have no meaning.
     ///
     /// # Safety
     /// Invariant 7: there are `N` lanes of rays.
@@ -386,7 +386,7 @@ impl<const N: usize> Lanes<N> {
         rays
     }
 
-    /// Puts a component of the lanes where their rays' numbers say.
+    /// Scatters a component of the lanes to the positions of their rays.
     ///
     /// # Safety
     /// As [`Lanes::rays32`].
@@ -397,8 +397,8 @@ impl<const N: usize> Lanes<N> {
         component: usize,
         of_rays: &mut [f32; GREATEST_PACKET],
     ) {
-        // SAFETY: the caller's promise; alignment is that of words, whose bits are all
-        // allowed in f32.
+        // SAFETY: the caller's promise; the alignment is that of words, and any bits are valid
+        // as f32.
         let lanes = unsafe { &*words.add(component * N).cast::<[f32; N]>() };
         if let Some(first) = self.first {
             of_rays[first..][..N].copy_from_slice(lanes);
@@ -411,7 +411,7 @@ impl<const N: usize> Lanes<N> {
         }
     }
 
-    /// The active lane of a ray that has one.
+    /// The lane of a ray with an active lane.
     #[inline(always)]
     fn lane(&self, ray: usize) -> usize {
         if let Some(first) = self.first {

@@ -1,14 +1,13 @@
-//! Every hit of a ray with triangles or curves, from one traversal.
+//! All hits of a ray with triangles or curves, from one traversal.
 //!
-//! Embree looks for the closest hit: each candidate would shorten the ray and
-//! hide what lies behind it. A filter function sees every candidate
-//! before that, and here it writes the candidate down and refuses it, so the
-//! ray keeps its length and the traversal reaches everything.
+//! Embree searches for the closest hit: each candidate would shorten the ray and hide what is
+//! behind it. A filter function sees every candidate before that. The filter function here
+//! records the candidate and rejects it, so the ray keeps its length and the traversal visits
+//! everything.
 //!
-//! Embree may ask about a triangle more than once (a hierarchy with spatial
-//! splits has it in several leaves) and in an order that depends on the
-//! processor. Hits are therefore sorted, and known by their triangle
-//! before anyone sees them.
+//! Embree may report a triangle more than once (a hierarchy with spatial splits has it in
+//! several leaves), in an order that depends on the processor. Hits are therefore sorted by
+//! triangle, and duplicates removed.
 
 use super::abort::AbortOnPanic;
 use super::device::Device;
@@ -20,7 +19,7 @@ use super::scene::{Scene, SceneBuilder};
 use super::sys::{self, word};
 use super::types::GeometryId;
 
-/// A triangle that a ray meets, in f32 as Embree computes it.
+/// A triangle that a ray hits, in f32 as Embree computes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshHit {
     /// The mesh.
@@ -29,12 +28,12 @@ pub struct MeshHit {
     pub primitive: u32,
     /// The ray's parameter.
     pub t: f32,
-    /// Geometric normal, not normalised; it points to the side from which the
+    /// Geometric normal, not normalized; it points to the side from which the
     /// vertices run counter-clockwise.
     pub normal: [f32; 3],
 }
 
-/// What is written down of a candidate.
+/// What is recorded of a candidate.
 trait Collected {
     fn new(hit: NativeHit) -> Self;
 }
@@ -57,14 +56,13 @@ impl Collected for NativeHit {
 }
 
 impl SceneBuilder<Vec<MeshHit>> {
-    /// Adds a triangle mesh as [`attach_triangles`](Self::attach_triangles)
-    /// does; [`Scene::every_hit`] finds its triangles, and a query for the
-    /// closest hit passes through them.
+    /// Adds a triangle mesh as [`attach_triangles`](Self::attach_triangles) does.
+    /// [`Scene::every_hit`] reports its triangles; a query for the closest hit passes through
+    /// them.
     ///
     /// # Errors
-    /// As for [`attach_triangles`](Self::attach_triangles), and when the
-    /// installed Embree was built without filter functions or does not see the
-    /// back of a triangle.
+    /// As for [`attach_triangles`](Self::attach_triangles), and when the installed Embree was
+    /// built without filter functions or culls back faces.
     pub fn attach_collecting_triangles(
         &mut self,
         vertices: &[[f32; 3]],
@@ -76,14 +74,12 @@ impl SceneBuilder<Vec<MeshHit>> {
 }
 
 impl SceneBuilder<Vec<NativeHit>> {
-    /// Adds cone curves as [`attach_cone_curves`](Self::attach_cone_curves)
-    /// does; [`Scene::every_hit`] finds where the ray enters and where it leaves
-    /// each segment.
+    /// Adds cone curves as [`attach_cone_curves`](Self::attach_cone_curves) does.
+    /// [`Scene::every_hit`] reports where the ray enters and leaves each segment.
     ///
     /// # Errors
-    /// As for [`attach_cone_curves`](Self::attach_cone_curves), and when the
-    /// installed Embree was built without filter functions or does not see the
-    /// inside of a curve.
+    /// As for [`attach_cone_curves`](Self::attach_cone_curves), and when the installed Embree
+    /// was built without filter functions or culls back faces.
     pub fn attach_collecting_cone_curves(
         &mut self,
         vertices: &[[f32; 4]],
@@ -95,27 +91,26 @@ impl SceneBuilder<Vec<NativeHit>> {
     }
 }
 
-/// Attaches a geometry whose hits are written down and refused.
+/// Attaches a geometry whose hits are recorded and rejected.
 fn attach_collecting<H: Collected + 'static>(
     builder: &mut SceneBuilder<Vec<H>>,
     geometry: &GeometryHandle,
 ) -> Result<GeometryId, Error> {
     check_support(builder.device())?;
-    // SAFETY: invariants 1 and 5; by invariant 4 `collect` may take the query
-    // for what it is, since the builder's `Q` is `Vec<H>`.
+    // SAFETY: invariants 1 and 5; by invariant 4 `collect` may cast the query, since the
+    // builder's `Q` is `Vec<H>`.
     unsafe { sys::rtcSetGeometryIntersectFilterFunction(geometry.raw(), Some(collect::<H>)) };
     builder.device().check("set a geometry's filter function")?;
     builder.attach(geometry)
 }
 
 impl Scene<Vec<MeshHit>> {
-    /// Replaces `hits` by all triangles of collecting meshes that Embree finds
-    /// the ray to meet with `t` in its range: front and back, each once, sorted
-    /// by mesh and triangle.
+    /// Replaces `hits` with all triangles of collecting meshes that the ray hits with `t` in
+    /// its range: from the front and from the back, each once, sorted by mesh and triangle.
     ///
-    /// Like all of Embree's answers they are those of f32 arithmetic. A ray in
-    /// the plane of a triangle does not meet it; one through an edge meets one
-    /// neighbour at least, and maybe both.
+    /// Like all results of Embree, they are those of f32 arithmetic. A ray in the plane of a
+    /// triangle does not hit it. A ray through an edge hits at least one of its triangles, and
+    /// maybe both.
     pub fn every_hit(&self, ray: &Ray32, hits: &mut Vec<MeshHit>) {
         hits.clear();
         self.closest(ray, hits);
@@ -125,9 +120,8 @@ impl Scene<Vec<MeshHit>> {
 }
 
 impl Scene<Vec<NativeHit>> {
-    /// Replaces `hits` by all hits with collecting curves that Embree finds with
-    /// `t` in the ray's range, at most two a segment, sorted by geometry,
-    /// segment and `t`.
+    /// Replaces `hits` with all hits of collecting curves with `t` in the ray's range: at most
+    /// two per segment, sorted by geometry, segment and `t`.
     pub fn every_hit(&self, ray: &Ray32, hits: &mut Vec<NativeHit>) {
         hits.clear();
         self.closest(ray, hits);
@@ -143,7 +137,7 @@ fn triangle(hit: &MeshHit) -> (GeometryId, u32) {
     (hit.geometry, hit.primitive)
 }
 
-/// Whether all hits would be found.
+/// Returns an error if the installed Embree would lose hits.
 fn check_support(device: &Device) -> Result<(), Error> {
     let is_set = |property| device.property(property) != 0;
     let missing = if !is_set(sys::RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED) {
@@ -156,13 +150,13 @@ fn check_support(device: &Device) -> Result<(), Error> {
     Err(Error::Unsupported { missing })
 }
 
-/// Writes the candidate down and refuses it.
+/// Records the candidate and rejects it.
 unsafe extern "C" fn collect<H: Collected>(args: *const sys::RTCFilterFunctionNArguments) {
     AbortOnPanic::run("filter", || {
         // SAFETY: invariant 7.
         let args = unsafe { &*args };
         assert_eq!(args.N, 1, "only single rays are traced");
-        // SAFETY: invariant 4: this filter is set in scenes for this query only.
+        // SAFETY: invariant 4: this filter is set only in scenes with this type of query.
         let hits: &mut Vec<H> =
             unsafe { &mut *(*args.context.cast::<sys::cyltrace_context>()).query.cast() };
         // SAFETY: invariant 7: the candidate's `t` is the ray's end.
@@ -170,7 +164,7 @@ unsafe extern "C" fn collect<H: Collected>(args: *const sys::RTCFilterFunctionNA
         // SAFETY: invariant 7: one lane of hits is the structure of one hit.
         let hit = unsafe { &*args.hit.cast::<sys::RTCHit>() };
         hits.push(H::new(NativeHit::new(t, hit)));
-        // SAFETY: invariant 7: one mask a lane; zero refuses.
+        // SAFETY: invariant 7: one mask per lane; zero rejects.
         unsafe { *args.valid = 0 };
     });
 }

@@ -13,11 +13,11 @@ use super::kernel::Instructions;
 use super::sys;
 use super::types::{PacketWidth, Version};
 
-/// How a device is set up; the default leaves all to Embree.
+/// How a device is set up. The default leaves all choices to Embree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DeviceOptions {
-    /// Threads that build scenes; `None` is one a processor. Queries run on
-    /// the caller's threads.
+    /// The number of threads that build scenes; `None` is one per processor. Queries run on the
+    /// caller's threads.
     pub threads: Option<NonZeroUsize>,
     /// The greatest instruction set to use; `None` is the processor's best.
     pub max_isa: Option<MaxIsa>,
@@ -37,8 +37,8 @@ impl DeviceOptions {
     }
 }
 
-/// Embree's entry point. Clones share one device, which lives as long as the
-/// last of them and of the scenes built on it.
+/// Embree's entry point. Clones share one device, which lives until the last clone and the last
+/// scene built on it are dropped.
 #[derive(Clone, Debug)]
 pub struct Device {
     shared: Arc<Shared>,
@@ -60,18 +60,18 @@ unsafe impl Sync for Shared {}
 
 impl Drop for Shared {
     fn drop(&mut self) {
-        // SAFETY: invariant 1: this is the one reference that `Device::open`
-        // made. Invariant 2: `memory`, to which Embree still counts while it
-        // frees, is dropped after this body.
+        // SAFETY: invariant 1: this is the one reference that `Device::open` made. Invariant 2:
+        // Embree updates `memory` while it frees, and `memory` is dropped after this body.
         unsafe { sys::rtcReleaseDevice(self.handle) }
     }
 }
 
 impl Device {
-    /// Sets up Embree, without a look at the layout of its hits.
+    /// Sets up Embree without checking the layout of its hits.
     ///
     /// # Errors
-    /// When Embree refuses, or is of another version (major or minor) than the headers.
+    /// When Embree reports an error, or its major or minor version differs from that of the
+    /// headers.
     pub(super) fn open(options: &DeviceOptions) -> Result<Self, Error> {
         const STEP: &str = "set up a device";
         let config = CString::new(options.config()).expect("the options contain no zero byte");
@@ -92,8 +92,8 @@ impl Device {
         let memory = Arc::as_ptr(&device.shared.memory).cast_mut().cast();
         // SAFETY: invariant 1; the function needs no data of its own.
         unsafe { sys::rtcSetDeviceErrorFunction(handle, Some(keep_message), std::ptr::null_mut()) };
-        // SAFETY: invariants 1 and 2: the counters outlive the handle;
-        // `count_memory` takes the pointer for what it is.
+        // SAFETY: invariants 1 and 2: the counters outlive the handle; `count_memory` casts the
+        // pointer to the same type.
         unsafe { sys::rtcSetDeviceMemoryMonitorFunction(handle, Some(count_memory), memory) };
         check(handle, STEP)?;
 
@@ -115,34 +115,34 @@ impl Device {
         }
     }
 
-    /// Bytes that Embree uses now: hierarchies and buffers of all scenes of
-    /// this device, without user data.
+    /// The bytes that Embree uses now: hierarchies and buffers of all scenes of this device,
+    /// without user data.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
         as_bytes(&self.shared.memory.live)
     }
 
-    /// The most bytes that Embree used at a time.
+    /// The most bytes that Embree has used at any time.
     #[must_use]
     pub fn peak_memory_bytes(&self) -> usize {
         as_bytes(&self.shared.memory.peak)
     }
 
-    /// The widest packets of rays that Embree traverses without taking them
-    /// apart; `None` if it was built without packets.
+    /// The widest packets of rays that Embree traverses without splitting them; `None` if it
+    /// was built without packets.
     #[inline]
     #[must_use]
     pub fn packet_width(&self) -> Option<PacketWidth> {
         self.shared.packet_width
     }
 
-    /// The instructions that code of this crate may use beside Embree's.
+    /// The instructions that code of this crate may use, as Embree does.
     #[must_use]
     pub fn instructions(&self) -> Instructions {
         Instructions::of(self.isa_in_use())
     }
 
-    /// The instruction set that Embree uses, which the processor has.
+    /// The instruction set that Embree uses.
     pub(super) fn isa_in_use(&self) -> Option<MaxIsa> {
         self.shared.isa
     }
@@ -156,14 +156,14 @@ impl Device {
         self.shared.handle
     }
 
-    /// Whether the last call on this thread to something of this device went
-    /// well; `step` follows "could not" in the message.
+    /// Returns the error of the last call on this thread to this device, if it failed. `step`
+    /// follows "could not" in the message.
     pub(super) fn check(&self, step: &'static str) -> Result<(), Error> {
         check(self.handle(), step)
     }
 }
 
-/// The widest packets that a device, which is alive, traverses as they are.
+/// The widest packets that a live device traverses without splitting them.
 fn widest_packets(device: sys::RTCDevice) -> Option<PacketWidth> {
     let native = |width| {
         let property = match width {
@@ -187,18 +187,17 @@ struct Memory {
     peak: AtomicIsize,
 }
 
-/// A counter's value. Threads report out of order, so that a sum may be below
-/// zero for a moment.
+/// The value of a counter. Threads report out of order, so it may be negative for a moment.
 fn as_bytes(counter: &AtomicIsize) -> usize {
     usize::try_from(counter.load(Ordering::Relaxed)).unwrap_or(0)
 }
 
-/// Embree's memory monitor: `bytes` more are about to be or have been
-/// allocated, or fewer when negative. True lets Embree go on.
+/// Embree's memory monitor: `bytes` are about to be allocated, or were allocated; a negative
+/// number is freed. Returning true lets Embree continue.
 unsafe extern "C" fn count_memory(memory: *mut c_void, bytes: isize, _after: bool) -> bool {
     AbortOnPanic::run("memory monitor", || {
-        // SAFETY: invariant 2: the pointer was made from the `Arc<Memory>` of
-        // a device that has not been given back yet; it is only read through.
+        // SAFETY: invariant 2: the pointer was made from the `Arc<Memory>` of a device that is
+        // not released yet; it is only read through.
         let memory = unsafe { &*memory.cast::<Memory>() };
         let live = memory.live.fetch_add(bytes, Ordering::Relaxed) + bytes;
         memory.peak.fetch_max(live, Ordering::Relaxed);
@@ -223,7 +222,7 @@ mod tests {
     #[test]
     fn check_after_refused_call_gives_embrees_message_once() {
         let device = Device::new(&DeviceOptions::default()).unwrap();
-        // SAFETY: invariant 1; an unknown geometry type is refused by Embree.
+        // SAFETY: invariant 1; Embree rejects an unknown geometry type.
         let geometry = unsafe { sys::rtcNewGeometry(device.handle(), sys::RTCGeometryType(9999)) };
         assert!(geometry.is_null());
         let error = device.check("make a geometry").unwrap_err();

@@ -1,9 +1,8 @@
-//! What can go wrong, in Embree's own words where it has any.
+//! The errors of this layer, with Embree's own message where it gives one.
 //!
-//! Embree calls its error function on the thread that made the failing call,
-//! before that call returns. So the message waits in a thread-local until the
-//! wrapper of the call looks for it, and two threads that build at the same
-//! time don't mix theirs.
+//! Embree calls its error function on the thread of the failing call, before that call returns.
+//! The message is kept in a thread-local until the wrapper of the call reads it, so threads
+//! that build at the same time do not mix their messages.
 
 use std::cell::RefCell;
 use std::ffi::{CStr, c_char, c_void};
@@ -13,15 +12,15 @@ use super::abort::AbortOnPanic;
 use super::sys;
 use super::types::{GREATEST_COORDINATE, GeometryId, Version};
 
-/// Why Embree could not be set up or a scene not be built.
+/// Why Embree could not be set up, or a scene could not be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// Embree refused a step.
+    /// Embree reported an error in a step.
     #[error("Embree could not {step}: {message} ({code})")]
     Embree {
         /// The step, as it follows "could not".
         step: &'static str,
-        /// Embree's own message, or that it gave none.
+        /// Embree's own message, or a note that it gave none.
         message: String,
         /// The kind of error.
         code: ErrorCode,
@@ -36,7 +35,7 @@ pub enum Error {
         /// The version of the library.
         loaded: Version,
     },
-    /// The library writes hits in another layout than its headers state.
+    /// The library writes hits in a layout that differs from its headers.
     #[error(
         "the loaded Embree {loaded} does not answer in the layout of the headers this program was built with ({found}): build it with the library's own headers"
     )]
@@ -46,13 +45,13 @@ pub enum Error {
         /// What the probe saw.
         found: &'static str,
     },
-    /// The installed Embree was built without something that is needed.
+    /// The installed Embree was built without a required feature.
     #[error("the installed Embree was built without {missing}")]
     Unsupported {
         /// What is missing.
         missing: &'static str,
     },
-    /// A map that an instance cannot have.
+    /// A map that is invalid for an instance.
     #[error(
         "the instance's map {map:?} must be of finite numbers below {GREATEST_COORDINATE:e}, with a determinant that is not zero and within the range of f32"
     )]
@@ -60,13 +59,13 @@ pub enum Error {
         /// Its rows.
         map: [[f32; 4]; 3],
     },
-    /// An instance of a scene of another device.
+    /// An instance of a scene on another device.
     #[error("an instanced scene must be of the same device as the scene it is placed in")]
     OtherDevice,
     /// An instance of a scene that contains instances.
     #[error("an instanced scene must not contain instances itself")]
     NestedInstance,
-    /// A primitive of a user geometry has bounds that Embree would leave out.
+    /// A primitive of a user geometry has bounds that Embree would skip.
     #[error(
         "primitive {primitive} of geometry {} has bounds that are empty, not finite or beyond {GREATEST_COORDINATE:e}",
         geometry.0
@@ -87,35 +86,35 @@ pub enum Error {
         /// Its coordinates, and its radius for a curve.
         value: Vec<f32>,
     },
-    /// A triangle or curve segment that names a vertex there isn't.
+    /// A triangle or curve segment uses a vertex that does not exist.
     #[error("primitive {primitive} uses vertex {vertex}, and there are {vertices}")]
     VertexIndex {
         /// The triangle or segment.
         primitive: usize,
-        /// The vertex it names; for a segment, its second one.
+        /// The vertex that it uses; for a segment, the second one.
         vertex: u64,
-        /// How many there are.
+        /// The number of vertices.
         vertices: usize,
     },
-    /// Neighbour flags that don't belong to the segments.
+    /// The number of neighbour flags differs from that of the segments.
     #[error("{flags} neighbour flags were given for {segments} segments")]
     FlagCount {
-        /// How many flags.
+        /// The number of flags.
         flags: usize,
-        /// How many segments.
+        /// The number of segments.
         segments: usize,
     },
-    /// Normals that don't belong to the disks.
+    /// The number of normals differs from that of the disks.
     #[error("{normals} normals were given for {disks} disks")]
     NormalCount {
-        /// How many normals.
+        /// The number of normals.
         normals: usize,
-        /// How many disks.
+        /// The number of disks.
         disks: usize,
     },
 }
 
-/// Embree's kinds of errors; unknown numbers are kept.
+/// Embree's error code. Unknown codes are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ErrorCode(u32);
 
@@ -136,7 +135,7 @@ thread_local! {
     static MESSAGE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Embree's error function: keeps the message for [`check`].
+/// Embree's error function: stores the message for [`check`].
 pub(super) unsafe extern "C" fn keep_message(
     _user: *mut c_void,
     _code: sys::RTCError,
@@ -152,9 +151,8 @@ pub(super) unsafe extern "C" fn keep_message(
     });
 }
 
-/// Whether the last call on this thread to something of `device` went well;
-/// `step` says what it was to do. `device` is alive, or null right after
-/// creating one failed.
+/// Returns the error of the last call on this thread to `device`, if it failed. `step` is what
+/// the call was to do. `device` is live, or null right after creating one failed.
 pub(super) fn check(device: sys::RTCDevice, step: &'static str) -> Result<(), Error> {
     // SAFETY: invariant 1; null means the error of creating a device.
     let code = unsafe { sys::rtcGetDeviceError(device) };

@@ -4,11 +4,11 @@ use super::device::Device;
 use super::error::Error;
 use super::sys;
 
-/// One reference to an Embree geometry; attaching adds one for the scene.
+/// One reference to an Embree geometry. Attaching it adds a reference for the scene.
 pub(super) struct GeometryHandle(sys::RTCGeometry);
 
 impl GeometryHandle {
-    /// A geometry of the given kind that every ray may hit.
+    /// A geometry of the given kind with a mask that no ray misses.
     pub fn new(device: &Device, kind: sys::RTCGeometryType) -> Result<Self, Error> {
         // SAFETY: invariant 1.
         let geometry = Self(unsafe { sys::rtcNewGeometry(device.handle(), kind) });
@@ -34,7 +34,7 @@ impl Drop for GeometryHandle {
     }
 }
 
-/// What a scene keeps of a user geometry, whatever its type.
+/// What a scene stores for a user geometry of any type.
 pub(super) trait UserData: Send + Sync {
     /// The least primitive whose bounds were not legal.
     fn refused(&self) -> Option<u32>;

@@ -1,10 +1,10 @@
-//! The instruction sets Embree can be limited to.
+//! The instruction sets that Embree can be limited to.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// The greatest instruction set a device may use; results must not depend on
-/// it, and tests compare them.
+/// The greatest instruction set that a device may use. Results do not depend on it; tests
+/// compare them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum MaxIsa {
     /// SSE2, which every x86-64 processor has.
@@ -15,11 +15,11 @@ pub enum MaxIsa {
     Avx,
     /// AVX2 with FMA3.
     Avx2,
-    /// AVX-512 as of Skylake: F, DQ, CD, BW and VL.
+    /// AVX-512 as in Skylake: F, DQ, CD, BW and VL.
     Avx512,
 }
 
-/// A text that names no instruction set.
+/// A name that is not that of an instruction set.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{name:?} is no instruction set: it must be one of sse2, sse4.2, avx, avx2, avx512")]
 pub struct UnknownIsa {
@@ -28,10 +28,10 @@ pub struct UnknownIsa {
 }
 
 impl MaxIsa {
-    /// All of them, the least first.
+    /// All sets, the least first.
     pub const ALL: [Self; 5] = [Self::Sse2, Self::Sse42, Self::Avx, Self::Avx2, Self::Avx512];
 
-    /// The name on the command line, which is Embree's own.
+    /// Embree's own name of the set, also used on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -43,8 +43,8 @@ impl MaxIsa {
         }
     }
 
-    /// Those this processor has, the least first; none where it isn't x86-64,
-    /// for Embree's code there goes by no name of these.
+    /// The sets that this processor supports, the least first. Empty if the processor is not
+    /// x86-64: no name here applies to Embree's code there.
     #[must_use]
     pub fn available() -> Vec<Self> {
         Self::ALL
@@ -53,23 +53,21 @@ impl MaxIsa {
             .collect()
     }
 
-    /// The greatest one this processor has, which is what Embree uses unless
-    /// it is limited to less.
+    /// The greatest set that this processor supports. Embree uses it unless it is limited.
     #[must_use]
     pub fn best() -> Option<Self> {
         Self::available().pop()
     }
 
-    /// The name of the one in use where Embree is limited to `limit`, which is none
-    /// when it is above the processor's best.
+    /// The name of the set that Embree uses with this limit: the lesser of the limit and the
+    /// processor's best. `"unknown"` if the processor is not x86-64.
     #[must_use]
     pub fn name_in_use(limit: Option<Self>) -> &'static str {
         Self::in_use(limit).map_or("unknown", Self::name)
     }
 
-    /// The one in use where Embree is limited to `limit`; `None` where its code goes
-    /// by no name of these.
-    pub(super) fn in_use(limit: Option<Self>) -> Option<Self> {
+    /// The set that Embree uses with this limit; `None` if the processor is not x86-64.
+    pub(crate) fn in_use(limit: Option<Self>) -> Option<Self> {
         Self::lesser(limit, Self::best())
     }
 

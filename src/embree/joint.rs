@@ -1,9 +1,9 @@
 //! A scene that several threads build together.
 //!
-//! `rtcJoinCommitScene` lets a thread help with a build that another one has
-//! begun. What it does not say is when nobody works on the scene any more, and
-//! which thread learns of an error; so threads are counted in and out here, and
-//! the last one out makes the scene or the error that all of them get.
+//! `rtcJoinCommitScene` lets a thread take part in a build that another thread has begun. It
+//! does not report when all threads have left the build, nor which thread receives an error. So
+//! threads are counted in and out here, and the last one out creates the scene or the error
+//! that all of them get.
 
 use std::sync::{Arc, Condvar, Mutex, OnceLock, PoisonError};
 
@@ -13,30 +13,30 @@ use super::query::Query;
 use super::scene::{Parts, Scene, SceneBuilder};
 use super::sys;
 
-/// A scene to be built by whoever [joins](Self::join); from
+/// A scene that is built by the threads that [join](Self::join). Created by
 /// [`SceneBuilder::into_joint`](super::SceneBuilder::into_joint).
 ///
-/// It is for scenes that are built when a ray first needs them: threads that get
-/// there while the build goes on join it rather than wait for it.
+/// It serves scenes that are built when a ray first needs them: threads that arrive during the
+/// build join it instead of waiting.
 pub struct JointCommit<Q: Query> {
     built: OnceLock<Result<Arc<Scene<Q>>, Error>>,
     work: Mutex<Work>,
-    /// Told when `built` is.
+    /// Notified when `built` is set.
     finished: Condvar,
-    /// Whether Embree lets a second thread join.
+    /// Whether Embree supports joining.
     may_join: bool,
 }
 
-/// Who works on the scene.
+/// The state of the build.
 struct Work {
-    /// The scene's, until it is built.
+    /// The parts of the scene, until it is built.
     parts: Option<Parts>,
-    /// Threads that have come to build and not left yet.
+    /// The number of threads in the build.
     builders: u32,
-    /// Whether a thread has left, which Embree lets happen when the build is
-    /// over: who comes now has nothing to do.
+    /// Whether a thread has left the build, which happens only when the build is over: threads
+    /// that arrive now have nothing to do.
     is_over: bool,
-    /// The first error that a thread learned of.
+    /// The first error that a thread received.
     error: Option<Error>,
 }
 
@@ -64,14 +64,14 @@ impl<Q: Query> JointCommit<Q> {
         }
     }
 
-    /// The scene, when it is built: the first thread begins, others take part
-    /// until it is done. If Embree was built without joining, they wait. May be
-    /// called within a callback of a query, but not while this very scene calls
+    /// Returns the scene, built if necessary: the first thread begins the build, others take
+    /// part until it is done. If Embree does not support joining, they wait. May be called
+    /// within a callback of a query, but not while this same scene calls
     /// [`bounds`](super::UserGeometry::bounds).
     ///
     /// # Errors
-    /// Those of [`SceneBuilder::commit`](super::SceneBuilder::commit), the same for
-    /// every thread.
+    /// As [`SceneBuilder::commit`](super::SceneBuilder::commit); every thread gets the same
+    /// error.
     pub fn join(&self) -> Result<&Arc<Scene<Q>>, Error> {
         if self.built.get().is_none() {
             self.build();
@@ -88,11 +88,11 @@ impl<Q: Query> JointCommit<Q> {
             let (scene, device) = (parts.raw(), parts.device().clone());
             work.builders += 1;
             drop(work);
-            // Embree flushes denormal numbers while it builds; this thread gets
-            // its own mode back whatever it does.
+            // Embree flushes denormal numbers while it builds; the former mode of this thread
+            // is restored in any case.
             with_default_float_mode(|| {
-                // SAFETY: invariants 1 and 5: the parts are kept until every
-                // builder has left, and nobody else has the scene.
+                // SAFETY: invariants 1 and 5: the parts are kept until every builder has left,
+                // and nothing else uses the scene.
                 unsafe {
                     if self.may_join {
                         sys::rtcJoinCommitScene(scene);
@@ -114,7 +114,7 @@ impl<Q: Query> JointCommit<Q> {
         let _finished = self.finished.wait_while(work, is_unfinished);
     }
 
-    /// Makes the scene or the error for all.
+    /// Creates the scene or the error for all threads.
     fn finish(&self, work: &mut Work) {
         let parts = work.parts.take().expect("one builder is the last");
         let built = work.error.take().map_or_else(|| parts.into_scene(), Err);

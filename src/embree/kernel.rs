@@ -1,19 +1,19 @@
-//! Code that is compiled for several instruction sets; one is chosen
-//! when the program runs.
+//! Code that is compiled for several instruction sets. One of the versions is chosen at run
+//! time.
 
 use super::isa::MaxIsa;
 
-/// Work that is worth compiling for every instruction set: loops over many
-/// numbers, in a `run` that is `#[inline(always)]`, as is all that it calls.
+/// Work that is worth compiling for every instruction set: a loop over many numbers. `run` and
+/// all that it calls are `#[inline(always)]`.
 pub trait Kernel {
-    /// What comes out.
+    /// The result.
     type Answer;
 
-    /// Does the work. Answers are the same for every instruction set.
+    /// Does the work. The result is the same for every instruction set.
     fn run(self) -> Self::Answer;
 }
 
-/// The instructions that this processor has and Embree is allowed to use; from
+/// The instructions that this processor supports and that Embree may use; from
 /// [`Device::instructions`](super::Device::instructions).
 #[derive(Clone, Copy, Debug)]
 pub struct Instructions(Set);
@@ -28,8 +28,8 @@ enum Set {
 }
 
 impl Instructions {
-    /// Those of the instruction set in use, which the processor has; `None` is
-    /// one that goes by no name.
+    /// The instructions of the set in use, which the processor supports. `None` is an unnamed
+    /// set.
     pub(super) fn of(isa: Option<MaxIsa>) -> Self {
         #[cfg(target_arch = "x86_64")]
         if isa >= Some(MaxIsa::Avx512) {
@@ -40,7 +40,7 @@ impl Instructions {
         Self(Set::Baseline)
     }
 
-    /// Runs the work in the version for these instructions.
+    /// Runs the version for these instructions.
     #[inline]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Answer {
         match self.0 {

@@ -1,5 +1,4 @@
-//! Geometry that Embree intersects by itself: triangle meshes, straight curves,
-//! spheres and disks.
+//! Geometry that Embree intersects itself: triangle meshes, straight curves, spheres and disks.
 
 use super::error::Error;
 use super::geometry::GeometryHandle;
@@ -9,7 +8,7 @@ use super::scene::SceneBuilder;
 use super::sys;
 use super::types::GeometryId;
 
-/// How the ends of a straight curve look.
+/// The shape of the ends of a straight curve.
 #[derive(Clone, Copy)]
 pub(super) enum Curve {
     /// Flat.
@@ -19,12 +18,11 @@ pub(super) enum Curve {
 }
 
 impl<Q: Query> SceneBuilder<Q> {
-    /// Adds a triangle mesh; each triangle is three vertex numbers. The
-    /// vertices are copied.
+    /// Adds a triangle mesh. Each triangle is three vertex numbers. The vertices are copied.
     ///
     /// # Errors
-    /// When a vertex is not finite or too far out, a triangle names a vertex
-    /// that isn't there, or Embree refuses.
+    /// When a vertex is not finite or too far out, a triangle uses a vertex that does not
+    /// exist, or Embree reports an error.
     pub fn attach_triangles(
         &mut self,
         vertices: &[[f32; 3]],
@@ -62,16 +60,16 @@ impl<Q: Query> SceneBuilder<Q> {
         Ok(mesh)
     }
 
-    /// Adds straight cone segments of Embree's own (`CONE_LINEAR_CURVE`), the
-    /// rival of analytic cylinders. A vertex is a point and a radius; a segment
-    /// goes from the vertex it names to the next one. `neighbours` has a byte a
-    /// segment: 1 if the segment to the left continues it, 2 to the right, 3
-    /// both; an end without neighbour is capped. `None` caps all.
+    /// Adds Embree's straight cone segments (`CONE_LINEAR_CURVE`), the alternative to analytic
+    /// cylinders. A vertex is a point and a radius; a segment goes from the given vertex to the
+    /// next one. `neighbours` has a byte per segment: 1 if the segment to the left continues
+    /// it, 2 if the segment to the right does, 3 if both do. An end without a neighbour is
+    /// capped; `None` caps all.
     ///
     /// # Errors
-    /// When a vertex is not finite, too far out or of negative radius, a
-    /// segment names a vertex that isn't there, there are not as many flags as
-    /// segments, or Embree refuses.
+    /// When a vertex is not finite, too far out or has a negative radius, a segment uses a
+    /// vertex that does not exist, the number of flags differs from that of segments, or Embree
+    /// reports an error.
     pub fn attach_cone_curves(
         &mut self,
         vertices: &[[f32; 4]],
@@ -82,9 +80,9 @@ impl<Q: Query> SceneBuilder<Q> {
         self.attach(&curves)
     }
 
-    /// Adds straight segments with round ends (`ROUND_LINEAR_CURVE`): cones that
-    /// touch a sphere at each end. For the rest as
-    /// [`attach_cone_curves`](Self::attach_cone_curves) has it.
+    /// Adds Embree's straight segments with round ends (`ROUND_LINEAR_CURVE`): cones that touch
+    /// a sphere at each end. The parameters are those of
+    /// [`attach_cone_curves`](Self::attach_cone_curves).
     ///
     /// # Errors
     /// As for [`attach_cone_curves`](Self::attach_cone_curves).
@@ -98,23 +96,23 @@ impl<Q: Query> SceneBuilder<Q> {
         self.attach(&curves)
     }
 
-    /// Adds spheres of Embree's own (`SPHERE_POINT`): points and radii. A ray meets one
-    /// where it enters it, or where it leaves it if it starts inside.
+    /// Adds Embree's spheres (`SPHERE_POINT`): points and radii. Embree reports the point where
+    /// a ray enters a sphere, or where it leaves if it starts inside.
     ///
     /// # Errors
-    /// When a number is not finite or too far out, a radius is negative, or Embree
-    /// refuses.
+    /// When a number is not finite or too far out, a radius is negative, or Embree reports an
+    /// error.
     pub fn attach_spheres(&mut self, spheres: &[[f32; 4]]) -> Result<GeometryId, Error> {
         let points = self.new_points(sys::RTC_GEOMETRY_TYPE_SPHERE_POINT, spheres)?;
         self.attach(&points)
     }
 
-    /// Adds flat disks of Embree's own (`ORIENTED_DISC_POINT`): points and radii, and
-    /// for each a normal of any length. A ray meets them from either side.
+    /// Adds Embree's flat disks (`ORIENTED_DISC_POINT`): points and radii, and for each a
+    /// normal of any length. A ray hits them from either side.
     ///
     /// # Errors
-    /// As for [`attach_spheres`](Self::attach_spheres), and when a normal is not finite
-    /// or too long, or there are not as many as disks.
+    /// As for [`attach_spheres`](Self::attach_spheres), and when a normal is not finite or too
+    /// long, or the number of normals differs from that of disks.
     pub fn attach_disks(
         &mut self,
         disks: &[[f32; 4]],
@@ -128,7 +126,7 @@ impl<Q: Query> SceneBuilder<Q> {
             });
         }
         let points = self.new_points(sys::RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT, disks)?;
-        // Read with 16 bytes each, too, but Embree does not pad this buffer.
+        // Embree reads 16 bytes for each, but does not pad this buffer.
         let padded: Vec<[f32; 4]> = normals.iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
         self.fill(
             &points,
@@ -139,7 +137,7 @@ impl<Q: Query> SceneBuilder<Q> {
         self.attach(&points)
     }
 
-    /// Points with radii that are not attached yet.
+    /// Points with radii, not attached yet.
     fn new_points(
         &self,
         kind: sys::RTCGeometryType,
@@ -207,8 +205,8 @@ impl<Q: Query> SceneBuilder<Q> {
         Ok(curves)
     }
 
-    /// Copies `items` into a new buffer of Embree's, which pads one of vertices for
-    /// the 16-byte loads it reads them with.
+    /// Copies `items` into a new buffer of Embree's. Embree pads vertex buffers for its 16-byte
+    /// loads.
     fn fill<T: Copy>(
         &self,
         geometry: &GeometryHandle,
@@ -228,8 +226,8 @@ impl<Q: Query> SceneBuilder<Q> {
             )
         };
         self.device().check("make a geometry's buffer")?;
-        // SAFETY: Embree made room for as many items of this size, apart from
-        // ours; invariant 5: nothing reads it yet.
+        // SAFETY: Embree allocated this number of items of this size, apart from ours;
+        // invariant 5: nothing reads it yet.
         unsafe {
             buffer
                 .cast::<T>()
@@ -239,8 +237,7 @@ impl<Q: Query> SceneBuilder<Q> {
     }
 }
 
-/// Embree leaves out primitives with bad vertices without a word, so they are
-/// refused here.
+/// Checks vertices. Embree skips primitives with bad vertices silently.
 fn check_vertices<const N: usize>(
     vertices: &[[f32; N]],
     is_good: impl Fn(&[f32; N]) -> bool,
@@ -255,8 +252,7 @@ fn check_vertices<const N: usize>(
     }
 }
 
-/// Embree reads vertices unchecked, so a number beyond the last one would read
-/// foreign memory.
+/// Checks a vertex number. Embree does not check it and would read foreign memory.
 fn check_index(primitive: usize, vertex: u64, vertices: usize) -> Result<(), Error> {
     if vertex < vertices as u64 {
         return Ok(());

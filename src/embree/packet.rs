@@ -1,10 +1,9 @@
-//! Packets: up to sixteen rays that Embree takes through the tree together.
+//! Packets: up to sixteen rays that Embree traverses together.
 //!
-//! A packet's rays are given by component, and go to Embree in groups of 4, 8
-//! or 16 *lanes*. A lane is not its ray: where the processor does not have
-//! Embree's wide code, Embree takes a group apart or gathers its lanes anew, and
-//! some of those ways look at nothing but a ray's range. So each lane carries the
-//! number of its ray, and a lane without one has an empty range.
+//! A packet's rays are stored by component, and go to Embree in groups of 4, 8 or 16 *lanes*. A
+//! lane is not always its ray: on a processor without Embree's wide code, Embree splits a group
+//! or gathers its lanes anew, and some of those paths test only a ray's range. So each lane
+//! carries the number of its ray, and a lane without a ray has an empty range.
 
 use std::array;
 use std::mem::offset_of;
@@ -17,18 +16,17 @@ use super::scene::Scene;
 use super::sys::{self, word};
 use super::types::{GeometryId, PacketWidth};
 
-/// What Embree assumes of the rays of a packet; it changes speed alone.
+/// What Embree assumes about the rays of a packet. It affects speed alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Coherence {
-    /// The rays may go anywhere.
+    /// The rays may have any directions.
     Incoherent,
-    /// The rays are alike: they start near each other and go about the same way.
+    /// The rays are coherent: they start near each other and have similar directions.
     Coherent,
 }
 
-/// The rays of a packet, each as [`Ray32`] says, by component; they start at
-/// `t = 0`. The values of a ray that is not active do not
-/// matter.
+/// The rays of a packet by component, under the conditions of [`Ray32`]. They start at `t = 0`.
+/// The values of inactive rays do not matter.
 #[derive(Clone, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub struct Rays32 {
@@ -41,7 +39,7 @@ pub struct Rays32 {
 }
 
 impl Rays32 {
-    /// One ray of them.
+    /// One of the rays.
     #[must_use]
     pub fn ray(&self, number: usize) -> Ray32 {
         Ray32 {
@@ -52,7 +50,7 @@ impl Rays32 {
         }
     }
 
-    /// Those of `rays` that have any range.
+    /// The rays of a set whose range is not empty.
     #[inline]
     fn not_empty(&self, rays: RaySet) -> RaySet {
         let bits = (0..GREATEST_PACKET).fold(0, |bits, number| {
@@ -62,7 +60,7 @@ impl Rays32 {
     }
 }
 
-/// One mask a lane, aligned for every width.
+/// One mask per lane, aligned for every width.
 #[repr(C, align(64))]
 struct Valid<const N: usize>([i32; N]);
 
@@ -80,7 +78,7 @@ struct RayLanes<const N: usize> {
 }
 
 impl<const N: usize> RayLanes<N> {
-    /// Makes a lane a ray that Embree knows how to handle, of an empty range.
+    /// Fills a lane with a valid ray of an empty range.
     #[inline]
     fn make_empty(&mut self, lane: usize) {
         for axis in 0..3 {
@@ -91,8 +89,8 @@ impl<const N: usize> RayLanes<N> {
     }
 }
 
-/// Instance numbers of a hit, which depend on how Embree was configured; the
-/// other seven words do not.
+/// The number of instance words of a hit, which depends on how Embree was configured. The other
+/// seven words are fixed.
 const INSTANCE_WORDS: usize = size_of::<sys::RTCHit4>() / size_of::<[u32; 4]>() - 7;
 
 /// Embree's `RTCRayHit4`, `RTCRayHit8` or `RTCRayHit16`.
@@ -108,7 +106,7 @@ struct RayHitLanes<const N: usize> {
 }
 
 impl<const N: usize> RayHitLanes<N> {
-    /// The hit of a lane that has one.
+    /// The hit of a lane with a hit.
     #[inline]
     fn hit(&self, lane: usize) -> NativeHit {
         let instance = self.instance[0][lane];
@@ -124,7 +122,7 @@ impl<const N: usize> RayHitLanes<N> {
     }
 }
 
-/// Holds at compile time that the layouts of a width are Embree's.
+/// Asserts at compile time that the layouts of a width are Embree's.
 macro_rules! assert_layout {
     ($lanes:literal, $ray:ident, $hit:ident, $rayhit:ident) => {
         const _: () = {
@@ -155,7 +153,7 @@ assert_layout!(4, RTCRay4, RTCHit4, RTCRayHit4);
 assert_layout!(8, RTCRay8, RTCHit8, RTCRayHit8);
 assert_layout!(16, RTCRay16, RTCHit16, RTCRayHit16);
 
-/// The rays `first` to `first + N - 1` of a packet, as far as they are active.
+/// The rays `first` to `first + N - 1` of a packet, and which of them are active.
 struct Group<const N: usize> {
     first: usize,
     active: RaySet,
@@ -192,8 +190,7 @@ impl<const N: usize> Group<N> {
         Valid(array::from_fn(|lane| -i32::from(self.is_active(lane))))
     }
 
-    /// The lanes. Those that are not active have a ray that Embree knows how to
-    /// handle, of an empty range.
+    /// The lanes. Inactive lanes have a valid ray of an empty range.
     #[inline]
     fn ray_lanes(&self, rays: &Rays32) -> RayLanes<N> {
         debug_assert!(
@@ -242,17 +239,16 @@ impl<const N: usize> Group<N> {
 }
 
 impl<Q: Query> Scene<Q> {
-    /// Traverses the scene for the closest hits of the rays of a packet that are
-    /// in `active`. User geometries answer through `packet`; what Embree finds
-    /// by itself is not reported. A ray with an empty range is a miss.
+    /// Traverses the scene for the closest hits of the `active` rays of a packet. User
+    /// geometries store their results in `packet`; hits that Embree finds itself are not
+    /// reported. A ray with an empty range is a miss.
     ///
-    /// The answer does not depend on `width` and `coherence`;
-    /// [`Device::packet_width`](super::Device::packet_width) is the widest
-    /// that Embree does not take apart.
+    /// The result does not depend on `width` and `coherence`;
+    /// [`Device::packet_width`](super::Device::packet_width) is the greatest width that Embree
+    /// does not split.
     ///
     /// # Panics
-    /// When the installed Embree was built without packets, where
-    /// `packet_width` is `None`.
+    /// When the installed Embree was built without packets (`packet_width` is `None`).
     #[inline]
     pub fn closest_packet(
         &self,
@@ -292,8 +288,8 @@ impl<Q: Query> Scene<Q> {
         }
     }
 
-    /// Traverses the scene until the rays of a packet that are in `active` have
-    /// each hit anything, and answers with those that did.
+    /// Traverses the scene until each of the `active` rays of a packet has hit anything.
+    /// Returns the rays with a hit.
     ///
     /// # Panics
     /// As [`closest_packet`](Self::closest_packet).

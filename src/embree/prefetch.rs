@@ -1,11 +1,10 @@
-//! Memory that will be needed soon.
+//! Prefetches memory.
 
-/// Begins to bring the cache line where a value begins near to the processor, without
-/// waiting for it. Nothing else changes.
+/// Starts to load the first cache line of a value, without waiting for it. Has no other effect.
 #[inline(always)]
 pub fn prefetch<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]
-    // SAFETY: every x86-64 has the instruction, and it reads nothing.
+    // SAFETY: every x86-64 processor has the instruction, and it cannot fault.
     unsafe {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(value).cast());

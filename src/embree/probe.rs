@@ -1,9 +1,7 @@
-//! The start-up guard: does the loaded library write hits where the headers
-//! say it does?
+//! The start-up check: does the loaded library write hits in the layout of the headers?
 //!
-//! The layout depends on how a library was configured, not on its version
-//! alone. Headers of 4.2 with a library of 4.4 let every query write a word
-//! behind the hit, without any error.
+//! The layout depends on how a library was configured, not on its version alone. With headers
+//! of 4.2 and a library of 4.4, every query wrote a word beyond the hit, without any error.
 
 use super::device::{Device, DeviceOptions};
 use super::error::Error;
@@ -11,9 +9,9 @@ use super::ray::Ray32;
 use super::scene::SceneBuilder;
 use super::sys;
 
-/// No value that Embree writes.
+/// A value that Embree never writes.
 const SENTINEL: u32 = 0x5EA1_C0DE;
-/// More than any known layout exceeds another one.
+/// More words than any known layout exceeds another by.
 const MARGIN_WORDS: usize = 16;
 
 #[repr(C)]
@@ -26,8 +24,8 @@ impl Device {
     /// Sets up Embree.
     ///
     /// # Errors
-    /// When Embree refuses, is of another version (major or minor) than the
-    /// headers this program was built with, or writes another hit layout.
+    /// When Embree reports an error, its major or minor version differs from that of the
+    /// headers, or it writes another hit layout.
     pub fn new(options: &DeviceOptions) -> Result<Self, Error> {
         let device = Self::open(options)?;
         check_hit_layout(&device)?;
@@ -35,7 +33,7 @@ impl Device {
     }
 }
 
-/// Traces one ray against one triangle, into a hit with a margin behind it.
+/// Traces one ray against one triangle, into a hit that is followed by a margin.
 fn check_hit_layout(device: &Device) -> Result<(), Error> {
     let mut builder = SceneBuilder::<()>::new(device)?;
     let corners = [[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0]];
@@ -51,11 +49,11 @@ fn check_hit_layout(device: &Device) -> Result<(), Error> {
         query: ray.to_query(),
         margin: [SENTINEL; MARGIN_WORDS],
     };
-    // SAFETY: invariants 1 and 5; the margin makes a layout that is longer than
-    // the headers' one, which this call looks for, harmless.
+    // SAFETY: invariants 1 and 5; the margin makes a layout longer than that of the headers
+    // harmless, which is what this call detects.
     unsafe { scene.trace_into((&raw mut padded).cast(), &mut ()) };
     let Padded { query, margin } = padded;
-    // Embree's reciprocals may be off by an ulp, a misplaced part is far off.
+    // Embree's reciprocals may be off by an ulp; a misplaced field is far off.
     let near = |found: f32, expected: f32| (found - expected).abs() < 1e-3;
     let found = if margin != [SENTINEL; MARGIN_WORDS] {
         "it writes behind the hit"

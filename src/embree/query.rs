@@ -1,24 +1,23 @@
-//! What callbacks work for: the states of queries.
+//! The states of queries, which callbacks read and write.
 
-/// What callbacks read and write on behalf of rays: the type itself is the
-/// state of one ray. A scene knows both states, for a query of either kind.
+/// The state of a query, which callbacks read and write. The type itself is the state of one
+/// ray, and it names the state of a packet. A scene supports queries with both.
 pub trait Query: 'static {
-    /// The state of a packet of rays; [`NoPackets`] where none are traced.
+    /// The state of a packet of rays; [`NoPackets`] if packets are never traced.
     type Packet: 'static;
 }
 
-/// The state of packets that are never traced. There is no value of it, so that
-/// a callback that would get one has nothing to do:
-/// `match *packet {}`.
+/// The state of packets that are never traced. It has no values, so a callback that receives
+/// one is `match *packet {}`.
 #[derive(Clone, Copy, Debug)]
 pub enum NoPackets {}
 
-/// Nothing to read or write.
+/// No state.
 impl Query for () {
     type Packet = ();
 }
 
-/// Hits that a filter function collects, which it does for single rays.
+/// The hits that a filter function collects, for single rays only.
 impl<H: 'static> Query for Vec<H> {
     type Packet = NoPackets;
 }

@@ -1,4 +1,4 @@
-//! Embree's f32 values: rays, boxes, and the hits it finds by itself.
+//! Embree's f32 values: rays, boxes, and the hits that Embree finds itself.
 
 use super::sys;
 use super::types::{GREATEST_COORDINATE, GeometryId};
@@ -6,15 +6,14 @@ use super::types::{GREATEST_COORDINATE, GeometryId};
 /// A ray as Embree traverses it: `origin + t * direction`,
 /// `t_near <= t <= t_far`.
 ///
-/// What callers guarantee: origin and direction are finite and below
-/// [`GREATEST_COORDINATE`] in size, `t_near` is finite and not negative, `t_far`
-/// is not NaN and may be infinite. An empty range is a miss. Builds with debug
-/// assertions check it.
+/// Callers guarantee that origin and direction are finite and below [`GREATEST_COORDINATE`] in
+/// size, that `t_near` is finite and not negative, and that `t_far` is not NaN; it may be
+/// infinite. An empty range is a miss. Builds with debug assertions check this.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray32 {
     /// The point at `t = 0`.
     pub origin: [f32; 3],
-    /// Any direction but zero, of any length.
+    /// The direction: not zero, of any length.
     pub direction: [f32; 3],
     /// Where the ray starts.
     pub t_near: f32,
@@ -78,7 +77,7 @@ pub struct Box32 {
 }
 
 impl Box32 {
-    /// The box that contains nothing; the neutral element of [`Box32::union`].
+    /// The empty box, the neutral element of [`Box32::union`].
     pub const EMPTY: Self = Self {
         lower: [f32::INFINITY; 3],
         upper: [f32::NEG_INFINITY; 3],
@@ -93,9 +92,8 @@ impl Box32 {
         }
     }
 
-    /// Whether Embree would accept it as the bounds of a primitive: not empty,
-    /// and every coordinate below [`GREATEST_COORDINATE`]. Embree leaves out a
-    /// primitive with other bounds without a word.
+    /// Whether Embree accepts it as the bounds of a primitive: not empty, and every coordinate
+    /// below [`GREATEST_COORDINATE`]. Embree silently skips a primitive with other bounds.
     #[must_use]
     pub fn is_legal(&self) -> bool {
         is_inside(&self.lower)
@@ -125,12 +123,12 @@ impl Box32 {
     }
 }
 
-/// The closest hit as Embree reports it, in f32.
+/// A hit as Embree reports it, in f32.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NativeHit {
     /// The ray's parameter.
     pub t: f32,
-    /// Geometric normal, not normalised; for a triangle it points to the side
+    /// Geometric normal, not normalized; for a triangle it points to the side
     /// from which the vertices run counter-clockwise. Zero for user geometry.
     pub normal: [f32; 3],
     /// First coordinate on the primitive; for a curve, along it. Zero for user
@@ -143,7 +141,7 @@ pub struct NativeHit {
     /// The geometry that was hit; in an instance, its number in the instanced
     /// scene.
     pub geometry: GeometryId,
-    /// The instance that it was hit in.
+    /// The instance in which it was hit.
     pub instance: Option<GeometryId>,
 }
 

@@ -1,13 +1,12 @@
-//! Which rays of a packet: a set of their numbers, as bits.
+//! A set of rays of a packet, as bits.
 
 use std::ops::{BitAnd, BitOr, Sub};
 
-/// The most rays of a packet.
+/// The greatest number of rays of a packet.
 pub const GREATEST_PACKET: usize = 16;
 
-/// A set of rays of a packet. Rays are known by the numbers that the caller
-/// of the query gave them, from 0 to [`GREATEST_PACKET`] - 1, wherever Embree
-/// puts them.
+/// A set of rays of a packet. A ray is identified by the number that the caller of the query
+/// gave it, from 0 to [`GREATEST_PACKET`] - 1, whatever its lane in Embree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct RaySet(u16);
 
@@ -24,14 +23,14 @@ impl RaySet {
         Self(bits)
     }
 
-    /// Bit `i` says whether ray `i` is in the set.
+    /// The bits: bit `i` is set if ray `i` is in the set.
     #[inline(always)]
     #[must_use]
     pub const fn bits(self) -> u16 {
         self.0
     }
 
-    /// The rays whose truths are true.
+    /// The rays whose entries are true.
     #[inline(always)]
     #[must_use]
     pub fn of(truths: &[bool; GREATEST_PACKET]) -> Self {
@@ -53,21 +52,21 @@ impl RaySet {
         Self(((1_u32 << count) - 1) as u16)
     }
 
-    /// Whether there is no ray in it.
+    /// Whether the set is empty.
     #[inline(always)]
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// How many rays there are in it.
+    /// The number of rays in the set.
     #[inline(always)]
     #[must_use]
     pub const fn len(self) -> usize {
         self.0.count_ones() as usize
     }
 
-    /// Whether a ray is in it.
+    /// Whether a ray is in the set.
     #[inline(always)]
     #[must_use]
     pub const fn contains(self, ray: usize) -> bool {
@@ -77,7 +76,7 @@ impl RaySet {
     /// Adds a ray.
     ///
     /// # Panics
-    /// When there is no such ray in a packet.
+    /// When `ray` is not below [`GREATEST_PACKET`].
     #[inline(always)]
     pub const fn insert(&mut self, ray: usize) {
         assert!(ray < GREATEST_PACKET, "a packet has no such ray");
@@ -136,7 +135,7 @@ impl IntoIterator for RaySet {
     }
 }
 
-/// The numbers of a set's rays, the least first.
+/// An iterator over the numbers of a set's rays, the least first.
 #[derive(Clone, Debug)]
 pub struct RayNumbers(u16);
 

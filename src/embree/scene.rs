@@ -16,8 +16,7 @@ use super::types::GeometryId;
 /// One reference to an Embree scene.
 struct SceneHandle(sys::RTCScene);
 
-// SAFETY: invariant 5: while it is written to, one builder owns it; afterwards
-// it is only read.
+// SAFETY: invariant 5: while it is written to, one builder owns it; afterwards it is only read.
 unsafe impl Send for SceneHandle {}
 // SAFETY: as for `Send`; a shared builder offers no function that writes.
 unsafe impl Sync for SceneHandle {}
@@ -31,29 +30,29 @@ impl Drop for SceneHandle {
     }
 }
 
-/// A scene that others have instances of, whatever its queries.
+/// A scene that other scenes have instances of, with any type of query.
 trait Instanced: Send + Sync {}
 
 impl<Q: Query> Instanced for Scene<Q> {}
 
-/// An Embree scene and what has to outlive it; the order of the fields is the
-/// order in which they are dropped (invariant 2).
+/// An Embree scene and what has to outlive it. The fields are dropped in their order (invariant
+/// 2).
 pub(super) struct Parts {
     handle: SceneHandle,
-    /// Shared pointers because, unlike a box, one may be moved while Embree
-    /// keeps a pointer into it. There is no second owner.
+    /// `Arc` because, unlike a `Box`, it may be moved while Embree stores a pointer into it.
+    /// There is no second owner.
     user_data: Vec<(GeometryId, Arc<dyn UserData>)>,
     /// Scenes that this one has instances of.
     instanced: Vec<Arc<dyn Instanced>>,
     device: Device,
 }
 
-/// A scene that is being put together, for queries with a state of type `Q`.
+/// A scene under construction, for queries with a state of type `Q`.
 ///
-/// Whatever is attached belongs to the scene and is dropped with it, exactly
-/// once, also when the scene is never committed.
+/// The scene owns what is attached, and drops it exactly once, also if the scene is never
+/// committed.
 ///
-/// A builder may move to another thread, but not be shared between threads:
+/// A builder may be sent to another thread, but not shared between threads:
 /// ```compile_fail,E0277
 /// fn shared<T: Sync>() {}
 /// shared::<cyltrace::embree::SceneBuilder<()>>();
@@ -61,7 +60,7 @@ pub(super) struct Parts {
 pub struct SceneBuilder<Q: Query> {
     parts: Parts,
     query: PhantomData<fn(&mut Q)>,
-    /// A `Cell` may not be shared between threads, so a builder may not.
+    /// Makes the builder `!Sync`.
     unshared: PhantomData<Cell<()>>,
 }
 
@@ -69,13 +68,13 @@ impl<Q: Query> SceneBuilder<Q> {
     /// An empty scene.
     ///
     /// # Errors
-    /// When Embree refuses, for example for lack of memory.
+    /// When Embree reports an error, for example that memory ran out.
     pub fn new(device: &Device) -> Result<Self, Error> {
         // SAFETY: invariant 1.
         let handle = SceneHandle(unsafe { sys::rtcNewScene(device.handle()) });
         device.check("make a scene")?;
-        // Meshes are the witness of exact answers, so no ray may slip between
-        // two triangles. User geometry is the same with and without.
+        // Meshes verify exact results, so no ray may pass between two triangles. User geometry
+        // is the same with and without this flag.
         // SAFETY: invariants 1 and 5.
         unsafe { sys::rtcSetSceneFlags(handle.0, sys::RTC_SCENE_FLAG_ROBUST) };
         device.check("set a scene's flags")?;
@@ -91,15 +90,14 @@ impl<Q: Query> SceneBuilder<Q> {
         })
     }
 
-    /// Attaches a geometry and keeps what its data pointer points to.
+    /// Attaches a geometry and takes ownership of its user data.
     pub(super) fn attach_with(
         &mut self,
         data: Arc<dyn UserData>,
         geometry: &GeometryHandle,
     ) -> Result<GeometryId, Error> {
         let id = self.attach(geometry);
-        // Kept with the scene also after an error: the geometry may have been
-        // attached all the same.
+        // Kept also after an error: the geometry may have been attached anyway.
         let kept_for = *id.as_ref().unwrap_or(&GeometryId(u32::MAX));
         self.parts.user_data.push((kept_for, data));
         id
@@ -109,7 +107,7 @@ impl<Q: Query> SceneBuilder<Q> {
         &self.parts.device
     }
 
-    /// Keeps a scene as long as this one.
+    /// Keeps a scene alive as long as this one.
     pub(super) fn keep(&mut self, scene: Arc<Scene<Q>>) {
         self.parts.instanced.push(scene);
     }
@@ -123,7 +121,7 @@ impl<Q: Query> SceneBuilder<Q> {
         Ok(GeometryId(id))
     }
 
-    /// As [`attach`](Self::attach), with a number that is chosen.
+    /// As [`attach`](Self::attach), with a given number.
     pub(super) fn attach_as(
         &mut self,
         number: GeometryId,
@@ -141,29 +139,28 @@ impl<Q: Query> SceneBuilder<Q> {
         self.device().check("commit a geometry")
     }
 
-    /// Builds the hierarchy. `bounds` of user geometries is called from this
-    /// thread and from Embree's own.
+    /// Builds the hierarchy. Calls `bounds` of user geometries from this thread and from
+    /// Embree's threads.
     ///
     /// # Errors
-    /// When Embree refuses, for example for lack of memory, or when a primitive of a
-    /// user geometry has bounds that it would leave out.
+    /// When Embree reports an error, for example that memory ran out, or when a primitive of a
+    /// user geometry has bounds that Embree would skip.
     pub fn commit(self) -> Result<Scene<Q>, Error> {
         let parts = self.parts;
-        // SAFETY: invariants 1 and 5: this builder was the only owner, and it
-        // has been taken.
+        // SAFETY: invariants 1 and 5: this builder was the only owner, and it is consumed.
         unsafe { sys::rtcCommitScene(parts.handle.0) };
         parts.device.check("commit a scene")?;
         parts.into_scene()
     }
 
-    /// What was attached so far.
+    /// The parts that were attached so far.
     pub(super) fn into_parts(self) -> Parts {
         self.parts
     }
 }
 
 impl Parts {
-    /// The Embree scene, for as long as these parts are kept.
+    /// The Embree scene, valid as long as these parts.
     pub(super) fn raw(&self) -> sys::RTCScene {
         self.handle.0
     }
@@ -172,7 +169,7 @@ impl Parts {
         &self.device
     }
 
-    /// The scene of parts that were committed.
+    /// The scene of committed parts.
     pub(super) fn into_scene<Q: Query>(self) -> Result<Scene<Q>, Error> {
         for (geometry, data) in &self.user_data {
             if let Some(primitive) = data.refused() {
@@ -194,10 +191,9 @@ impl Parts {
     }
 }
 
-/// A built scene, which never changes and which any number of threads may
-/// query at a time, also from within a callback of another query. Each level
-/// of such nesting takes 5 to 12 kB of the thread's stack for a single ray, and 24
-/// to 65 kB for a packet.
+/// A built scene. It never changes, and any number of threads may query it at the same time,
+/// also from within a callback of another query. Each level of such nesting takes 5 to 12 kB of
+/// stack for a single ray, and 24 to 65 kB for a packet.
 pub struct Scene<Q: Query> {
     parts: Parts,
     bounds: Option<Box32>,
@@ -205,14 +201,14 @@ pub struct Scene<Q: Query> {
 }
 
 impl<Q: Query> Scene<Q> {
-    /// Traverses the scene for the closest hit. User geometries answer through
-    /// `query`; what Embree finds by itself is not reported.
+    /// Traverses the scene for the closest hit. User geometries store their results in `query`;
+    /// hits that Embree finds itself are not reported.
     #[inline]
     pub fn closest(&self, ray: &Ray32, query: &mut Q) {
         self.trace(ray, query);
     }
 
-    /// Traverses the scene until anything is hit, and says whether it was.
+    /// Traverses the scene until anything is hit. Returns whether there was a hit.
     #[inline]
     pub fn any(&self, ray: &Ray32, query: &mut Q) -> bool {
         let mut ray = ray.to_embree();
@@ -227,14 +223,14 @@ impl<Q: Query> Scene<Q> {
         ray.tfar == f32::NEG_INFINITY
     }
 
-    /// The closest hit as Embree reports it. A user geometry that shrank the
-    /// ray last is named, its answer is in `query`.
+    /// The closest hit as Embree reports it. It names the user geometry that shortened the ray
+    /// last; that geometry's own result is in `query`.
     #[inline]
     pub fn closest_native(&self, ray: &Ray32, query: &mut Q) -> Option<NativeHit> {
         NativeHit::from_embree(&self.trace(ray, query))
     }
 
-    /// The box of all primitives; `None` when there are none.
+    /// The box of all primitives; `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<Box32> {
         self.bounds
@@ -266,13 +262,13 @@ impl<Q: Query> Scene<Q> {
         rayhit
     }
 
-    /// Traverses the scene with a ray and hit of Embree's.
+    /// Traverses the scene with Embree's structure of a ray and a hit.
     ///
     /// # Safety
     /// `rayhit` is valid for all that the loaded library writes to it.
     #[inline]
     pub(super) unsafe fn trace_into(&self, rayhit: *mut sys::RTCRayHit, query: &mut Q) {
-        // SAFETY: invariants 1, 4 and 5; the caller answers for `rayhit`.
+        // SAFETY: invariants 1, 4 and 5; the caller guarantees `rayhit`.
         unsafe {
             sys::cyltrace_intersect1(self.parts.handle.0, rayhit, ptr::from_mut(query).cast());
         }

@@ -67,7 +67,7 @@ void cyltrace_occluded_packet(unsigned int width, const int *valid, RTCScene sce
 
 /* Round to nearest, all exceptions masked, no flushing to zero. */
 #define DEFAULT_MXCSR 0x1f80u
-/* FTZ, which is of results, and DAZ, which is of operands. */
+/* FTZ for results, DAZ for operands. */
 #define FLUSHING_MXCSR (DEFAULT_MXCSR | 0x8000u | 0x0040u)
 
 static uint64_t enter_float_mode(unsigned int mode) {
@@ -84,7 +84,7 @@ void cyltrace_restore_float_mode(uint64_t former) { _mm_setcsr((unsigned int)for
 
 #elif defined(__aarch64__) && defined(__GNUC__)
 
-/* FZ, which is of results and operands. */
+/* FZ, for results and operands. */
 #define FLUSHING_FPCR ((uint64_t)1 << 24)
 
 static uint64_t enter_float_mode(uint64_t mode) {
@@ -103,5 +103,5 @@ void cyltrace_restore_float_mode(uint64_t former) {
 }
 
 #else
-#error "the floating-point mode of this processor is not known here"
+#error "unsupported processor: its floating-point mode is unknown"
 #endif

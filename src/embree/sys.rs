@@ -1,7 +1,7 @@
 //! The bindings that `build.rs` generated from the installed headers.
 //!
-//! C enumerations are newtypes over integers: a Rust enum holding a value that
-//! only another version of Embree knows would be undefined behaviour.
+//! C enumerations are newtypes over integers: a Rust enum with a value of another version of
+//! Embree would be undefined behavior.
 
 #![allow(
     non_camel_case_types,
@@ -18,7 +18,7 @@ use std::mem::offset_of;
 
 include!(concat!(env!("OUT_DIR"), "/embree.rs"));
 
-/// What `geomID` says when nothing was hit; a cast macro, which bindgen skips.
+/// The value of `geomID` without a hit. It is a cast macro, which bindgen skips.
 pub const INVALID_ID: u32 = u32::MAX;
 
 /// The components of a ray and hit of any number of lanes are 32-bit words;

@@ -1,31 +1,31 @@
-//! Plain values that the other files of this folder share. They use none of them.
+//! Plain values that the other files of this folder share; this file uses none of them.
 
 use std::fmt;
 
 use super::sys;
 
-/// Coordinates of rays, boxes and vertices stay below this: Embree's own
-/// limit for a finite value, 1.844e18.
+/// Coordinates of rays, boxes and vertices must be below this: Embree's own limit for a finite
+/// value, 1.844e18.
 pub const GREATEST_COORDINATE: f32 = 1.844e18;
 
-/// The number of a geometry in its scene; they count from 0 in the order in
-/// which they were attached, but for instances with numbers of their own.
+/// The number of a geometry in its scene: counted from 0 in the order of attachment, except for
+/// instances with given numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct GeometryId(pub u32);
 
-/// How many rays Embree traverses at a time.
+/// The number of rays that Embree traverses together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum PacketWidth {
-    /// As SSE2 and NEON have registers for.
+    /// For SSE2 and NEON.
     Four,
-    /// As AVX has.
+    /// For AVX.
     Eight,
-    /// As AVX-512 has.
+    /// For AVX-512.
     Sixteen,
 }
 
 impl PacketWidth {
-    /// All of them, the least first.
+    /// All widths, the least first.
     pub const ALL: [Self; 3] = [Self::Four, Self::Eight, Self::Sixteen];
 
     /// The number of rays.

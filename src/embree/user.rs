@@ -1,8 +1,8 @@
 //! Geometry whose primitives are bounded and intersected in Rust.
 //!
-//! Embree calls the functions that are registered here with a pointer to the user
-//! data: `bounds` of `attach_user` while a scene is built, those of [`callback`](super::callback)
-//! while a ray or a packet of rays is traced.
+//! Embree calls the registered functions with a pointer to the user data: `bounds` of
+//! `attach_user` while a scene is built, those of [`callback`](super::callback) while a ray or
+//! a packet is traced.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -13,59 +13,57 @@ use super::ray::{Box32, Ray32};
 use super::ray_set::{GREATEST_PACKET, RaySet};
 use super::types::GeometryId;
 
-/// What Embree calls back for.
+/// The primitive that Embree calls back for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reached {
     /// The number of the primitive.
     pub primitive: u32,
-    /// The instance that the geometry's scene is reached in.
+    /// The instance through which the geometry's scene is reached.
     pub instance: Option<GeometryId>,
 }
 
 /// Primitives that Rust code bounds and intersects.
 ///
-/// All methods may be called on any thread and at the same time. A panic in
-/// one of them ends the process with a message that names it.
+/// All methods may be called on any thread, concurrently. A panic in one of them ends the
+/// process with a message that names it.
 ///
-/// The four methods that answer rays are called from code that is compiled for
-/// the processor's instruction set. What they do becomes part of it as far as it
-/// is `#[inline(always)]`, and not in a closure.
+/// The four methods for rays are called from code that is compiled for the processor's
+/// instruction set. Their code is compiled for it too if it is `#[inline(always)]` and not in a
+/// closure.
 pub trait UserGeometry: Send + Sync + 'static {
     /// The state of a query, which callbacks read and write: the ray in full
     /// precision, and the best hit so far.
     type Query: Query;
 
-    /// How many primitives there are. Asked once.
+    /// The number of primitives. Called once.
     fn primitive_count(&self) -> u32;
 
-    /// A box around a primitive, conservative for the rays that will be
-    /// traced. Embree may ask several times, on its own threads, while the
-    /// scene is committed.
+    /// A box around a primitive, conservative for the rays that will be traced. Embree may call
+    /// this several times, on its own threads, while the scene is committed.
     fn bounds(&self, primitive: u32) -> Box32;
 
-    /// Intersects the query's ray with a primitive whose box it may meet. `ray` is
-    /// Embree's own, in the space of the scene that the geometry is attached to; it ends
-    /// where the hits so far have left it.
-    /// `Some(t_far)` accepts a hit and shortens Embree's ray, so that boxes
-    /// beyond it are left out; a greater or NaN `t_far` does not change the
-    /// ray. `None` is no hit. The query may be passed on to another scene.
+    /// Intersects the query's ray with a primitive whose box it may intersect. `ray` is
+    /// Embree's own, in the space of the scene that the geometry is attached to; it ends at the
+    /// closest hit so far.
+    ///
+    /// `Some(t_far)` accepts a hit and shortens Embree's ray, so that boxes beyond it are
+    /// skipped. A greater or NaN `t_far` does not change the ray. `None` is no hit. The query
+    /// may be passed on to another scene.
     fn intersect(&self, at: Reached, ray: &Ray32, query: &mut Self::Query) -> Option<f32>;
 
-    /// Whether a primitive ends the query, in [`Scene::any`](super::Scene::any).
+    /// Whether a primitive blocks the query's ray, in [`Scene::any`](super::Scene::any).
     fn occluded(&self, at: Reached, ray: &Ray32, query: &mut Self::Query) -> bool;
 
-    /// Intersects rays of a packet with a primitive, each as
-    /// [`intersect`](Self::intersect) does. A hit is accepted for the rays that
-    /// are in the answer, for which `t_far` then has their ends, by their
-    /// numbers; what it has before, and for other rays, has no meaning.
+    /// Intersects rays of a packet with a primitive, each as [`intersect`](Self::intersect)
+    /// does. Returns the rays with an accepted hit, and sets their ends in `t_far`, indexed by
+    /// ray number. The other entries of `t_far` have no meaning, before and after.
     ///
-    /// `rays32` has Embree's own rays by their numbers, as the `ray` of
-    /// [`intersect`](Self::intersect) is; the numbers of other rays have no meaning.
+    /// `rays32` contains Embree's own rays, indexed by ray number; they correspond to the `ray`
+    /// of [`intersect`](Self::intersect). Entries of other rays have no meaning.
     ///
-    /// `rays` may be any part of the packet. It need not contain all rays that may
-    /// meet the box: for the others this is called again. And it may contain rays
-    /// that do not meet the box, or end before it: Embree calls for all when one
-    /// does.
+    /// `rays` may be any subset of the packet. It need not contain all rays that may intersect
+    /// the box: this is called again for the others. And it may contain rays that do not
+    /// intersect the box, or end before it: Embree calls this for all rays if one does.
     fn intersect_packet(
         &self,
         at: Reached,
@@ -75,9 +73,9 @@ pub trait UserGeometry: Send + Sync + 'static {
         packet: &mut <Self::Query as Query>::Packet,
     ) -> RaySet;
 
-    /// For which of `rays` a primitive ends the query, in
-    /// [`Scene::any_packet`](super::Scene::any_packet). Here `rays` commonly
-    /// contains all rays of the packet that have not ended yet, wherever they go.
+    /// The rays that a primitive blocks, in [`Scene::any_packet`](super::Scene::any_packet).
+    /// Here `rays` commonly contains all rays of the packet that are not blocked yet, wherever
+    /// they are.
     fn occluded_packet(
         &self,
         at: Reached,
@@ -87,10 +85,10 @@ pub trait UserGeometry: Send + Sync + 'static {
     ) -> RaySet;
 }
 
-/// What the data pointer of a geometry points to.
+/// The user data of a geometry.
 pub(super) struct Registered<G> {
     pub geometry: G,
-    /// The least refused primitive; `u32::MAX`, which is none, if there is none.
+    /// The least primitive with illegal bounds; `u32::MAX` if there is none.
     pub refused: AtomicU32,
 }
 

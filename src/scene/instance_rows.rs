@@ -193,7 +193,7 @@ impl Parts {
                 let direction = unit(DVec3::from(row.numbers(*axis)?)).ok_or_else(|| {
                     row.error(
                         Some(axis[0]),
-                        "the rotation axis is zero: it needs a direction, of any length",
+                        "the rotation axis is zero: it must be a direction, of any length",
                     )
                 })?;
                 rotation(direction, sin_cos_degrees(row.number(*degrees)?))
@@ -202,7 +202,7 @@ impl Parts {
                 quaternion_rotation(row.numbers(*columns)?).ok_or_else(|| {
                     row.error(
                         Some(columns[0]),
-                        "the quaternion is zero: it needs a direction, of any length",
+                        "the quaternion is zero: it must have a nonzero length",
                     )
                 })?
             }

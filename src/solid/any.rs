@@ -8,11 +8,11 @@ use crate::{for_each_solid, with_solid};
 
 macro_rules! any_solid {
     ($({ $type:ident $name:ident $list:ident $code:literal $description:literal })*) => {
-        /// A solid of any kind, where kinds are mixed and few: each list of a scene
-        /// is of one kind. [`with_solid!`](crate::with_solid) matches it.
+        /// A solid of any kind, for a few solids of mixed kinds: each list of a scene contains
+        /// one kind. [`with_solid!`](crate::with_solid) matches it.
         ///
-        /// A new kind is a new variant. A match that names all of them fails to compile then,
-        /// which is wanted: it has nothing for the new kind.
+        /// A new kind is a new variant. A match without a wildcard then fails to compile, which
+        /// is intended.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum AnySolid {
             $(#[doc = $description] $type(super::$type),)*

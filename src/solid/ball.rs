@@ -14,61 +14,61 @@
 //! D = radius² |d|² - |x × d|²,   t = (-(x·d) ∓ √D) / |d|²                  (2)
 //! ```
 //!
-//! `|x × d| / |d|` is the distance of line and center. It does not change when
-//! the origin slides along the ray, so no square of the distance enters `D` and
-//! is taken off again. Rounded products leave an error of at most `3 u |x| |d|`
-//! in the length of `x × d`, u = 2^-53, and a rounding of `x` another `u |x| |d|`; its square and that of the radius round by
-//! a few u of themselves. Where that leaves the sign of `D` open, or displaces the sum
-//! `|x·d| + √D` too much, as for lines that graze the ball, `D` is computed from exact
-//! numbers: so its sign, which is all that distinguishes a hit from a miss, is that of the
-//! exact `D` always. (For an origin `k` radii away the relative error of `D` is some
-//! `k u`, but `√D` is a k-th of that sum.)
+//! `|x × d| / |d|` is the distance between line and center. It does not change when the origin
+//! slides along the ray, so no square of the distance enters `D` and cancels later. Rounded
+//! products leave an error of at most `3 u |x| |d|` in the length of `x × d`, u = 2^-53, and a
+//! rounding of `x` adds `u |x| |d|`. The square of that length and that of the radius round by
+//! a few u of themselves. Where the sign of `D` is then uncertain, or the sum `|x·d| + √D` is
+//! off by too much, as for lines that graze the ball, `D` is computed from exact numbers. So
+//! the sign of `D`, which alone distinguishes a hit from a miss, is always the exact one. (For
+//! an origin `k` radii away the relative error of `D` is about `k u`, but `√D` is a k-th of
+//! that sum.)
 //!
-//! Roots are spared where that is plain. The error of the rounded `D` is at most `2^-50
-//! (R + Q + √(Q S) + 2^-52 S)` with `R = radius² |d|²`, `Q = |x × d|²`, `S = |x|² |d|²`, so
-//! it is below `2^-36 |D|` if
+//! A simpler test without roots comes first. The error of the rounded `D` is at most
+//! `2^-50 (R + Q + √(Q S) + 2^-52 S)` with `R = radius² |d|²`, `Q = |x × d|²`, `S = |x|² |d|²`,
+//! so it is below `2^-36 |D|` if
 //!
 //! ```text
 //! R + Q <= 2^12 |D|,   2^-25 Q S <= D²,   2^-52 S <= 2^12 |D|              (3)
 //! ```
 //!
-//! for `2^12 + 2^12.5 + 2^12` is less than 2^14. Where `D²` overflows nothing is plain.
+//! since `2^12 + 2^12.5 + 2^12` is less than 2^14. Such a `D` is *plain*. None is if `D²`
+//! overflows.
 //!
-//! Where the two terms of a root cancel, it is `C / q`, with `C` the constant
-//! term of (1), and `q` the sum that does not cancel; next to the sphere `C` is
-//! computed from exact numbers.
+//! Where the two terms of a root cancel, the root is `C / q`: `C` is the constant term of (1),
+//! and `q` the sum that does not cancel. Next to the sphere `C` is computed from exact numbers.
 
 use glam::DVec3;
 
 use super::chord::{Chord, ChordEnd};
 use super::exact::{Expression, Number, cross, dot, quotient, sign, vector};
+use super::offset::{Between, Offset};
 use super::quick::{End, Quick, Range};
-use super::way::{Between, Way};
 use super::{Location, Part};
 use crate::math::{UNIT_ROUNDOFF, power_of_two};
 
-/// The relative error up to which rounded products of `D` will do: the roots then
-/// have half of it, 2^-13 of an ulp of f32.
+/// The relative error up to which a rounded `D` is used: the roots then have half of it, 2^-13
+/// of an ulp of f32.
 const GOOD: f64 = power_of_two(-36);
 
-/// How much of the sum that does not cancel the error of `√D` may be otherwise: the
-/// point of a hit is then within 2^-44 of the way to it.
+/// The greatest share of the noncancelling sum that the error of `√D` may be otherwise: the hit
+/// point is then within 2^-44 of its distance from the origin.
 const GOOD_FROM_AFAR: f64 = power_of_two(-44);
 
-/// 2^12 of (3). It trades roots for room in the bound, as the next does.
+/// 2^12 of (3). It trades the number of roots for room in the bound, as does the next constant.
 const MOST_OF_PLAIN: f64 = power_of_two(12);
 
 /// 2^-25 of (3).
 const MOST_OF_SQUARES: f64 = power_of_two(-25);
 
-/// Below this, relative to `radius²`, `C` is computed from exact numbers; see
-/// the triple-product solver's limit.
+/// Below this, relative to `radius²`, `C` is computed from exact numbers; see the corresponding
+/// limit of the triple-product solver.
 const LEAST_CONSTANT_TERM: f64 = power_of_two(-20);
 
-/// The interval of `t` in which the line `center + x + t d` is inside the closed
-/// ball, with both ends on `part`; `None` where it is not. A ball of radius zero is
-/// its center. A non-finite argument is a miss.
-pub(super) fn chord(x: impl Way, d: DVec3, radius: f64, part: Part) -> Option<Chord> {
+/// The interval of `t` in which the line `center + x + t d` is inside the closed ball, with
+/// both ends on `part`; `None` if it misses. A ball of radius zero is its center. A non-finite
+/// argument is a miss.
+pub(super) fn chord(x: impl Offset, d: DVec3, radius: f64, part: Part) -> Option<Chord> {
     let from = FromBall { x, radius };
     let x = x.rounded();
     if !(x.is_finite() && d.is_finite()) {
@@ -98,7 +98,7 @@ pub(super) fn chord(x: impl Way, d: DVec3, radius: f64, part: Part) -> Option<Ch
 pub(super) fn quick_first(x: DVec3, d: DVec3, radius: f64, range: &Range) -> Quick {
     let quick = QuickBall::new(x, d, radius, 0.0);
     let [enter, leave] = quick.ends;
-    // From afar no terms of the roots cancel, but they may be in the wrong order.
+    // From afar no terms of the roots cancel, but the roots may be in the wrong order.
     let is_good_from_afar = quick.is_good & (enter.slack == 0.0) & (leave.slack == 0.0);
     let leave = End {
         t: leave.t.max(enter.t),
@@ -111,28 +111,27 @@ pub(super) fn quick_first(x: DVec3, d: DVec3, radius: f64, range: &Range) -> Qui
 /// A ball and a line without exact numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct QuickBall {
-    /// Whether the line's discriminant will do for all that follows; the rest has no
-    /// meaning if not.
+    /// Whether the discriminant is plain; if not, the rest has no meaning.
     pub is_plain: bool,
-    /// Whether it will do for the roots.
+    /// Whether the discriminant is accurate enough for the roots.
     is_good: bool,
-    /// Whether the line meets the ball.
-    pub is_met: bool,
-    /// Where it does; no numbers if it does not.
+    /// Whether the line intersects the ball.
+    pub is_hit: bool,
+    /// The ends of the chord; NaN if there is none.
     pub ends: [End; 2],
 }
 
 impl QuickBall {
-    /// The components of `x` are off by u of their own sizes and of numbers that are at most
-    /// `anchors` in length.
+    /// The components of `x` are off by u of their own sizes and of vectors of at most the
+    /// length `anchors`.
     ///
-    /// That displaces the line by at most `δ = 2 u (|x| + anchors)`, and `D` by `2 √Q δ |d| + δ²
-    /// |d|²`. With `S = (|x|² + 4 anchors²) |d|²` in (3) that is below `2^-37 |D|`, for `δ² |d|² <=
-    /// 8 u² S`.
+    /// This displaces the line by at most `δ = 2 u (|x| + anchors)`, and `D` by
+    /// `2 √Q δ |d| + δ² |d|²`. With `S = (|x|² + 4 anchors²) |d|²` in (3) that is below
+    /// `2^-37 |D|`, since `δ² |d|² <= 8 u² S`.
     ///
-    /// The roots are in order where `D` is plain: by (3) `s >= 2^-32 |x·d|`, so that two sums that
-    /// don't cancel differ by 2^-31 of themselves. Where one cancels, its root is little more
-    /// than half of `|x·d| / |d|²` at most, and the other is more than all of it.
+    /// The roots are in order if `D` is plain: by (3) `s >= 2^-32 |x·d|`, so two sums that do
+    /// not cancel differ by 2^-31 of themselves. If one cancels, its root is at most little
+    /// more than half of `|x·d| / |d|²`, and the other root is greater than all of it.
     #[inline(always)]
     pub fn new(x: DVec3, d: DVec3, radius: f64, anchors: f64) -> Self {
         let (dd, b) = (d.dot(d), x.dot(d));
@@ -140,9 +139,9 @@ impl QuickBall {
         discriminant.spread += 4.0 * (anchors * anchors) * dd;
         let (c, is_good) = rounded_constant_term(x, radius);
         let roots = Roots::new(dd, b, discriminant.value);
-        // Where `C` cancels, `|x|` is nearly the radius: its products round by 5 u of that square
-        // and are displaced by `2 |x| δ`, at most 4 u (2 r² + anchors²); and the quotient
-        // rounds by less than as much.
+        // Where `C` cancels, `|x|` is nearly the radius: its products round by 5 u of that
+        // square and are displaced by `2 |x| δ`, at most 4 u (2 r² + anchors²); the quotient
+        // rounds by less than that.
         let sizes = radius * radius + anchors * anchors;
         let displaced = 16.0 * UNIT_ROUNDOFF * sizes / (b.abs() + roots.s);
         let [first, second] = roots.sums();
@@ -157,7 +156,7 @@ impl QuickBall {
         Self {
             is_plain: discriminant.is_plain(),
             is_good: discriminant.is_good(b),
-            is_met: discriminant.value >= 0.0,
+            is_hit: discriminant.value >= 0.0,
             ends: [end(first, second), end(second, first)],
         }
     }
@@ -190,13 +189,13 @@ impl Roots {
         [-self.b - self.s, self.s - self.b]
     }
 
-    /// Whether the terms of one of them cancel.
+    /// Whether the terms of a numerator cancel.
     #[inline(always)]
     fn cancels(&self, sum: f64) -> bool {
         sum.abs() < 0.5 * self.b.abs()
     }
 
-    /// The root of one of them; `constant_term` is called where its terms cancel.
+    /// The root of a numerator; `constant_term` is called if its terms cancel.
     #[inline(always)]
     fn root(&self, sum: f64, other: f64, constant_term: impl Fn() -> f64) -> f64 {
         let (numerator, denominator) = if self.cancels(sum) {
@@ -212,12 +211,12 @@ impl Roots {
     fn both(&self, constant_term: impl Fn() -> f64) -> [f64; 2] {
         let [first, second] = self.sums();
         let enter = self.root(first, second, &constant_term);
-        // Next to a tangent the two may come out in the wrong order by a rounding.
+        // Next to a tangent, rounding may put the two in the wrong order.
         [enter, self.root(second, first, constant_term).max(enter)]
     }
 }
 
-/// `C` of (1) from the rounded difference, and whether that will do.
+/// `C` of (1) from the rounded difference, and whether it is accurate enough.
 #[inline(always)]
 fn rounded_constant_term(x: DVec3, radius: f64) -> (f64, bool) {
     let rr = radius * radius;
@@ -225,7 +224,7 @@ fn rounded_constant_term(x: DVec3, radius: f64) -> (f64, bool) {
     (rounded, !(rounded.abs() < LEAST_CONSTANT_TERM * rr))
 }
 
-/// `D` of (2) from rounded products, and what its error is of.
+/// `D` of (2) from rounded products, and the terms of its error bound.
 #[derive(Clone, Copy, Debug)]
 struct RoundedDiscriminant {
     value: f64,
@@ -251,14 +250,14 @@ impl RoundedDiscriminant {
         }
     }
 
-    /// Whether the value will do in a root with this `x·d`. A number that is none does.
+    /// Whether the value is accurate enough for a root with this `x·d`. NaN counts as accurate.
     #[inline(always)]
     fn is_good(&self, b: f64) -> bool {
-        // The length of `x × d` is off by 4 u |x| |d| at most, squares round by 3 u and
-        // 5 u of themselves; the last term is for what is of second order.
+        // The length of `x × d` is off by at most 4 u |x| |d|, squares round by 3 u and 5 u of
+        // themselves. The last term covers the second order.
         let first = self.reach + self.squared + (self.squared * self.spread).sqrt();
         let error = 8.0 * UNIT_ROUNDOFF * (first + 2.0 * UNIT_ROUNDOFF * self.spread);
-        // A relative error of at most a quarter is less than doubled in the root.
+        // A relative error of at most a quarter less than doubles in the root.
         let s = self.value.sqrt();
         let displaced = s * (error / self.value);
         let is_good_from_afar =
@@ -266,7 +265,7 @@ impl RoundedDiscriminant {
         (self.value < -error) | !(GOOD * self.value.abs() < error) | is_good_from_afar
     }
 
-    /// Whether the value will do by (3).
+    /// Whether the value is plain, by (3).
     #[inline(always)]
     fn is_plain(&self) -> bool {
         let (size, square) = (self.value.abs() * MOST_OF_PLAIN, self.value * self.value);
@@ -277,7 +276,7 @@ impl RoundedDiscriminant {
     }
 }
 
-/// Where a point is, exactly.
+/// The exact location of a point.
 pub(super) fn locate(center: DVec3, radius: f64, point: DVec3) -> Location {
     if !point.is_finite() {
         return Location::Outside;
@@ -292,14 +291,14 @@ pub(super) fn locate(center: DVec3, radius: f64, point: DVec3) -> Location {
 /// A point and a ball; as an expression `|x|² - radius²`.
 #[derive(Clone, Copy, Debug)]
 struct FromBall<W> {
-    /// The way from the center to the point.
+    /// The offset from the center to the point.
     x: W,
     radius: f64,
 }
 
-impl<W: Way> FromBall<W> {
-    /// `D` of (2), of the line through the point; `x` is the rounded difference, `dd`
-    /// is `|d|²` and `b` is `x·d`.
+impl<W: Offset> FromBall<W> {
+    /// `D` of (2) for the line through the point. `x` is the rounded difference, `dd` is `|d|²`
+    /// and `b` is `x·d`.
     fn discriminant(&self, x: DVec3, d: DVec3, dd: f64, b: f64) -> f64 {
         let discriminant = RoundedDiscriminant::new(x, d, dd, self.radius);
         if discriminant.is_plain() || discriminant.is_good(b) {
@@ -319,7 +318,7 @@ impl<W: Way> FromBall<W> {
     }
 }
 
-impl<W: Way> Expression for FromBall<W> {
+impl<W: Offset> Expression for FromBall<W> {
     fn value<N: Number>(&self) -> N {
         let (x, r) = (self.x.exactly::<N>(), N::of(self.radius));
         dot(&x, &x).minus(&r.times(&r))
@@ -331,7 +330,7 @@ struct Discriminant<W> {
     d: DVec3,
 }
 
-impl<W: Way> Expression for Discriminant<W> {
+impl<W: Offset> Expression for Discriminant<W> {
     fn value<N: Number>(&self) -> N {
         let FromBall { x, radius } = self.from;
         let (x, d) = (x.exactly::<N>(), vector(self.d));
@@ -347,13 +346,13 @@ mod tests {
     use crate::math::Random;
 
     #[test]
-    fn tangents_from_afar_are_told_apart_by_one_ulp() {
-        // Both lines pass the center at 5/3 · 3 = 5, from 1e9 and at a slope.
+    fn tangents_from_afar_are_distinguished_by_one_ulp() {
+        // Both lines pass the center at the distance 5/3 · 3 = 5, from 1e9 away and at a slope.
         let far = DVec3::new(-4.0, 3.0, 0.0) * 1e9;
         let tangent = far + DVec3::new(3.0, 4.0, 0.0);
         let d = DVec3::new(4.0, -3.0, 0.0);
-        let met = chord(tangent, d, 5.0, Part::Side).unwrap();
-        assert_eq!((met.enter.t, met.leave.t), (1e9, 1e9));
+        let found = chord(tangent, d, 5.0, Part::Side).unwrap();
+        assert_eq!((found.enter.t, found.leave.t), (1e9, 1e9));
         assert_eq!(chord(tangent, d, 5.0_f64.next_down(), Part::Side), None);
         let crossed = chord(tangent, d, 13.0, Part::Side).unwrap();
         assert_eq!((crossed.enter.t, crossed.leave.t), (1e9 - 2.4, 1e9 + 2.4));
@@ -376,7 +375,7 @@ mod tests {
             };
             (0..10_000).filter(is_open).count()
         };
-        // Only rays that graze the sphere take exact numbers.
+        // Only rays that graze the sphere need exact numbers.
         let found = [1.0, 1e3, 1e6, 1e9].map(|distance| count_open(2.0 * distance));
         assert_eq!(found, [0; 4]);
     }
@@ -385,9 +384,9 @@ mod tests {
     fn root_next_to_the_origin_keeps_its_bits() {
         let outside = power_of_two(-40);
         let x = DVec3::new(-1.0 - outside, 0.0, 0.0);
-        let met = chord(x, DVec3::X * 4.0, 1.0, Part::Side).unwrap();
-        assert_eq!(met.enter.t, outside / 4.0);
-        assert_eq!(met.leave.t, (2.0 + outside) / 4.0);
+        let found = chord(x, DVec3::X * 4.0, 1.0, Part::Side).unwrap();
+        assert_eq!(found.enter.t, outside / 4.0);
+        assert_eq!(found.leave.t, (2.0 + outside) / 4.0);
     }
 
     #[test]

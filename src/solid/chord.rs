@@ -1,16 +1,13 @@
-//! The stretch of a ray inside a convex solid, and the one step that turns it
-//! into hits.
+//! The interval of a ray inside a convex solid, and the one step that turns it into hits.
 //!
-//! A solver answers with the closed interval of `t` in which the ray's line is
-//! inside the solid, and on which part of the boundary either end lies. What is
-//! a hit then depends only on which parts exist (caps) and on the ray's range,
-//! so closest hit, any hit and all hits share this file.
+//! A solver returns the closed interval of `t` in which the ray's line is inside the solid, and
+//! the part of the boundary that each end lies on. Hits then depend only on which parts exist
+//! (caps) and on the ray's range, so closest hit, any hit and all hits share this file.
 //!
-//! The surface is a closed set and a rim belongs to the cap. Where the cap is
-//! absent, its rim is still the edge of the wall: such an end is a hit of the
-//! side. A ray that runs *within* the surface (in a cap's plane, or along the
-//! wall) touches it all the way; the start of its range is a hit if it lies between
-//! the ends.
+//! The surface is a closed set, and a rim belongs to the cap. If the cap is absent, its rim is
+//! still the edge of the wall: such an end is a hit of the side. A ray that runs *within* the
+//! surface (in a cap's plane, or along the wall) touches it all along; the start of its range
+//! is a hit if it lies between the ends.
 
 use super::{Caps, Crossing, Part};
 use crate::math::Real;
@@ -20,29 +17,29 @@ use crate::math::Real;
 pub struct ChordEnd<S = f64> {
     /// The ray's parameter.
     pub t: S,
-    /// The part of the solid's boundary, whether or not the surface has it.
+    /// The part of the solid's boundary, also if the surface lacks that part.
     pub part: Part,
-    /// Whether the point is on a rim, that is on the wall too.
+    /// Whether the point is on a rim, and so on the wall too.
     pub on_rim: bool,
 }
 
 /// The interval in which a line is inside a closed convex solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chord<S = f64> {
-    /// Where the ray goes in.
+    /// Where the ray enters.
     pub enter: ChordEnd<S>,
-    /// Where the ray comes out; its `t` is not less than that of `enter`.
+    /// Where the ray leaves, at a `t` that is not less than that of `enter`.
     pub leave: ChordEnd<S>,
-    /// The part within which the whole chord runs, if it does.
+    /// The part that contains the whole chord, if one does.
     pub lies_on: Option<Part>,
 }
 
-/// A point where a ray meets a surface.
+/// An intersection of a ray and a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Intersection<S = f64> {
     /// The parameter of the whole ray.
     pub t: S,
-    /// The parameter counted as the chord's, before it was shifted.
+    /// The parameter on the chord, before the shift.
     pub t_local: S,
     /// The part of the surface.
     pub part: Part,
@@ -51,12 +48,12 @@ pub struct Intersection<S = f64> {
 }
 
 impl<S: Real> Chord<S> {
-    /// The points, at most two, at which the ray is on the surface that has the
-    /// disks `caps`, among those with `t_min <= t + shift <= t_max`, in order.
+    /// The intersections of the ray with the surface that has the disks `caps`: those with
+    /// `t_min <= t + shift <= t_max`, in order, at most two.
     ///
-    /// The range is the whole ray's; `shift` is where the chord's `t` starts
-    /// on it, 0 unless the solver was given a point farther along the ray. A
-    /// tangent is an entry and an exit at the same `t`.
+    /// The range is that of the whole ray; `shift` is the position of the chord's `t = 0` on
+    /// it: 0 unless the solver was given a point farther along the ray. A tangent is an entry
+    /// and an exit at the same `t`.
     #[inline]
     pub fn intersections(
         &self,
@@ -82,7 +79,7 @@ impl<S: Real> Chord<S> {
     fn entry(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> Option<Intersection<S>> {
         if let Some(part) = self.lies_on
             && exists(part, caps)
-            && self.holds(t_min - shift)
+            && self.contains(t_min - shift)
             && t_min <= t_max
         {
             return Some(Intersection {
@@ -102,14 +99,15 @@ impl<S: Real> Chord<S> {
             .intersection(Crossing::Leave, caps, shift, t_min, t_max)
     }
 
-    /// Whether `t` is between the entry and the exit. At the exit, the exit is the hit.
-    fn holds(&self, t: S) -> bool {
+    /// Whether `t` is strictly between the entry and the exit. At the exit, the exit is the
+    /// hit.
+    fn contains(&self, t: S) -> bool {
         self.enter.t < t && t < self.leave.t
     }
 }
 
 impl<S: Real> ChordEnd<S> {
-    /// The end, at `t` if it is before that.
+    /// The end, moved to `t` if it is before that.
     #[inline(always)]
     pub(super) fn not_before(self, t: S) -> Self {
         Self {
@@ -118,7 +116,7 @@ impl<S: Real> ChordEnd<S> {
         }
     }
 
-    /// The end as an intersection, if the surface is there and it is in range.
+    /// The end as an intersection, if the surface exists there and `t` is in range.
     #[inline(always)]
     pub(super) fn intersection(
         &self,
@@ -138,9 +136,9 @@ impl<S: Real> ChordEnd<S> {
             })
     }
 
-    /// Whether [`ChordEnd::intersection`] is one.
+    /// Whether [`ChordEnd::intersection`] returns an intersection.
     #[inline(always)]
-    pub(super) fn is_met(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> bool {
+    pub(super) fn is_hit(&self, caps: Caps, shift: S, t_min: S, t_max: S) -> bool {
         (exists(self.part, caps) | self.on_rim) & self.is_in_range(shift, t_min, t_max)
     }
 
@@ -150,7 +148,7 @@ impl<S: Real> ChordEnd<S> {
         (t_min <= t) & (t <= t_max)
     }
 
-    /// The part of the surface this end lies on, if the surface has one there.
+    /// The part of the surface that this end lies on, if any.
     #[inline]
     fn present(&self, caps: Caps) -> Option<Part> {
         if exists(self.part, caps) {
@@ -161,8 +159,8 @@ impl<S: Real> ChordEnd<S> {
     }
 }
 
-/// Whether a surface with these caps has this part: all are there but for disks
-/// that are not named.
+/// Whether a surface with these caps has this part: all parts exist except disks that `caps`
+/// excludes.
 #[inline]
 fn exists(part: Part, caps: Caps) -> bool {
     ((part != Part::Cap0) | caps.at_p0()) & ((part != Part::Cap1) | caps.at_p1())

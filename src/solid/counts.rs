@@ -1,4 +1,4 @@
-//! How many solids there are of each kind.
+//! The number of solids of each kind.
 
 use std::fmt;
 use std::ops::Index;
@@ -8,7 +8,7 @@ use super::SolidKind;
 /// The number of kinds.
 const KINDS: usize = SolidKind::SIMPLE.len() + SolidKind::OPERATIONS.len();
 
-/// How many solids there are of each kind. Sums beyond u128 stay at its greatest number.
+/// The number of solids of each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SolidCounts([u128; KINDS]);
 

@@ -1,4 +1,4 @@
-//! The circular cylinder as users state it.
+//! The circular cylinder as users define it.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use super::{
 };
 use crate::math::{Bounds, LANES, LaneMask, LaneVectors, Lanes, UNIT_ROUNDOFF, power_of_two};
 
-/// Which ends of a cylinder are closed by a disk.
+/// The ends of a cylinder that are closed by a disk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Caps {
     /// A tube, open at both ends.
@@ -25,7 +25,7 @@ pub enum Caps {
 }
 
 impl Caps {
-    /// The caps of which it is known at which ends they are.
+    /// The caps with disks at the given ends.
     #[must_use]
     pub fn at(p0: bool, p1: bool) -> Self {
         match (p0, p1) {
@@ -49,11 +49,11 @@ impl Caps {
     }
 }
 
-/// The surface of a circular cylinder: two endpoints, a radius and its caps,
-/// all taken as exact numbers.
+/// The surface of a circular cylinder: two endpoints, a radius and its caps, all taken as exact
+/// numbers.
 ///
-/// The solid is `{x : dist(x, line p0 p1) <= radius, 0 <= (x - p0)·(p1 - p0) <= |p1 - p0|²}`;
-/// the surface is its wall and those of its disks that `caps` names.
+/// The solid is `{x : dist(x, line p0 p1) <= radius, 0 <= (x - p0)·(p1 - p0) <= |p1 - p0|²}`.
+/// The surface consists of its wall and those of its disks that `caps` names.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
     p0: DVec3,
@@ -62,7 +62,7 @@ pub struct Cylinder {
     caps: Caps,
 }
 
-/// Why numbers are not a cylinder.
+/// Why numbers do not define a cylinder.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CylinderError {
     /// A coordinate of an endpoint is NaN, infinite or beyond [`Cylinder::GREATEST`].
@@ -73,7 +73,7 @@ pub enum CylinderError {
         /// The endpoint as given.
         point: DVec3,
     },
-    /// The radius is not a number in [`Cylinder::LEAST`, `Cylinder::GREATEST`].
+    /// The radius is not in [`Cylinder::LEAST`, `Cylinder::GREATEST`].
     #[error(
         "radius is {radius:?}: it must be a positive number between {:.1e} and {:.1e}",
         Cylinder::LEAST,
@@ -95,12 +95,11 @@ pub enum CylinderError {
 }
 
 impl Cylinder {
-    /// The least radius and length: 2^-150, about 7.0e-46, below the least
-    /// number of f32. Under it, products of four lengths and two directions
-    /// would lose bits to underflow.
+    /// The least radius and length: 2^-150, about 7.0e-46, below the least number of f32. Below
+    /// it, products of four lengths and two directions would lose bits to underflow.
     pub const LEAST: f64 = power_of_two(-150);
-    /// The greatest radius and size of a coordinate: 2^150, about 1.4e45,
-    /// above the greatest number of f32. Over it, the same products overflow.
+    /// The greatest radius and size of a coordinate: 2^150, about 1.4e45, above the greatest
+    /// number of f32. Above it, the same products overflow.
     pub const GREATEST: f64 = power_of_two(150);
 
     /// The cylinder from `p0` to `p1`.
@@ -128,14 +127,13 @@ impl Cylinder {
         })
     }
 
-    /// Whether every coordinate is a number of at most [`Cylinder::GREATEST`] in
-    /// size.
+    /// Whether every coordinate is at most [`Cylinder::GREATEST`] in size, and not NaN.
     pub(crate) fn is_in_range(point: DVec3) -> bool {
         point.is_finite() && point.abs().max_element() <= Self::GREATEST
     }
 
-    /// The cylinder of numbers that [`Cylinder::new`] accepts, without the check. Other
-    /// numbers make a cylinder whose answers mean nothing.
+    /// The cylinder of numbers that [`Cylinder::new`] accepts, without the check. The results
+    /// for a cylinder of other numbers have no meaning.
     #[inline]
     #[must_use]
     pub fn from_valid(p0: DVec3, p1: DVec3, radius: f64, caps: Caps) -> Self {
@@ -195,7 +193,7 @@ impl Cylinder {
     }
 }
 
-/// A cylinder eight times, and what is known of its caps.
+/// A cylinder in eight lanes, with its caps.
 #[inline(always)]
 fn eight<C: LaneCaps>(cylinder: &Cylinder, caps: C) -> CylinderLanes<C> {
     CylinderLanes {
@@ -258,17 +256,17 @@ impl ConvexSolid for Cylinder {
         triple_product::first(self, from_anchor, direction, shift, t_min, t_max)
     }
 
-    // Where the caps are known at compile time, one case is left of the three.
+    // Caps that are known at compile time leave one of the three cases.
     #[inline(always)]
     fn first_in_lanes(&self, rays: &RayLanes, active: &LaneMask) -> QuickLanes {
-        let (met, t) = match self.caps {
+        let (hit, t) = match self.caps {
             Caps::Both => lanes::first(&eight(self, AllCapped), rays, active),
             Caps::None => lanes::first(&eight(self, AllOpen), rays, active),
             caps => lanes::first(&eight(self, MixedCaps([caps; LANES])), rays, active),
         };
         QuickLanes {
             open: LaneMask::splat(false),
-            met,
+            hit,
             t,
         }
     }
@@ -289,7 +287,7 @@ impl ConvexSolid for Cylinder {
         surface_point(self, part, from_anchor)
     }
 
-    /// A cone's answer, with equal radii: both are the same set.
+    /// The result of the cone with equal radii, which is the same set.
     fn locate(&self, point: DVec3) -> Location {
         self.as_cone().locate(point)
     }
@@ -312,11 +310,12 @@ pub(super) fn middle(p0: DVec3, p1: DVec3) -> DVec3 {
     p0 * 0.5 + p1 * 0.5
 }
 
-/// How far a disk across the axis `a` reaches from its middle, rounded up.
+/// The extent of a disk across the axis `a` from its center, along each coordinate axis,
+/// rounded up.
 ///
-/// Along axis `i` that is `radius √(1 - aᵢ²/|a|²)`; written as `radius √((aⱼ² +
-/// aₖ²)/|a|²)` nothing cancels, and the relative error is below 8 roundings,
-/// which the factor on the radius covers.
+/// Along axis `i` that is `radius √(1 - aᵢ²/|a|²)`. Written as `radius √((aⱼ² + aₖ²)/|a|²)`
+/// nothing cancels, and the relative error is below 8 roundings, which the factor on the radius
+/// covers.
 pub(super) fn disk_reach(a: DVec3, radius: f64) -> DVec3 {
     let squared = a * a;
     let others = DVec3::new(

@@ -1,22 +1,22 @@
-//! The flat disk as users state it, and ray against disk.
+//! The flat disk as users define it, and ray against disk.
 //!
-//! With the normal `n` as stated and the ray `center + x + t d`, the line meets the
-//! plane at `t = -n·x / n·d`. The point times `n·d` is
+//! With the normal `n` as stated and the ray `center + x + t d`, the line intersects the plane
+//! at `t = -n·x / n·d`. The point times `n·d` is
 //!
 //! ```text
 //! P = x (n·d) - d (n·x) = n × (x × d)                                      (1)
 //! ```
 //!
-//! and within the disk where `|P| <= radius |n·d|`. `x × d` does not change when the
-//! origin slides along the ray, so that nothing is as large as the way to the origin
-//! and taken off again. Rounded products leave an error of at most `13 u |n| |x| |d|`
-//! in `|P|` (3 u for either vector product, what the first leaves within the second,
-//! 4 u for the length, and u for `x`, which may be rounded) and `6 u |n| |d| radius` on the other side. Where the two
-//! sides are nearer to each other the squares are compared in exact numbers.
+//! and it is within the disk if `|P| <= radius |n·d|`. `x × d` does not change when the origin
+//! slides along the ray, so no term is as large as the distance of the origin and cancels
+//! later. Rounded products leave an error of at most `13 u |n| |x| |d|` in `|P|` (3 u for each
+//! vector product, the error of the first within the second, 4 u for the length, and u for `x`,
+//! which may be rounded) and `6 u |n| |d| radius` on the other side. If the two sides are
+//! nearer to each other, the squares are compared in exact numbers.
 //!
-//! `n·x` and `n·d` come from `linear.rs`: `t` is within 2^-40 of itself, and whether
-//! the line is parallel to the plane, or within it, is decided exactly. Within the
-//! plane the disk is a ball of the same radius.
+//! `n·x` and `n·d` come from `linear.rs`: `t` is within 2^-40 of itself, and whether the line
+//! is parallel to the plane, or within it, is decided exactly. A line within the plane
+//! intersects the disk as it does the ball of the same radius.
 
 use std::cmp::Ordering;
 
@@ -24,23 +24,21 @@ use glam::DVec3;
 
 use super::cylinder::disk_reach;
 use super::exact::{Expression, Number, cross, difference, dot, sign, vector};
-use super::passing::Line;
+use super::offset::Offset;
 use super::quick::{End, Quick, Range};
+use super::reject::Line;
 use super::surface::Around;
-use super::way::Way;
 use super::{
     Chord, ChordEnd, ConvexSolid, Cylinder, Location, Part, RayOrigin, SolidKind, SurfacePoint,
     ball, linear,
 };
 use crate::math::{Bounds, UNIT_ROUNDOFF};
 
-/// A flat disk: its center, a normal of any length and its radius, taken as
-/// exact numbers.
+/// A flat disk: its center, a normal of any length and its radius, all taken as exact numbers.
 ///
-/// It is the closed set `{x : normal · (x - center) = 0, |x - center| <= radius}`,
-/// a solid without an inside: a ray that passes through it meets it in one
-/// point, an entry and an exit at the same `t`. All of it is
-/// [`Part::Side`](super::Part::Side).
+/// It is the closed set `{x : normal · (x - center) = 0, |x - center| <= radius}`, a solid
+/// without an inside. A ray that passes through it intersects it in one point, an entry and an
+/// exit at the same `t`. All of it is [`Part::Side`](super::Part::Side).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disk {
     center: DVec3,
@@ -48,7 +46,7 @@ pub struct Disk {
     radius: f64,
 }
 
-/// Why numbers are not a disk.
+/// Why numbers do not define a disk.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum DiskError {
     /// A coordinate of the center is NaN, infinite or beyond [`Cylinder::GREATEST`].
@@ -68,7 +66,7 @@ pub enum DiskError {
         /// The normal as given.
         normal: DVec3,
     },
-    /// The radius is not a number in [`Cylinder::LEAST`, `Cylinder::GREATEST`].
+    /// The radius is not in [`Cylinder::LEAST`, `Cylinder::GREATEST`].
     #[error(
         "radius is {radius:?}: it must be a positive number between {:.1e} and {:.1e}",
         Cylinder::LEAST,
@@ -99,7 +97,7 @@ impl Disk {
         Ok(Self::from_valid(center, normal, radius))
     }
 
-    /// The disk of numbers that [`Disk::new`] accepted before.
+    /// The disk of numbers that [`Disk::new`] has accepted before.
     #[inline]
     pub(crate) fn from_valid(center: DVec3, normal: DVec3, radius: f64) -> Self {
         Self {
@@ -162,19 +160,19 @@ impl ConvexSolid for Disk {
     }
 
     fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
-        self.chord_of(origin.way_from(self.center), direction)
+        self.chord_of(origin.offset_from(self.center), direction)
     }
 
     #[inline(always)]
     fn rejects(&self, from_anchor: DVec3, direction: DVec3) -> bool {
-        Line::new(from_anchor, direction).passes_disk(self.normal, self.radius)
+        Line::new(from_anchor, direction).misses_disk(self.normal, self.radius)
     }
 
     #[inline(always)]
     fn quick_first(&self, from_anchor: DVec3, direction: DVec3, range: &Range) -> Quick {
         let (n, x, d) = (self.normal, from_anchor, direction);
         let (height, slope) = (linear::rounded_product(n, x), linear::rounded_product(n, d));
-        let is_within = Line::new(x, d).meets_disk(n, self.radius);
+        let is_within = Line::new(x, d).hits_disk(n, self.radius);
         let end = End {
             t: plane_at(height.value, slope.value),
             slack: height.slack() / slope.value.abs(),
@@ -182,12 +180,12 @@ impl ConvexSolid for Disk {
         Quick::of_ends(!is_within | slope.is_poor(), [end; 2], range)
     }
 
-    /// `u` is the angle about the normal in turns, counted as on a cylinder whose
-    /// axis is the normal, and `v` the distance from the center in radii.
+    /// `u` is the angle about the normal in turns, counted as on a cylinder whose axis is the
+    /// normal, and `v` the distance from the center in radii.
     ///
-    /// The way from the center, made perpendicular to the normal twice, is off the
-    /// plane by 6 u of its length, which is at most the radius within 5 u; the product
-    /// and the sum with the center round by u of theirs.
+    /// The offset from the center, made perpendicular to the normal twice, is off the plane by
+    /// 6 u of its length, which is at most the radius within 5 u; the product and the sum with
+    /// the center round by u of theirs.
     fn surface_point(&self, _: Part, from_anchor: DVec3) -> SurfacePoint {
         let around = Around::new(self.normal, from_anchor);
         let point = self.center + around.outward * around.distance.min(self.radius);
@@ -220,7 +218,7 @@ impl ConvexSolid for Disk {
     }
 }
 
-/// Where a line meets the plane.
+/// The parameter at which a line intersects the plane.
 #[inline(always)]
 fn plane_at(height: f64, slope: f64) -> f64 {
     (0.0 - height) / slope
@@ -229,9 +227,9 @@ fn plane_at(height: f64, slope: f64) -> f64 {
 impl Disk {
     /// The chord of the line `center + x + t d`.
     #[inline(always)]
-    fn chord_of(&self, x: impl Way, d: DVec3) -> Option<Chord> {
+    fn chord_of(&self, x: impl Offset, d: DVec3) -> Option<Chord> {
         let n = self.normal;
-        // Zero times anything but a number is NaN.
+        // Zero times infinity or NaN is NaN.
         if (x.rounded() + d).dot(DVec3::ZERO) != 0.0 {
             return None;
         }
@@ -239,7 +237,7 @@ impl Disk {
         if slope == 0.0 {
             return self.chord_in_plane(height, x, d);
         }
-        self.is_met(slope, x, d).then(|| {
+        self.is_hit(slope, x, d).then(|| {
             let end = ChordEnd {
                 t: plane_at(height, slope),
                 part: Part::Side,
@@ -254,7 +252,7 @@ impl Disk {
     }
 
     #[cold]
-    fn chord_in_plane<W: Way>(&self, height: f64, x: W, d: DVec3) -> Option<Chord> {
+    fn chord_in_plane<W: Offset>(&self, height: f64, x: W, d: DVec3) -> Option<Chord> {
         if height != 0.0 {
             return None;
         }
@@ -265,10 +263,10 @@ impl Disk {
         })
     }
 
-    /// Whether the line meets the plane within the disk.
+    /// Whether the line intersects the plane within the disk.
     #[inline]
-    fn is_met<W: Way>(&self, slope: f64, way: W, d: DVec3) -> bool {
-        let x = way.rounded();
+    fn is_hit<W: Offset>(&self, slope: f64, offset: W, d: DVec3) -> bool {
+        let x = offset.rounded();
         let point = self.normal.cross(x.cross(d)).length();
         let reach = self.radius * slope.abs();
         let error =
@@ -278,7 +276,7 @@ impl Disk {
         }
         let within = Within {
             disk: *self,
-            x: way,
+            x: offset,
             d,
         };
         sign(&within) != Ordering::Less
@@ -292,7 +290,7 @@ struct Within<W> {
     d: DVec3,
 }
 
-impl<W: Way> Expression for Within<W> {
+impl<W: Offset> Expression for Within<W> {
     fn value<N: Number>(&self) -> N {
         let (n, x, d) = (
             vector::<N>(self.disk.normal),

@@ -1,40 +1,37 @@
 //! Eight rays against a cylinder, or a ray against eight cylinders.
 //!
-//! A lane is solved by the very code of `triple_product.rs` and `slab.rs`, so it
-//! has the bits of [`triple_product::first`](super::triple_product::first). What
-//! is here is the order: a loop over the lanes for the lines, one for the ends at
-//! which they enter if any reaches its wall, one for the ends at which they leave
-//! if any is inside and not settled. The bodies are calls that are inlined, with
-//! no way out and no result that is there only sometimes (an `Option`), so that
-//! the compiler can compute both sides of each branch and make vector
-//! instructions of the loops. What it could not inline is left to the scalar
-//! solver, lane by lane: exact products, lines along or across the axis, lines that graze
-//! the wall, and open ends.
+//! A lane runs the same code as `triple_product` and `slab.rs`, so it has the bits of
+//! [`triple_product::first`](super::triple_product::first). This file has only the order: a
+//! loop over the lanes for the lines, one for the ends at which they enter if any reaches its
+//! wall, one for the ends at which they leave if any is inside and undecided. The loop bodies
+//! are inlined calls without an early exit and without an `Option`, so the compiler can compute
+//! both sides of each branch and vectorize the loops. What it could not inline is left to the
+//! scalar solver, lane by lane: exact products, lines along or across the axis, lines that
+//! graze the wall, and open ends.
 //!
-//! # What spares exact products
+//! # Avoiding exact products
 //!
-//! Where the sine between ray and axis is below 1/4 the products of
-//! `n = a × d` have to be exact, which takes longer than all else. Of eight random
-//! directions one is such a ray in 22 of 100 cases; but most of those rays pass
-//! the cylinder by far more than the roundings in question, and then exact
-//! products would say so too. Let `n'` and `w'` be from rounded products and
-//! `n` and `w` from exact ones, u = 2^-53, and `X = |a| |d|`. A component of
-//! `n'` is off by at most 2u of the sum of the sizes of its two products, so
-//! that `|n' - n| <= 4u X`; and `x·n` is rounded with `3u |x| |n|`. Hence
+//! If the sine of the angle between ray and axis is below 1/4, the products of `n = a × d` have
+//! to be exact, which takes longer than everything else. In 22 of 100 cases one of eight random
+//! directions is such a ray. But most of those rays miss the cylinder by far more than the
+//! roundings in question, and exact products would confirm it. Let `n'` and `w'` be from
+//! rounded products and `n` and `w` from exact ones, u = 2^-53, and `X = |a| |d|`. A component
+//! of `n'` is off by at most 2u of the sum of the sizes of its two products, so that
+//! `|n' - n| <= 4u X`; and `x·n` is rounded with `3u |x| |n|`. Hence
 //!
 //! ```text
 //! |w' - w| <= 12u |x| X,    r |n| <= r |n'| + 4u r X
 //! ```
 //!
-//! and the computed `D` is below zero if `|w| > r |n| (1 + 8u)`, certainly where
+//! and the computed `D` is negative if `|w| > r |n| (1 + 8u)`, certainly if
 //!
 //! ```text
 //! |w'| > 2 r |n'| + 2^-48 (|x| + r) X                                      (1)
 //! ```
 //!
-//! with 2^-48 = 32u, more than the 16u needed. A line that counts as parallel
-//! is never among them: its `|n'|` is below `5u X`, so `|w'|` is below `6u |x| X`.
-//! Squared, by `(p + q)² <= 2 p² + 2 q²`, without a root:
+//! with 2^-48 = 32u, more than the required 16u. No line that counts as parallel is among them:
+//! its `|n'|` is below `5u X`, so `|w'|` is below `6u |x| X`. Squared, by
+//! `(p + q)² <= 2 p² + 2 q²`, without a root:
 //!
 //! ```text
 //! w'² > 8 r² |n'|² + 2^-93 (|x|² + r²) |a|² |d|²                           (2)
@@ -66,8 +63,8 @@ pub struct CylinderLanes<C> {
     pub caps: C,
 }
 
-/// Which ends of eight cylinders are closed. A type for each way, so that
-/// cylinders that are alike need not be asked.
+/// The closed ends of eight cylinders. One type per case, so that cylinders with equal caps
+/// need no test.
 pub trait LaneCaps: Copy {
     /// The caps of a lane.
     fn lane(&self, lane: usize) -> Caps;
@@ -81,7 +78,7 @@ pub struct AllOpen;
 #[derive(Clone, Copy, Debug)]
 pub struct AllCapped;
 
-/// Each as it is.
+/// Caps that differ.
 #[derive(Clone, Copy, Debug)]
 pub struct MixedCaps(pub [Caps; LANES]);
 
@@ -106,15 +103,14 @@ impl LaneCaps for MixedCaps {
     }
 }
 
-/// Eight rays as seen from the `p0` of their cylinders, and what is computed of
-/// them.
+/// Eight rays relative to the `p0` of their cylinders, with their ranges.
 #[derive(Clone, Copy, Debug)]
 pub struct RayLanes {
-    /// The origins, from `p0`.
+    /// The origins, relative to `p0`.
     pub from_p0: LaneVectors,
     /// The directions.
     pub direction: LaneVectors,
-    /// Where the origins are on the whole rays.
+    /// The positions of the origins on the whole rays.
     pub shift: Lanes,
     /// The least parameter of the whole ray.
     pub t_min: Lanes,
@@ -122,9 +118,9 @@ pub struct RayLanes {
     pub t_max: Lanes,
 }
 
-/// [`triple_product::first`](super::triple_product::first) in every lane that is
-/// `active`: where there is a first intersection, and its parameter on the whole
-/// ray, which has no meaning elsewhere.
+/// [`triple_product::first`](super::triple_product::first) in every `active` lane: whether
+/// there is a first intersection, and its parameter on the whole ray, which has no meaning
+/// otherwise.
 #[inline(always)]
 #[must_use]
 pub fn first<C: LaneCaps>(
@@ -154,16 +150,17 @@ pub fn first<C: LaneCaps>(
             let overlap = overlap(cylinders, rays, &lines, lane, &is_unsettled);
             let disks = Disks::of(overlap.slab());
             let (is_inside, RoundedEnd { end, is_open }) = overlap.enter(&disks);
-            // Asked here of both ends: the next loop need not compute the bound again.
+            // Both ends are tested here, so that the next loop need not compute the bound
+            // again.
             let is_open = is_open | overlap.is_leave_open(&disks);
             let (nn, discriminant) = (lines.nn.0[lane], lines.discriminant.0[lane]);
             let is_grazing = ties::is_grazing(&cylinders.axis(lane), nn, discriminant);
-            let is_met = cylinders.is_met(rays, lane, &end);
+            let is_hit = cylinders.is_hit(rays, lane, &end);
             let is_inside = wanted.0[lane] & is_inside;
             enter.0[lane] = end.t;
             t.0[lane] = end.t + rays.shift.0[lane];
-            hits.0[lane] = is_inside & is_met;
-            rest.0[lane] = is_inside & !is_met;
+            hits.0[lane] = is_inside & is_hit;
+            rest.0[lane] = is_inside & !is_hit;
             let is_apart = is_open | is_grazing | overlap.is_across() | is_unsettled.get();
             apart.0[lane] |= wanted.0[lane] & is_apart;
         }
@@ -172,10 +169,10 @@ pub fn first<C: LaneCaps>(
                 let is_unsettled = Cell::new(false);
                 let overlap = overlap(cylinders, rays, &lines, lane, &is_unsettled);
                 let end = overlap.leave(&Disks::of(overlap.slab()), enter.0[lane]);
-                let is_met = rest.0[lane] & cylinders.is_met(rays, lane, &end);
+                let is_hit = rest.0[lane] & cylinders.is_hit(rays, lane, &end);
                 let exit = end.t + rays.shift.0[lane];
-                t.0[lane] = if is_met { exit } else { t.0[lane] };
-                hits.0[lane] |= is_met;
+                t.0[lane] = if is_hit { exit } else { t.0[lane] };
+                hits.0[lane] |= is_hit;
                 apart.0[lane] |= rest.0[lane] & is_unsettled.get();
             }
         }
@@ -186,7 +183,7 @@ pub fn first<C: LaneCaps>(
     (hits, t)
 }
 
-/// What is kept of eight lines.
+/// The terms of eight lines.
 struct LineLanes {
     n: LaneVectors,
     nn: Lanes,
@@ -229,8 +226,8 @@ fn overlap<'a, C: LaneCaps>(
 
 impl<C: LaneCaps> CylinderLanes<C> {
     #[inline(always)]
-    fn is_met(&self, rays: &RayLanes, lane: usize, end: &ChordEnd) -> bool {
-        end.is_met(
+    fn is_hit(&self, rays: &RayLanes, lane: usize, end: &ChordEnd) -> bool {
+        end.is_hit(
             self.caps.lane(lane),
             rays.shift.0[lane],
             rays.t_min.0[lane],
@@ -260,7 +257,7 @@ impl<C: LaneCaps> CylinderLanes<C> {
     }
 }
 
-/// An axis that notes whether exact products were requested.
+/// An axis that records whether exact products were requested.
 #[derive(Clone, Copy)]
 pub(super) struct LaneAxis<'a> {
     stated: StatedAxis<f64>,
@@ -300,7 +297,7 @@ impl Axis<f64> for LaneAxis<'_> {
     }
 }
 
-/// (2) of this file.
+/// Whether a line certainly misses, by (2).
 #[inline(always)]
 pub(super) fn certainly_misses(
     axis: &impl Axis<f64>,
@@ -313,7 +310,7 @@ pub(super) fn certainly_misses(
     line.w * line.w > 8.0 * rr * line.nn + roundings
 }
 
-/// `answers` with those of the scalar solver where `mask` is set.
+/// `answers`, with those of the scalar solver in the lanes of `mask`.
 #[cold]
 #[inline(never)]
 fn one_by_one<C: LaneCaps>(

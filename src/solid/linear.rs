@@ -1,36 +1,36 @@
-//! Heights over planes: linear forms `f·x + c`. Their `x` may be a rounded [`Way`].
+//! Heights over planes: linear forms `f·x + c`. Their `x` may be a rounded [`Offset`].
 //!
-//! Three products and three sums round by at most `4 u S` together, u = 2^-53,
-//! with `S = Σ |f_i x_i| + |c|`, and a rounded `x` adds `u S`. A value of at least `2^-10 S` is
-//! therefore within `1.25 · 2^-41` of itself, 2^-16 of an ulp of f32, and has the right
-//! sign. A smaller one has lost that much to cancellation and is computed again from
-//! exact numbers: so every value has the exact sign, and is zero only if it truly is.
+//! Three products and three sums round by at most `4 u S` together, u = 2^-53, with
+//! `S = Σ |f_i x_i| + |c|`, and a rounded `x` adds `u S`. A value of at least `2^-10 S` is
+//! therefore within `1.25 · 2^-41` of itself, 2^-16 of an ulp of f32, and has the right sign. A
+//! smaller value has lost too much to cancellation and is computed again from exact numbers. So
+//! every value has the exact sign, and is zero only if it truly is.
 
 use glam::DVec3;
 
 use super::exact::{Expression, Number, dot, quotient, vector};
-use super::way::Way;
+use super::offset::Offset;
 use crate::math::{UNIT_ROUNDOFF, power_of_two};
 
-/// The share of its terms from which on a rounded value will do.
+/// The share of its terms from which on a rounded value is used.
 const LEAST_SHARE: f64 = power_of_two(-10);
 
-/// Below this, products may have lost bits to underflow.
+/// The size below which products may have lost bits to underflow.
 const LEAST_SIZE: f64 = power_of_two(-900);
 
-/// Bounds the relative error of a quotient of two values, with room for that of a
+/// Bounds the relative error of a quotient of two values, with room for the error of a
 /// comparison.
 pub(super) const MARGIN: f64 = power_of_two(-39);
 
 /// `f·x`, for finite numbers.
 #[inline]
-pub(super) fn product(f: DVec3, x: impl Way) -> f64 {
+pub(super) fn product(f: DVec3, x: impl Offset) -> f64 {
     checked(rounded_product(f, x.rounded()), f, x, 0.0)
 }
 
 /// `c + f·x` and `c - f·x`, for finite numbers.
 #[inline]
-pub(super) fn heights(f: DVec3, x: impl Way, c: f64) -> [f64; 2] {
+pub(super) fn heights(f: DVec3, x: impl Offset, c: f64) -> [f64; 2] {
     let [over, under] = rounded_heights(f, x.rounded(), c);
     [checked(over, f, x, c), checked(under, -f, x, c)]
 }
@@ -43,14 +43,14 @@ pub(super) struct Rounded {
 }
 
 impl Rounded {
-    /// Whether it has lost too much to cancellation or underflow.
+    /// Whether the value has lost too much to cancellation or underflow.
     #[inline(always)]
     pub fn is_poor(&self) -> bool {
         (self.value.abs() < LEAST_SHARE * self.size) | (self.size < LEAST_SIZE)
     }
 
-    /// Bounds by how much the value from exact numbers differs, zero if this one will do:
-    /// `5 u S`, and a half more for the roundings of a quotient with it.
+    /// Bounds the difference from the value from exact numbers: `5 u S`, and half as much again
+    /// for the roundings of a quotient with it. Zero if this value is used.
     #[inline(always)]
     pub fn slack(&self) -> f64 {
         let slack = if self.size < LEAST_SIZE {
@@ -66,11 +66,17 @@ impl Rounded {
 #[inline(always)]
 pub(super) fn rounded_product(f: DVec3, x: DVec3) -> Rounded {
     let terms = f * x;
-    let (sum, sizes) = (terms.x + terms.y + terms.z, terms.abs());
     Rounded {
-        value: sum,
-        size: sizes.x + sizes.y + sizes.z,
+        value: terms.x + terms.y + terms.z,
+        size: sum_of_sizes(terms),
     }
+}
+
+/// The sum of the sizes of the components: at least the length of `v`, at most √3 times the
+/// length, and computed without a root.
+#[inline(always)]
+pub(super) fn sum_of_sizes(v: DVec3) -> f64 {
+    v.x.abs() + v.y.abs() + v.z.abs()
 }
 
 /// [`heights`] without exact numbers.
@@ -82,20 +88,18 @@ pub(super) fn rounded_heights(f: DVec3, x: DVec3, c: f64) -> [Rounded; 2] {
 }
 
 #[inline(always)]
-fn checked(rounded: Rounded, f: DVec3, x: impl Way, c: f64) -> f64 {
+fn checked(rounded: Rounded, f: DVec3, x: impl Offset, c: f64) -> f64 {
     if rounded.is_poor() {
         return from_exact_numbers(f, x, c);
     }
     rounded.value
 }
 
-/// Takes copies, so that the caller need not have its vectors in memory for a
-/// case that is rare.
+/// Takes copies, so that the caller does not need its vectors in memory for this rare case.
 #[cold]
 #[inline(never)]
-fn from_exact_numbers<W: Way>(f: DVec3, x: W, c: f64) -> f64 {
-    // Along a coordinate axis there is one term, and nothing but its sum with `c`
-    // to round.
+fn from_exact_numbers<W: Offset>(f: DVec3, x: W, c: f64) -> f64 {
+    // Along a coordinate axis there is one term, and only its sum with `c` rounds.
     let is_whole = |factor: &f64| *factor == 0.0 || factor.abs() == 1.0;
     let terms = f * x.rounded();
     let count = terms.to_array().iter().filter(|term| **term != 0.0).count();
@@ -111,7 +115,7 @@ struct Linear<W> {
     c: f64,
 }
 
-impl<W: Way> Expression for Linear<W> {
+impl<W: Offset> Expression for Linear<W> {
     fn value<N: Number>(&self) -> N {
         dot(&vector::<N>(self.f), &self.x.exactly()).plus(&N::of(self.c))
     }
@@ -124,7 +128,7 @@ mod tests {
     #[test]
     fn heights_keep_their_bits_and_sign_where_terms_cancel() {
         let f = DVec3::new(0.6, 0.8, 0.0);
-        // 0.6 and 0.8 are not those numbers: what is left of the sum is exact.
+        // As f64, 0.6 and 0.8 are not those numbers, but the products cancel exactly.
         let x = DVec3::new(0.8, -0.6, 3.0);
         assert_eq!(product(f, x), 0.0);
         let off = DVec3::new(0.8_f64.next_up(), -0.6, 3.0);

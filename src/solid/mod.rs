@@ -1,4 +1,4 @@
-//! What a solid is, and the solvers that intersect rays with it.
+//! Solids, and the solvers that intersect rays with them.
 
 mod any;
 mod ball;
@@ -13,9 +13,10 @@ mod disk;
 pub mod exact;
 pub mod lanes;
 mod linear;
-mod passing;
+mod offset;
 pub mod quick;
 mod registry;
+mod reject;
 mod rounded_cone;
 pub mod settled;
 pub mod slab;
@@ -25,7 +26,6 @@ mod surface;
 pub mod tessellation;
 mod ties;
 pub mod triple_product;
-mod way;
 
 pub use any::AnySolid;
 pub use chord::{Chord, ChordEnd, Intersection};
@@ -36,34 +36,34 @@ pub use counts::SolidCounts;
 pub use cuboid::{Cuboid, CuboidError};
 pub use cylinder::{Caps, Cylinder, CylinderError};
 pub use disk::{Disk, DiskError};
+pub use offset::RayOrigin;
 pub use registry::{SolidKind, UnknownSolid};
 pub use rounded_cone::{RoundedCone, RoundedConeError};
 pub use spawn::{SpawnMargin, spawned_ray};
 pub use sphere::{Sphere, SphereError};
 pub use surface::{SurfacePoint, angle_frame, surface_point};
-pub use way::RayOrigin;
 
-/// The part of a solid's surface that a ray meets.
+/// A part of a solid's surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Part {
-    /// The curved wall; all of a sphere or a disk.
+    /// The curved wall; for a sphere or a disk, all of it.
     Side,
-    /// The disk at `p0`, its rim included; of a rounded cone the sphere there.
+    /// The disk at `p0` with its rim; for a rounded cone, the sphere there.
     Cap0,
-    /// The disk at `p1`, its rim included; of a rounded cone the sphere there.
+    /// The disk at `p1` with its rim; for a rounded cone, the sphere there.
     Cap1,
-    /// The face of a cuboid where its own x is least.
+    /// The face of a cuboid at its own least x.
     XMin,
-    /// Where x is greatest.
+    /// The face at the greatest x.
     XMax,
-    /// Where y is least.
+    /// The face at the least y.
     YMin,
-    /// Where y is greatest.
+    /// The face at the greatest y.
     YMax,
-    /// Where z is least.
+    /// The face at the least z.
     ZMin,
-    /// Where z is greatest.
+    /// The face at the greatest z.
     ZMax,
 }
 
@@ -84,14 +84,14 @@ impl Part {
         }
     }
 
-    /// The panic of code that knows of cylinders alone.
+    /// The panic of code for cylinders alone.
     #[cold]
     pub(crate) fn not_of_a_cylinder(self) -> ! {
         unreachable!("a cylinder has no part {}", self.name())
     }
 }
 
-/// Whether a ray goes into a solid or out of it as `t` grows.
+/// Whether a ray enters or leaves a solid as `t` grows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Crossing {
     /// From outside to inside.

@@ -1,33 +1,33 @@
 //! First intersections without a branch, eight rays at once.
 //!
-//! A solid's quick solver is made of the pieces of its solver, without the exact numbers
-//! that rare cases need: it reports such a case as open, and the caller puts it to
-//! [`ConvexSolid::first`]. Where it is not open, the quick solver has the bits of
-//! [`ConvexSolid::first`]. A loop over its calls, which are inlined, becomes vector code.
+//! A solid's quick solver consists of the pieces of its solver, without the exact numbers for
+//! rare cases. It reports such a case as open, and the caller passes it to
+//! [`ConvexSolid::first`]. If it is not open, the quick solver has the bits of
+//! [`ConvexSolid::first`]. A loop over its inlined calls becomes vector code.
 //!
-//! Most rays that come to a solid's box miss it widely, and [`ConvexSolid::rejects`]
-//! finds that without a root or a division. So it goes first, and what it leaves of a row
-//! is solved if it leaves anything.
+//! Most rays that enter a solid's box miss the solid widely, and [`ConvexSolid::rejects`]
+//! detects that without a root or a division. So it runs first, and the row is solved if any
+//! ray remains.
 
 use super::ConvexSolid;
 use super::lanes::RayLanes;
 use crate::math::{LANES, LaneMask, Lanes};
 
-/// The first intersection of a line and a solid in a range, as a quick solver finds it.
+/// The first intersection of a line and a solid in a range, from a quick solver.
 #[derive(Clone, Copy, Debug)]
 pub struct Quick {
-    /// Whether the answer takes exact numbers; the rest has no meaning then.
+    /// Whether the result needs exact numbers; then the rest has no meaning.
     pub is_open: bool,
     /// Whether there is an intersection.
-    pub is_met: bool,
-    /// Its parameter on the whole ray; without meaning if there is none.
+    pub is_hit: bool,
+    /// Its parameter on the whole ray; it has no meaning if there is no intersection.
     pub t: f64,
 }
 
 /// The range of an intersection's parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Range {
-    /// Where the origin is on the whole ray.
+    /// The position of the origin on the whole ray.
     pub shift: f64,
     /// The least parameter of the whole ray.
     pub t_min: f64,
@@ -38,43 +38,43 @@ pub struct Range {
 /// The first intersections of eight rays.
 #[derive(Clone, Copy, Debug)]
 pub struct QuickLanes {
-    /// Rays whose answer takes exact numbers.
+    /// The rays whose result needs exact numbers.
     pub open: LaneMask,
-    /// Other rays that meet the solid.
-    pub met: LaneMask,
-    /// Where they do, on the whole rays.
+    /// The other rays that hit the solid.
+    pub hit: LaneMask,
+    /// The parameters of these hits, on the whole rays.
     pub t: Lanes,
 }
 
 impl QuickLanes {
-    /// Leaves all rays that are active open.
+    /// Leaves all active rays open.
     #[inline(always)]
     #[must_use]
     pub fn all_open(active: LaneMask) -> Self {
         Self {
             open: active,
-            met: LaneMask::splat(false),
+            hit: LaneMask::splat(false),
             t: Lanes::splat(0.0),
         }
     }
 }
 
 impl Quick {
-    /// An answer that a quick solver does not find.
+    /// An undecided result.
     pub const OPEN: Self = Self {
         is_open: true,
-        is_met: false,
+        is_hit: false,
         t: 0.0,
     };
 
-    /// As [`Quick::of_ends`] of the ends that a line has if it `is_inside` somewhere. They are
-    /// of no matter otherwise.
+    /// As [`Quick::of_ends`], for the ends of a line that `is_inside` somewhere. Otherwise the
+    /// ends do not matter.
     #[inline(always)]
     pub(super) fn of_chord(is_open: bool, is_inside: bool, ends: [End; 2], range: &Range) -> Self {
         let quick = Self::of_ends(false, ends, range);
         Self {
             is_open: is_open | (quick.is_open & is_inside),
-            is_met: quick.is_met & is_inside,
+            is_hit: quick.is_hit & is_inside,
             ..quick
         }
     }
@@ -89,7 +89,7 @@ impl Quick {
             is_open: is_open
                 | range.is_uncertain(&enter)
                 | (is_leave_needed & range.is_uncertain(&leave)),
-            is_met: is_entry | range.contains(&leave),
+            is_hit: is_entry | range.contains(&leave),
             t: t + range.shift,
         }
     }
@@ -98,17 +98,17 @@ impl Quick {
 /// An end of a chord.
 ///
 /// A ray that starts next to a solid's surface, as shadow rays do, has an end next to its
-/// origin whose bits take exact numbers. That it is before the range takes none.
+/// origin whose bits need exact numbers. That this end is before the range needs none.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct End {
-    /// The parameter from the origin, as the solver has it if `slack` is zero.
+    /// The parameter from the origin, equal to the solver's if `slack` is zero.
     pub t: f64,
-    /// Bounds by how much the solver's `t` may be another.
+    /// Bounds the difference from the solver's `t`.
     pub slack: f64,
 }
 
 impl End {
-    /// The end of a surface that has it or not: what is not there is in no range.
+    /// The end if the surface has it, and otherwise one that is in no range.
     #[inline(always)]
     pub fn if_there(self, is_there: bool) -> Self {
         Self {
@@ -123,7 +123,7 @@ impl End {
         self.t - other.t > 2.0 * (self.slack + other.slack)
     }
 
-    /// This end or another.
+    /// This end if `is_this`, else the other.
     #[inline(always)]
     pub fn or(self, other: Self, is_this: bool) -> Self {
         Self {
@@ -132,8 +132,8 @@ impl End {
         }
     }
 
-    /// Whether the order of two ends is certain: they differ by more than a part `margin`
-    /// of them and what they may be displaced.
+    /// Whether the order of two ends is certain: they differ by more than a share `margin` of
+    /// them and their slack.
     #[inline(always)]
     pub fn is_apart(&self, other: &Self, margin: f64) -> bool {
         let error = margin * (self.t.abs() + other.t.abs()) + 2.0 * (self.slack + other.slack);
@@ -148,8 +148,8 @@ impl Range {
         (end.slack == 0.0) & (self.t_min <= t) & (t <= self.t_max)
     }
 
-    /// Whether an end may be in the range or not. Sums round as those of the solver do, in
-    /// the same order as the numbers added.
+    /// Whether it is uncertain that an end is in the range. Sums round as those of the solver
+    /// do, which preserves the order.
     #[inline(always)]
     fn is_uncertain(&self, end: &End) -> bool {
         let [least, most] = [end.t - end.slack, end.t + end.slack].map(|t| t + self.shift);
@@ -157,7 +157,7 @@ impl Range {
     }
 }
 
-/// The rays, of those that are `active`, that do not certainly miss the solid.
+/// The `active` rays that do not certainly miss the solid.
 #[inline(always)]
 #[must_use]
 pub fn near(solid: &impl ConvexSolid, rays: &RayLanes, active: &LaneMask) -> LaneMask {
@@ -169,12 +169,12 @@ pub fn near(solid: &impl ConvexSolid, rays: &RayLanes, active: &LaneMask) -> Lan
     near
 }
 
-/// [`ConvexSolid::first`] of the rays that are `active`, which are seen from the
-/// solid's anchor.
+/// [`ConvexSolid::first`] of the `active` rays, whose origins are relative to the solid's
+/// anchor.
 #[inline(always)]
 #[must_use]
 pub fn first(solid: &impl ConvexSolid, rays: &RayLanes, active: &LaneMask) -> QuickLanes {
-    let (mut open, mut met) = (LaneMask::splat(false), LaneMask::splat(false));
+    let (mut open, mut hit) = (LaneMask::splat(false), LaneMask::splat(false));
     let mut t = Lanes::splat(0.0);
     let near = near(solid, rays, active);
     if near.any() {
@@ -187,9 +187,9 @@ pub fn first(solid: &impl ConvexSolid, rays: &RayLanes, active: &LaneMask) -> Qu
             };
             let quick = solid.quick_first(x, d, &range);
             open.0[lane] = near.0[lane] & quick.is_open;
-            met.0[lane] = near.0[lane] & !quick.is_open & quick.is_met;
+            hit.0[lane] = near.0[lane] & !quick.is_open & quick.is_hit;
             t.0[lane] = quick.t;
         }
     }
-    QuickLanes { open, met, t }
+    QuickLanes { open, hit, t }
 }

@@ -1,13 +1,13 @@
-//! The list of the kinds of solids, from which everything is made that has an entry for
-//! each kind.
+//! The list of the kinds of solids. Everything with an entry for each kind is generated from
+//! it.
 //!
 //! A new kind is a row here and a type with the traits that each subsystem requires; the
-//! compiler names the traits that are missing. `docs/architecture.md` has the recipe.
+//! compiler reports missing traits. `docs/architecture.md` has the recipe.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// Calls a macro with the list of the kinds of solids that are not composed of others.
+/// Calls a macro with the list of the kinds of solids, without the set operations.
 ///
 /// `for_each_solid!(callback arguments)` becomes `callback! { arguments rows }`. A row is
 ///
@@ -21,8 +21,8 @@ use std::str::FromStr;
 /// - `code`: the number in the C interface and its header;
 /// - `"description"`: a noun phrase for the docs.
 ///
-/// The order is that of the primitive numbers of a scene file, so new rows go to the end.
-/// Callbacks match the columns that they need and leave the others to `$($rest:tt)*`.
+/// The order is that of the primitive numbers of a scene file, so new rows are appended.
+/// Callbacks match the columns that they use and leave the others to `$($rest:tt)*`.
 ///
 /// ```
 /// macro_rules! names {
@@ -51,11 +51,11 @@ macro_rules! for_each_solid {
     };
 }
 
-/// Evaluates an expression for the solid in an [`AnySolid`](crate::solid::AnySolid),
-/// whatever its kind is.
+/// Evaluates an expression for the solid in an [`AnySolid`](crate::solid::AnySolid) of any
+/// kind.
 ///
-/// A trait that every kind implements is dispatched by `with_solid!(any, solid => solid)` as
-/// a trait object, or by a call in place of the last `solid`.
+/// `with_solid!(any, solid => solid)` dispatches a trait that every kind implements, as a trait
+/// object; so does a call in place of the last `solid`.
 ///
 /// ```
 /// use cyltrace::solid::{AnySolid, ConvexSolid, Sphere};
@@ -75,8 +75,8 @@ macro_rules! with_solid {
     };
 }
 
-/// Evaluates an expression with the type of a [`SolidKind`](crate::solid::SolidKind);
-/// that of every set operation is [`Composition`](crate::solid::Composition).
+/// Evaluates an expression with the type of a [`SolidKind`](crate::solid::SolidKind). The type
+/// of every set operation is [`Composition`](crate::solid::Composition).
 ///
 /// ```
 /// use cyltrace::solid::SolidKind;
@@ -111,18 +111,18 @@ macro_rules! kinds {
         #[non_exhaustive]
         pub enum SolidKind {
             $(#[doc = $description] $type,)*
-            /// What is in any of several solids, see [`Composition`](super::Composition).
+            /// The points in any of several solids, see [`Composition`](super::Composition).
             Union,
-            /// What is in all of several solids.
+            /// The points in all of several solids.
             Intersection,
-            /// What is in a solid and in none of others.
+            /// The points in a solid and in none of others.
             Difference,
         }
 
         impl SolidKind {
-            /// The kinds that are not composed of others.
+            /// The kinds without the set operations.
             pub const SIMPLE: &[Self] = &[$(Self::$type),*];
-            /// The kinds that lists are known by: all set operations are in one list.
+            /// The kinds that name lists: all set operations share one list.
             pub const LISTS: &[Self] = &[$(Self::$type,)* Self::Union];
             /// The set operations.
             pub const OPERATIONS: &[Self] = &[Self::Union, Self::Intersection, Self::Difference];
@@ -138,7 +138,7 @@ macro_rules! kinds {
                 }
             }
 
-            /// The name of several.
+            /// The plural of the name.
             #[must_use]
             pub fn plural(self) -> &'static str {
                 match self {
@@ -178,7 +178,7 @@ impl fmt::Display for SolidKind {
     }
 }
 
-/// No kind of solid has this name.
+/// A name that is not that of a kind of solid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no solid {0:?}")]
 pub struct UnknownSolid(pub String);

@@ -1,34 +1,33 @@
-//! Which decisions of the triple-product solver its rounded numbers settle.
+//! The decisions of the triple-product solver that its rounded numbers settle.
 //!
-//! The solver decides by signs: of the discriminant, of heights over the planes of the
-//! disks, and of a `t` near zero. This file bounds how far the computed numbers are off
-//! those of exact arithmetic on the cylinder and the ray as stated. A number that is
-//! farther from zero than its bound has the exact sign. If all have, the solver's answer is
-//! the exact one; if not, `exact` decides. The bounds cover the roundings of `a = p1 - p0` and
-//! `x = o - p0` too, so that this is true for any f64 numbers.
+//! The solver decides by signs: of the discriminant, of heights over the planes of the disks,
+//! and of a `t` near zero. This file bounds the difference between the computed numbers and
+//! those of exact arithmetic on the cylinder and the ray as stated. A number that is farther
+//! from zero than its bound has the exact sign. If all have, the solver's result is the exact
+//! one; if not, `exact` decides. The bounds cover the roundings of `a = p1 - p0` and
+//! `x = o - p0` too, so this is true for any f64 numbers.
 //!
-//! The check is beside the solver and computes the same numbers again. Bounds within
-//! the solver cost its other users 3 to 20 % of the time of a traversal, also where they were
-//! compiled away: its numbers had to stay in registers for them.
+//! The check is separate from the solver and computes the same numbers again. Bounds within the
+//! solver cost its other users 3 to 20 % of the time of a traversal, even if they were compiled
+//! away: its numbers had to stay in registers for them.
 //!
-//! Let u = 2^-53, `A = |a|`, `X = |x|`, `K = |a| |d|`, `N = |n|`, `k = K / N`, the
-//! reciprocal of the sine between ray and axis, and r the radius.
+//! Let u = 2^-53, `A = |a|`, `X = |x|`, `K = |a| |d|`, `N = |n|`, `k = K / N`, the reciprocal
+//! of the sine of the angle between ray and axis, and r the radius.
 //!
 //! # Hit or miss of the infinite wall
 //!
 //! `n` is off by at most `5 u K`: `4 u K` from rounded products, u from `a`. So `w = x·n` is
-//! off by `5 u X K + u X K + 3 u X K`, and the line passes at more than the radius where
+//! off by `5 u X K + u X K + 3 u X K`, and the line passes at more than the radius if
 //! `|w| > r N + u (9 X + 5 r) K`. Squared, since `(p + q)² <= (1 + η) p² + (1 + 1/η) q²` for
-//! any `η > 0` and `(9 X + 5 r)² <= 162 (X² + r²)`, a line certainly misses the wall where
+//! any `η > 0` and `(9 X + 5 r)² <= 162 (X² + r²)`, a line certainly misses the wall if
 //!
 //! ```text
 //! w² > (1 + η) r² N² + ρ (X² + r²) K²                                      (1)
 //! ```
 //!
-//! and certainly comes into it where the same inequality is true with `w²` and `r² N²`
-//! exchanged. That needs `ρ >= 162 u² (1 + 1/η)`, 2^-80.6 for the `η` of `WIDER`. What
-//! follows needs more: `ROUNDINGS` has 2^-54. Then a line that certainly comes in has
-//! `r² N² > 2^-54 X² K²`, so that
+//! and certainly enters it if the same inequality is true with `w²` and `r² N²` exchanged. That
+//! needs `ρ >= 162 u² (1 + 1/η)`, 2^-80.6 for the `η` of `WIDER`. The following needs more:
+//! `ROUNDINGS` is 2^-54. Then a line that certainly enters has `r² N² > 2^-54 X² K²`, so that
 //!
 //! ```text
 //! X < 2^27 r,   k < 2^27,   g = D / (r² N²) > 2^-18.1                      (2)
@@ -38,17 +37,18 @@
 //!
 //! For such a line, by (2) and with y the height at a root of the wall,
 //!
-//! - the origin is within `3 r + (X + |y|/A) / k` of the axis, for it is as far from there as the
-//!   line goes aside on its way;
+//! - the origin is within `3 r + (X + |y|/A) / k` of the axis: the distance from the axis
+//!   changes by no more than the line moves sideways;
 //! - `m` is off by `6 u A X`, and `m·n` by `u N (14 A X + 24 k A r + 8 |y|)`;
 //! - `p0` is within `2 r + |y| / (A k)` of the line, so that the rounding of `a` moves `w` by
-//!   that times `u K`, and `w` is off by `u N (24 X + 2 k r + |y|/A)` in all: where
-//!   `k > 4` the products of `n` are exact;
+//!   that times `u K`, and `w` is off by `u N (24 X + 2 k r + |y|/A)` in all: for `k > 4` the
+//!   products of `n` are exact;
 //! - `D` is then off by `u r N² (48 X + 24 k r + 2 |y|/A)`, and `|a| √D` by that times `A / √D`
 //!   and by 6 u of itself;
 //! - a root `(-(m·n) ∓ |a| √D) / N²` displaces the height by `4/3 u k / √g (63 A X + 57 k A r +
-//!   11 |y|)`, and the rounding of `N²`, at most `13 u k N²`, by `4/3 · 13 u k (A X + A r + |y|)`. A root
-//!   `C / q` displaces it by less: its C is within `u A² r (31 X + 40 r)`;
+//!   11 |y|)`, and the rounding of `N²`, at most `13 u k N²`, by
+//!   `4/3 · 13 u k (A X + A r + |y|)`. A root `C / q` displaces it by less: its C is within
+//!   `u A² r (31 X + 40 r)`;
 //! - `x·a`, `d·a`, `|a|²` and the sum add `14 A X + 8 A r + 8 |y| + 6 A²` u.
 //!
 //! The sum is below `u k / √g (116 A X + 102 k A r + 40 |y|) + 6 u A²`. With `√g > 2^-9.1` a
@@ -58,71 +58,78 @@
 //! 2^-36 k A (X + A + k r)                                                  (3)
 //! ```
 //!
-//! is on the side on which it is computed: half of (3) covers all but the terms of `|y|`,
-//! which are below a hundredth of the distance from the plane and a fifth of (3).
+//! is on the computed side: half of (3) covers all terms except those of `|y|`, which are below
+//! a hundredth of the distance from the plane and a fifth of (3).
 //!
 //! # The sign of a root
 //!
-//! A root whose terms do not cancel is at least a third of `|a| √D / N²` in size. By (1) and (2)
-//! `|a| √D` is above `A K 2^-27.6 (X + r)` and above `A r N 2^-9.1`, and the sum, with `|y| <= A X`
-//! at the origin, is off by less than 2^-8 of it. So its sign is right. A root `C / q` has the sign of `C`. There `|C|` is at most
-//! `5 r² A²`; a rounded one of at least `2^-20 r² A²` is off by less than `40 u A² r (X + r)`, which
-//! is less by (2). A smaller one is computed from exact products of the rounded `a` and `x`, and
-//! off by at most `5 u A² r (X + r)`. The `t` at a disk's plane has the sign of `x·a` or `x·a - |a|²` and
-//! that of `d·a`. The first two are off by at most `6 u A (X + A)`. A line of which the sign of `d·a` is open is at
-//! the same height at both roots but for less than (3), so that it comes through no disk.
+//! A root whose terms do not cancel is at least a third of `|a| √D / N²` in size. By (1) and
+//! (2) `|a| √D` is above `A K 2^-27.6 (X + r)` and above `A r N 2^-9.1`, and the sum, with
+//! `|y| <= A X` at the origin, is off by less than 2^-8 of it. So its sign is right.
+//!
+//! A root `C / q` has the sign of `C`. There `|C|` is at most `5 r² A²`. A rounded `C` of at
+//! least `2^-20 r² A²` is off by less than `40 u A² r (X + r)`, which is less by (2). A smaller
+//! one is computed from exact products of the rounded `a` and `x`, and off by at most
+//! `5 u A² r (X + r)`.
+//!
+//! The `t` at a disk's plane has the sign of `x·a` or `x·a - |a|²` and that of `d·a`. The first
+//! two are off by at most `6 u A (X + A)`. If the sign of `d·a` is uncertain, the heights at
+//! both roots differ by less than (3), so the line does not pass through a disk.
 //!
 //! # Near the axis, in lanes
 //!
-//! Lanes have no exact products. A line at a sine below 1/4 is a certain miss by (1) of
-//! `lanes.rs`, whose 32 u of `|x| |a| |d|` also cover the 3 u that the roundings of `a` and `x` add to
-//! 12 u, and is left open otherwise.
+//! Lanes have no exact products. A line at a sine below 1/4 is either a certain miss by (1) of
+//! `lanes.rs`, or left open. The 32 u of `|x| |a| |d|` there also cover the 3 u that the
+//! roundings of `a` and `x` add to 12 u.
 //!
 //! # Lines along the axis
 //!
-//! A line that counts as parallel to the axis is at an angle below 2^-100 to it. It comes
-//! into the solid if its origin is within the wall: where `|m|²` compares with `r² A²` by more than
-//! η and `ρ A² X²`. That covers what it goes aside and `m`, off by `6 u A X`.
+//! A line that counts as parallel to the axis is at an angle below 2^-100 to it. It enters the
+//! solid if its origin is within the wall. The comparison of `|m|²` with `r² A²` is certain if
+//! they differ by more than η and `ρ A² X²`, which covers the line's sideways movement and `m`,
+//! off by `6 u A X`.
 
 use std::cell::Cell;
 
 use glam::DVec3;
 
 use super::lanes::{self, CylinderLanes, LaneCaps, RayLanes};
+use super::linear::sum_of_sizes;
+use super::offset::Offset;
 use super::quick::QuickLanes;
 use super::slab::Slab;
 use super::triple_product::{self, Axis, Line, Root, Roots, StatedAxis};
-use super::way::Way;
 use super::{Chord, Cylinder, Intersection, RayOrigin, exact};
 use crate::math::{LANES, LaneMask, Lanes, power_of_two};
 
-/// `1 + η`. It trades long numbers for lines that graze the wall, 1 in 2^18, for the
-/// constant of (3).
+/// `1 + η`. It trades long numbers for lines that graze the wall, 1 in 2^18, for the constant
+/// of (3).
 const WIDER: f64 = 1.0 + power_of_two(-18);
 
 /// `ρ`. It trades long numbers for lines from afar, `2^-54 (X/r)²` of them, for (2).
 const ROUNDINGS: f64 = power_of_two(-54);
 
-/// The factor of (3). It trades long numbers for lines that come within 2^-34 of the size
-/// of a rim for room in the bound: less than a half of it is used.
+/// The factor of (3). It trades long numbers for lines that come within 2^-34 of the size of a
+/// rim for room in the bound: less than half of it is used.
 const HEIGHT: f64 = power_of_two(-36);
 
-/// The greatest `k` of lines whose `n` has rounded products, see `triple_product.rs`.
+/// The greatest `k` of lines whose `n` has rounded products; see `triple_product`.
 const GREATEST_ROUNDED: f64 = 4.0;
 
-/// The bound of `C` from exact products, relative to `A² r (X + r)`, and of heights at
-/// `t = 0`, relative to `A (X + A)`: 8 u. Spawned rays start at least four times as far
-/// from where they left.
+/// The error bound of `C` from exact products, relative to `A² r (X + r)`, and of heights at
+/// `t = 0`, relative to `A (X + A)`: 8 u. Spawned rays start at least four times as far from
+/// the surface that they leave.
 const AT_ORIGIN: f64 = power_of_two(-50);
 
 /// The interval in which the line `origin + t direction` is inside the closed cylinder, decided
-/// as exact arithmetic on the stated numbers does.
+/// as by exact arithmetic on the stated numbers.
 pub(super) fn chord(cylinder: &Cylinder, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
     let solve = |x| triple_product::chord(cylinder, x, direction);
     decide(cylinder, origin, direction, solve, Some)
 }
 
-/// The first point of that line on the surface in a range, as [`triple_product::first`].
+/// The first intersection of that line with the surface in a range, as
+/// [`triple_product::first`].
 pub(super) fn first(
     cylinder: &Cylinder,
     origin: &RayOrigin,
@@ -135,8 +142,8 @@ pub(super) fn first(
     decide(cylinder, origin, direction, solve, of_chord)
 }
 
-/// The answer of the solver, which gets the rounded way to the origin, if its decisions are
-/// certain, and that of the exact chord if not.
+/// The result of the solver, for the rounded offset of the origin, if its decisions are
+/// certain, and otherwise that of the exact chord.
 #[inline(always)]
 fn decide<T>(
     cylinder: &Cylinder,
@@ -145,19 +152,19 @@ fn decide<T>(
     solve: impl FnOnce(DVec3) -> Option<T>,
     of_chord: impl FnOnce(Chord) -> Option<T>,
 ) -> Option<T> {
-    let way = origin.way_from(cylinder.p0());
-    let settled = Settled::of_ray(cylinder, way.rounded(), direction);
+    let offset = origin.offset_from(cylinder.p0());
+    let settled = Settled::of_ray(cylinder, offset.rounded(), direction);
     if settled.is_miss {
         None
     } else if settled.is_certain {
-        solve(way.rounded())
+        solve(offset.rounded())
     } else {
-        of_chord(exact::chord(cylinder, &way, direction)?)
+        of_chord(exact::chord(cylinder, &offset, direction)?)
     }
 }
 
-/// [`lanes::first`] of rays whose origins f64 has, with exact decisions; and
-/// the rays for which these take exact products or exact numbers, which have no answer.
+/// [`lanes::first`] with exact decisions, for rays whose origins are f64 points. Rays that need
+/// exact products or exact numbers are left open.
 #[inline(always)]
 #[must_use]
 pub fn first_in_lanes<C: LaneCaps>(
@@ -167,7 +174,7 @@ pub fn first_in_lanes<C: LaneCaps>(
 ) -> QuickLanes {
     let [mut settled, mut open] = [LaneMask::splat(false); 2];
     for lane in 0..LANES {
-        // What takes exact products is not a number, so that nothing is certain of it.
+        // A number that needs exact products is NaN here, so nothing about it is certain.
         let is_unsettled = Cell::new(false);
         let axis = cylinders.rounded_axis(lane, &is_unsettled);
         let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
@@ -187,18 +194,18 @@ pub fn first_in_lanes<C: LaneCaps>(
         settled.0[lane] = active.0[lane] & !is_miss & is_settled;
         open.0[lane] = active.0[lane] & !is_miss & !is_settled;
     }
-    let (met, t) = if settled.any() {
+    let (hit, t) = if settled.any() {
         lanes::first(cylinders, rays, &settled)
     } else {
         (LaneMask::splat(false), Lanes::splat(0.0))
     };
-    QuickLanes { open, met, t }
+    QuickLanes { open, hit, t }
 }
 
 /// What is certain of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Settled {
-    /// It misses the infinite wall. So does what is not a number.
+    /// It misses the infinite wall. NaN counts as a miss.
     is_miss: bool,
     /// The signs of all its numbers are exact.
     is_certain: bool,
@@ -215,7 +222,7 @@ impl Settled {
         Self::of(&axis, x, d, &line, steepness(&axis, d, &line))
     }
 
-    /// Of a line that does not count as parallel to the axis. There is no branch in it, so
+    /// For a line that does not count as parallel to the axis. There is no branch in it, so
     /// that a row of lanes is computed at once.
     #[inline(always)]
     fn of(axis: &impl Axis<f64>, x: DVec3, d: DVec3, line: &Line<f64>, k: f64) -> Self {
@@ -224,7 +231,8 @@ impl Settled {
         let roundings = ROUNDINGS * ((x.dot(x) + rr) * (aa * d.dot(d)));
         let (reach, ww) = (rr * line.nn, line.w * line.w);
         let heights = Heights::new(axis, x, d);
-        let at_root = HEIGHT * k * (heights.way + axis.length() * (axis.length() + k * radius));
+        let at_root =
+            HEIGHT * k * (heights.at_origin + axis.length() * (axis.length() + k * radius));
         let least_term = AT_ORIGIN * (aa * (radius * (sum_of_sizes(x) + radius)));
         let roots = Roots::new(axis, x, d, line);
         let is_certain = |root| {
@@ -243,7 +251,7 @@ impl Settled {
     }
 }
 
-/// Of a line that counts as parallel to the axis.
+/// For a line that counts as parallel to the axis.
 #[cold]
 fn settled_along(axis: &StatedAxis<f64>, x: DVec3, d: DVec3) -> Settled {
     let m = axis.a.cross(x);
@@ -270,7 +278,7 @@ fn steepness(axis: &StatedAxis<f64>, d: DVec3, line: &Line<f64>) -> f64 {
 struct Heights {
     slab: Slab<f64>,
     /// `A X`, or up to √3 times as much.
-    way: f64,
+    at_origin: f64,
 }
 
 impl Heights {
@@ -278,12 +286,11 @@ impl Heights {
     fn new(axis: &impl Axis<f64>, x: DVec3, d: DVec3) -> Self {
         Self {
             slab: triple_product::slab(axis, x, d),
-            way: axis.length() * sum_of_sizes(x),
+            at_origin: axis.length() * sum_of_sizes(x),
         }
     }
 
-    /// Whether that at `t` certainly is on the side of both disks' planes on which it is
-    /// computed.
+    /// Whether the height at `t` is certainly on the computed side of both disks' planes.
     #[inline(always)]
     fn are_off_planes(&self, t: f64, slack: f64) -> bool {
         let height = self.slab.position + t * self.slab.slope;
@@ -292,12 +299,6 @@ impl Heights {
 
     #[inline(always)]
     fn are_off_planes_at_origin(&self) -> bool {
-        self.are_off_planes(0.0, AT_ORIGIN * (self.way + self.slab.height))
+        self.are_off_planes(0.0, AT_ORIGIN * (self.at_origin + self.slab.height))
     }
-}
-
-/// At least the length, and at most √3 times as much; it takes no root.
-#[inline(always)]
-fn sum_of_sizes(v: DVec3) -> f64 {
-    v.x.abs() + v.y.abs() + v.z.abs()
 }

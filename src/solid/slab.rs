@@ -1,22 +1,22 @@
-//! The wall's interval of `t` overlapped with the slab between the disks.
+//! The intersection of the wall's interval of `t` with the slab between the disks.
 //!
-//! A solver finds where a line is inside the infinite wall; the solid is the
-//! part of that between the planes of the disks. The axial position of a point
-//! of the line is `y = position + t * slope`, counted from `p0` in any unit,
-//! and the point is inside the slab iff `0 <= y <= height`. Both ends of the
-//! overlap are judged by `y` at the wall's roots: wall and disks are chosen
-//! from the same numbers, so that no ray slips between them at a rim.
+//! A solver computes the interval of a line inside the infinite wall; the solid is the part of
+//! that wall between the planes of the disks. The axial position of a point of the line is
+//! `y = position + t * slope`, counted from `p0` in any unit, and the point is inside the slab
+//! iff `0 <= y <= height`. Both ends of the overlap are decided by `y` at the wall's roots:
+//! wall and disks are selected by the same numbers, so that no ray passes between them at a
+//! rim.
 //!
-//! Where the line is so nearly across the axis that `t * slope` rounds away between
-//! the roots, `y` does not say where it comes through a plane: an error of an ulp of
-//! the height is one of an ulp over the slope in `t`, which may be any number. So the
-//! `t` of a disk is clamped between the roots of the wall. It is there without rounding.
+//! If the line is so nearly across the axis that `t * slope` rounds away between the roots, `y`
+//! does not determine where it crosses a plane: an error of an ulp of the height is an error of
+//! an ulp over the slope in `t`, which may be any number. So the `t` of a disk is clamped
+//! between the roots of the wall, where it is without rounding.
 //!
-//! At a rim, `y` is a plane's but for its rounding, and neither the part nor hit or miss
-//! follows from its sign. The wall bounds the rounding. An end at which `y` is nearer to a
-//! plane than that is *open*, and comes from exact arithmetic. So does the end at which the
-//! line leaves if the one at which it enters is open. Whether an end is open depends on the
-//! line alone, so that all questions about the line have the same ends.
+//! At a rim, `y` equals a plane's up to its rounding, and its sign determines neither the part
+//! nor hit or miss. The wall bounds the rounding. An end at which `y` is nearer to a plane than
+//! that is *open*, and comes from exact arithmetic. So does the end at which the line leaves if
+//! the one at which it enters is open. Whether an end is open depends on the line alone, so all
+//! queries of the line have the same ends.
 
 use super::chord::{Chord, ChordEnd, Intersection};
 use super::{Caps, Crossing, Part};
@@ -29,23 +29,22 @@ pub struct Slab<S> {
     pub height: S,
     /// The axial position at `t = 0`.
     pub position: S,
-    /// What `t = 1` adds to the position.
+    /// The change of the position per unit of `t`.
     pub slope: S,
 }
 
-/// Where a line is inside the infinite wall; either end is computed when asked
-/// for.
+/// The interval of a line inside the infinite wall. Either end is computed on request.
 pub trait Wall<S: Real> {
-    /// The `t` at which it comes in.
+    /// The `t` at which it enters.
     fn enter(&self) -> S;
-    /// The `t` at which it goes out.
+    /// The `t` at which it leaves.
     fn leave(&self) -> S;
 
-    /// Whether it decides at rims. If not, no end is open, and rims are where the rounded
-    /// `y` is a plane's.
+    /// Whether the wall decides at rims. If not, no end is open, and a point is on a rim if the
+    /// rounded `y` equals that of a plane.
     const DECIDES_RIMS: bool = false;
 
-    /// The square of a bound of the rounding of `y` at either end.
+    /// The square of an error bound of `y` at either end.
     #[inline(always)]
     fn squared_rounding(&self, _slab: &Slab<S>) -> S {
         S::ZERO
@@ -58,31 +57,31 @@ pub trait Wall<S: Real> {
     }
 }
 
-/// A slab and a wall: a chord of which an end is computed when requested.
+/// A slab and a wall: a chord whose ends are computed on request.
 pub struct Overlap<S, W> {
     slab: Slab<S>,
     wall: W,
 }
 
-/// What is computed of a chord. A type, not a closure: its methods are inlined,
-/// so that nothing of the chord has to be kept in memory.
+/// A function of a chord. A type, not a closure: its methods are inlined, so that nothing of
+/// the chord has to be kept in memory.
 pub trait Question<S: Real> {
-    /// What is answered if there is a chord.
+    /// The result if there is a chord.
     type Answer;
 
-    /// Asked of a chord that is known.
+    /// The result for a known chord.
     fn of_chord(self, chord: Chord<S>) -> Option<Self::Answer>;
 
-    /// Asked of wall and slab, which may have no chord in common.
+    /// The result for wall and slab, which may have no common chord.
     fn of_overlap(self, overlap: &Overlap<S, impl Wall<S>>) -> Option<Self::Answer>;
 }
 
-/// Asks for [`Chord::first`]. The end at which the line leaves is computed only
-/// if the one at which it enters is no hit.
+/// [`Chord::first`]. The end at which the line leaves is computed only if the one at which it
+/// enters is no hit.
 pub struct FirstIntersection<S> {
     /// The closed ends.
     pub caps: Caps,
-    /// The `t` of the whole ray where the line's is 0.
+    /// The `t` of the whole ray at the line's `t = 0`.
     pub shift: S,
     /// The least `t` of the whole ray.
     pub t_min: S,
@@ -121,7 +120,7 @@ impl<S: Real> Question<S> for FirstIntersection<S> {
     }
 }
 
-/// Asks for the chord.
+/// The chord itself.
 pub struct WholeChord;
 
 impl<S: Real> Question<S> for WholeChord {
@@ -153,20 +152,18 @@ impl<S: Real> Question<S> for WholeChord {
     }
 }
 
-/// The end at which a line enters, by rounded numbers.
+/// The end at which a line enters, from rounded numbers.
 pub(super) struct RoundedEnd<S> {
     /// The end.
     pub end: ChordEnd<S>,
-    /// Whether exact arithmetic has to decide what and where it is.
+    /// Whether exact arithmetic has to decide its part and `t`.
     pub is_open: bool,
 }
 
-/// The disks in the order in which a line that is not across the axis comes
-/// through their planes.
+/// The disks in the order in which a line that is not across the axis crosses their planes.
 ///
-/// Which comes first depends on the sign of the slope, which no processor
-/// predicts. So nothing branches on it: the planes are numbers that are
-/// computed from the sign.
+/// The order depends on the sign of the slope, which no processor predicts. So nothing branches
+/// on it: the planes are numbers computed from the sign.
 pub(super) struct Disks<S> {
     sign: S,
     near: S,
@@ -176,7 +173,7 @@ pub(super) struct Disks<S> {
 impl<S: Real> Disks<S> {
     #[inline(always)]
     pub fn of(slab: &Slab<S>) -> Self {
-        // The planes are at 0 and at `height`, or the other way round, exactly.
+        // The planes are exactly at 0 and at `height`, or at `height` and at 0.
         let sign = S::from_f64(1.0).copysign(slab.slope);
         let half = S::from_f64(-0.5) * slab.height;
         Self {
@@ -227,13 +224,13 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
         self.slab.slope == S::ZERO
     }
 
-    /// Whether a height over either plane is that plane's, for a wall that leaves it at that.
+    /// Whether a height equals that of a plane, for a wall that does not decide at rims.
     #[inline(always)]
     fn is_rim(&self, height: S, plane: S) -> bool {
         !W::DECIDES_RIMS && height == plane
     }
 
-    /// Whether a height over either plane may be on its other side.
+    /// Whether a height may be on the other side of either plane.
     #[inline(always)]
     fn is_near_plane(&self, height: S) -> bool {
         if !W::DECIDES_RIMS {
@@ -251,7 +248,7 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
         let height = slab.beyond_near(disks, t);
         let is_open = self.is_near_plane(height);
         if height > S::ZERO {
-            // At the far disk's height it is a single point, where the wall ends.
+            // At the far disk's height the chord is a single point, where the wall ends.
             let on_rim = self.is_rim(height, slab.height);
             let part = if on_rim { disks.far_part() } else { Part::Side };
             let end = ChordEnd { t, part, on_rim };
@@ -270,7 +267,8 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
         }
     }
 
-    /// Where the line that enters at `enter`, an end that is not open, leaves the solid.
+    /// The end at which the line leaves the solid, if it enters at `enter`, an end that is not
+    /// open.
     #[inline(always)]
     fn decided_leave(&self, disks: &Disks<S>, enter: S) -> ChordEnd<S> {
         let leave = self.leave(disks, enter);
@@ -288,7 +286,7 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
         W::DECIDES_RIMS && self.is_near_plane(self.slab.beyond_near(disks, self.wall.leave()))
     }
 
-    /// The same by rounded numbers.
+    /// The end at which the line leaves, from rounded numbers.
     #[inline(always)]
     pub(super) fn leave(&self, disks: &Disks<S>, enter: S) -> ChordEnd<S> {
         let slab = &self.slab;
@@ -303,9 +301,9 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
             };
             ChordEnd { t, part, on_rim }
         } else {
-            // A line that comes into the wall at the far disk's height only touches the
-            // rim. The chord's own entry will not do: at the near disk of a solid that is
-            // flat beside the rounding of heights it is at any height.
+            // A line that enters the wall at the far disk's height only touches the rim. The
+            // chord's own entry is no substitute: at the near disk of a solid that is flatter
+            // than the rounding of heights, it has any height.
             let to_enter = slab.beyond_near(disks, self.wall.enter());
             ChordEnd {
                 t: at_most(slab.at(disks.far), t),
@@ -313,8 +311,8 @@ impl<S: Real, W: Wall<S>> Overlap<S, W> {
                 on_rim: self.is_rim(height, slab.height) | self.is_rim(to_enter, slab.height),
             }
         };
-        // At an edge the two may come out in the wrong order by a rounding, and of a line
-        // almost across the axis by any amount.
+        // At an edge, rounding may put the two in the wrong order; for a line almost across the
+        // axis, by any amount.
         end.not_before(enter)
     }
 }
@@ -326,14 +324,13 @@ fn at_most<S: Real>(t: S, greatest: S) -> S {
 }
 
 impl<S: Real> Slab<S> {
-    /// How far beyond the near disk's plane the line is at `t`, in its own
-    /// direction.
+    /// The distance of the line at `t` beyond the near disk's plane, in its own direction.
     #[inline(always)]
     fn beyond_near(&self, disks: &Disks<S>, t: S) -> S {
         disks.near + disks.sign * (self.position + t * self.slope)
     }
 
-    /// Where the line comes through a plane.
+    /// The parameter at which the line crosses a plane.
     #[inline(always)]
     fn at(&self, plane: S) -> S {
         (plane - self.position) / self.slope
@@ -345,8 +342,7 @@ impl<S: Real> Slab<S> {
         Overlap { slab: self, wall }
     }
 
-    /// The chord of a line along the axis that is inside the wall, or on it
-    /// all the way.
+    /// The chord of a line along the axis that is inside the wall, or on it.
     #[cold]
     pub fn along(&self, on_wall: bool) -> Option<Chord<S>> {
         if self.slope == S::ZERO {
@@ -365,8 +361,8 @@ impl<S: Real> Slab<S> {
         })
     }
 
-    /// The chord of a line across the axis: from wall to wall at one height,
-    /// which may be that of a disk.
+    /// The chord of a line across the axis: from wall to wall at one height, which may be that
+    /// of a disk.
     #[cold]
     fn across(&self, t0: S, t1: S) -> Option<Chord<S>> {
         let y = self.position;

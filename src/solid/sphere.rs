@@ -1,9 +1,9 @@
-//! The sphere as users state it. `ball.rs` has its solver.
+//! The sphere as users define it. `ball.rs` has its solver.
 
 use glam::DVec3;
 
-use super::passing::Line;
 use super::quick::{Quick, Range};
+use super::reject::Line;
 use super::surface::FirstParameter;
 use super::{
     Chord, ConvexSolid, Cylinder, Location, Part, RayOrigin, SolidKind, SurfacePoint, ball,
@@ -19,7 +19,7 @@ pub struct Sphere {
     radius: f64,
 }
 
-/// Why numbers are not a sphere.
+/// Why numbers do not define a sphere.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SphereError {
     /// A coordinate of the center is NaN, infinite or beyond [`Cylinder::GREATEST`].
@@ -28,7 +28,7 @@ pub enum SphereError {
         /// The center as given.
         center: DVec3,
     },
-    /// The radius is not a number in [`Cylinder::LEAST`, `Cylinder::GREATEST`].
+    /// The radius is not in [`Cylinder::LEAST`, `Cylinder::GREATEST`].
     #[error(
         "radius is {radius:?}: it must be a positive number between {:.1e} and {:.1e}",
         Cylinder::LEAST,
@@ -55,7 +55,7 @@ impl Sphere {
         Ok(Self::from_valid(center, radius))
     }
 
-    /// The sphere of numbers that [`Sphere::new`] accepted before.
+    /// The sphere of numbers that [`Sphere::new`] has accepted before.
     #[inline]
     pub(crate) fn from_valid(center: DVec3, radius: f64) -> Self {
         Self { center, radius }
@@ -103,13 +103,13 @@ impl ConvexSolid for Sphere {
     }
 
     fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
-        let x = origin.way_from(self.center);
+        let x = origin.offset_from(self.center);
         ball::chord(x, direction, self.radius, Part::Side)
     }
 
     #[inline(always)]
     fn rejects(&self, from_anchor: DVec3, direction: DVec3) -> bool {
-        Line::new(from_anchor, direction).passes_ball(self.radius)
+        Line::new(from_anchor, direction).misses_ball(self.radius)
     }
 
     #[inline(always)]
@@ -117,13 +117,12 @@ impl ConvexSolid for Sphere {
         ball::quick_first(from_anchor, direction, self.radius, range)
     }
 
-    /// `u` is the angle about z, from x towards y, in turns; 0 at the poles. `v` is
-    /// the share of the height, 0 at the least z.
+    /// `u` is the angle about z, from x towards y, in turns, and 0 at the poles. `v` is the
+    /// share of the height, 0 at the least z.
     ///
-    /// The unit vector outward is `q / |q|`, `q` first divided by its greatest
-    /// component: its length is off by less than 6 u, the product with the radius and
-    /// the sum with the center by u of theirs. At the center itself, which has no
-    /// nearest point, it is z.
+    /// The outward unit vector is `q / |q|`, with `q` first divided by its greatest component:
+    /// its length is off by less than 6 u, the product with the radius and the sum with the
+    /// center by u of theirs. At the center itself, which has no nearest point, it is z.
     fn surface_point(&self, _: Part, from_anchor: DVec3) -> SurfacePoint {
         let normal = unit(from_anchor).unwrap_or(DVec3::Z);
         let point = self.center + normal * self.radius;

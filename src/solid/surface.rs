@@ -1,31 +1,28 @@
 //! The point, normal and parameters of a hit on a cylinder, with error bounds.
 //!
-//! A hit's `t` has an error along the ray that can be large against the radius
-//! (far origins, grazing rays). The point reported is therefore not
-//! `o + t d` but the nearest point of the surface to it, computed as
-//! `q = base + ρ`: `base` on the axis (at `p0`, `p1` or between), `ρ`
-//! perpendicular to the axis, of length `radius` on the wall and of at most
+//! A hit's `t` has an error along the ray that can be large relative to the radius (far
+//! origins, grazing rays). The reported point is therefore not `o + t d` but the point of the
+//! surface nearest to it, computed as `q = base + ρ`: `base` is on the axis (at `p0`, `p1` or
+//! between), `ρ` is perpendicular to the axis, of length `radius` on the wall and of at most
 //! `radius` on a disk.
 //!
-//! How far `q` is from the true surface (u = 2^-53, Euclidean norms; every
-//! component of a vector operation has relative error u, hence so has its
-//! norm):
+//! The distance of `q` from the true surface (u = 2^-53, Euclidean norms; every component of a
+//! vector operation has relative error u, hence so has its norm):
 //!
 //! 1. `a = p1 - p0` is rounded, `u |a|`, and so is `y a` with y in \[0, 1\]:
 //!    the axis point is displaced by at most `2 u |a|`;
 //! 2. `|ρ|` has relative error 5 u (dot product, root, quotient, product);
-//! 3. `ρ` is made perpendicular twice; after the second time its component
-//!    along the computed axis is below `5 u |ρ|`, and the computed axis is off
-//!    the true one by u: at an end, `ρ` reaches past the disk's plane by at
-//!    most `6 u |ρ|`, and within the wall this does not matter;
+//! 3. `ρ` is made perpendicular twice; after the second time its component along the computed
+//!    axis is below `5 u |ρ|`, and the computed axis is off the true one by u: at an end, `ρ`
+//!    extends past the disk's plane by at most `6 u |ρ|`; on the wall this does not matter;
 //! 4. the sums `y a + ρ` and `p0 + ...` round by `u (|a| + radius)` and `u |q|`.
 //!
-//! Together `u (|q| + 3 |a| + 12 radius)`; second-order terms and the rounding
-//! of the bound itself are covered by counting 4 and 16 instead of 3 and 12.
+//! The sum is `u (|q| + 3 |a| + 12 radius)`. Counting 4 and 16 instead of 3 and 12 covers
+//! second-order terms and the rounding of the bound itself.
 //!
-//! The angle `u` takes an arc tangent, which costs as much as everything else here,
-//! and most callers do not use it. A surface point therefore contains what `u` depends
-//! on, and [`SurfacePoint::u`] computes it.
+//! The angle `u` takes an arc tangent, which costs as much as everything else here, and most
+//! callers do not use it. A surface point therefore contains the inputs of `u`, and
+//! [`SurfacePoint::u`] computes it.
 
 use glam::DVec3;
 
@@ -43,7 +40,7 @@ pub struct SurfacePoint {
     pub normal: DVec3,
     /// Axial position from `p0` to `p1`, in [0, 1].
     pub v: f64,
-    /// What [`SurfacePoint::u`] computes.
+    /// The inputs of [`SurfacePoint::u`].
     pub(super) first: FirstParameter,
 }
 
@@ -64,7 +61,7 @@ impl SurfacePoint {
 /// The parameter `u` of a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FirstParameter {
-    /// The angle of a unit vector around an axis, which is one too.
+    /// The angle of a unit vector around an axis, also a unit vector.
     Angle { axis: DVec3, outward: DVec3 },
     /// The number itself.
     Share(f64),
@@ -72,10 +69,9 @@ pub(super) enum FirstParameter {
 
 /// The point of `part` nearest to `p0 + from_p0`.
 ///
-/// `u` counts from the direction in which the coordinate axis that is most
-/// perpendicular to the cylinder's axis (the first of equals) points, and
-/// grows right-handed about the direction from `p0` to `p1`. On the axis
-/// itself, at the middle of a disk, it is 0.
+/// `u` counts from the direction of the coordinate axis that is most perpendicular to the
+/// cylinder's axis (the first of equals), and grows right-handed about the direction from `p0`
+/// to `p1`. On the axis itself, at the center of a disk, it is 0.
 #[must_use]
 #[inline]
 pub fn surface_point(cylinder: &Cylinder, part: Part, from_p0: DVec3) -> SurfacePoint {
@@ -115,7 +111,7 @@ pub fn surface_point(cylinder: &Cylinder, part: Part, from_p0: DVec3) -> Surface
     }
 }
 
-/// How a point lies around an axis.
+/// The position of a point relative to an axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Around {
     /// Unit vector along the axis.
@@ -127,14 +123,14 @@ pub(super) struct Around {
 }
 
 impl Around {
-    /// Of the point `from_p0` and the axis `a`, which starts at `p0`.
+    /// For the point `from_p0` and the axis `a`, which starts at `p0`.
     #[inline(always)]
     pub fn new(a: DVec3, from_p0: DVec3) -> Self {
         let axis = a.normalize();
         let from_axis = from_p0 - a * (from_p0.dot(a) / a.length_squared());
         let radial = from_axis - axis * from_axis.dot(axis);
         let distance = radial.length();
-        // A wall has no point nearest to the axis; any direction will do there.
+        // A point on the axis has no nearest point of the wall; any direction serves.
         let outward = if distance > 0.0 {
             radial / distance
         } else {
@@ -158,15 +154,15 @@ impl Around {
 
 /// The angle of `outward` from `reference` towards `across`, in turns, in [0, 1).
 fn turn(outward: DVec3, reference: DVec3, across: DVec3) -> f64 {
-    // A zero of either sign is the same direction.
+    // Turns -0 into 0, the same direction.
     let (y, x) = (outward.dot(across) + 0.0, outward.dot(reference) + 0.0);
     let turn = libm::atan2(y, x) / std::f64::consts::TAU;
     let turn = if turn < 0.0 { turn + 1.0 } else { turn };
     if turn >= 1.0 { 0.0 } else { turn }
 }
 
-/// The two unit vectors perpendicular to `axis` from which angles are counted:
-/// direction 0 and direction a quarter turn on.
+/// The two unit vectors perpendicular to `axis` that define angles: direction 0, and the
+/// direction a quarter turn on.
 pub fn angle_frame(axis: DVec3) -> (DVec3, DVec3) {
     let size = axis.abs();
     let coordinate_axis = if size.x <= size.y && size.x <= size.z {

@@ -1,8 +1,9 @@
-//! Decisions of the triple-product solver at the rims.
+//! The decisions of the triple-product solver at the rims.
 //!
 //! The solver compares the axial position `y` of the roots with the planes of the disks, at 0
-//! and `|a|²`. A line through a point of a rim has such a `y`, and what is computed of it is off by
-//! its rounding, even if all inputs are small whole numbers: a root is rarely a binary number.
+//! and `|a|²`. For a line through a point of a rim, `y` is on such a plane, and the computed
+//! `y` is off by its rounding, even if all inputs are small whole numbers: a root is rarely a
+//! binary number.
 //!
 //! With `k = |a| |d| / |n|` and the gap `g = D / (radius² |n|²)` the rounding is less than
 //!
@@ -10,12 +11,12 @@
 //! 2^-43 k / √g |a| √(|x|² + |a|² + radius²)                                (1)
 //! ```
 //!
-//! by `docs/derivations.md`, section 2, (6a). Nearer to a plane than that, an end comes from
-//! exact arithmetic on `a`, `x`, `d` and the radius, with its `t` rounded.
+//! by `docs/derivations.md`, section 2, (6a). An end that is nearer to a plane comes from exact
+//! arithmetic on `a`, `x`, `d` and the radius, with its `t` rounded.
 //!
-//! The check is made for every line, so it takes the square of (1), which needs no root:
-//! `|a|² |x|²` is `|m|² + (x·a)²`, and the solver has both. For `k` and `g` it takes constants unless
-//! the line is near the axis or grazes the wall.
+//! The check runs for every line, so it uses the square of (1), which needs no root:
+//! `|a|² |x|²` is `|m|² + (x·a)²`, and the solver has both. It uses constants for `k` and `g`
+//! unless the line is near the axis or grazes the wall.
 
 use glam::DVec3;
 
@@ -28,20 +29,21 @@ const ROUNDING: f64 = power_of_two(-86);
 
 /// The gap below which a line grazes the wall.
 ///
-/// It trades divisions for the size of (1), which has this gap for all other lines: at 2^-14,
-/// one line in 2^15 takes the division, and one in 2^34 of those from nearby is decided exactly.
+/// It trades divisions for the size of (1), which uses this gap for all other lines: at 2^-14,
+/// one line in 2^15 needs the division, and one in 2^34 of those from nearby is decided
+/// exactly.
 const LEAST_GAP: f64 = power_of_two(-14);
 
-/// `k² / g` of a line that is neither near the axis nor grazes the wall, or more.
+/// An upper bound of `k² / g` for a line that is neither near the axis nor grazes the wall.
 pub(super) const ORDINARY_DISPLACEMENT: f64 = 1.0 / (LEAST_SQUARED_SINE * LEAST_GAP);
 
-/// Whether a line, by its `|n|²` and `D`, is next to a tangent of the wall.
+/// Whether a line, given by its `|n|²` and `D`, is next to a tangent of the wall.
 #[inline(always)]
 pub(super) fn is_grazing<S: Real>(axis: &impl Axis<S>, nn: S, discriminant: S) -> bool {
     discriminant < S::from_f64(LEAST_GAP) * (axis.radius() * axis.radius() * nn)
 }
 
-/// `k² / g` of any line, or more.
+/// An upper bound of `k² / g` for any line.
 #[inline(always)]
 pub(super) fn displacement<S: Real>(axis: &impl Axis<S>, d: S::Vector, line: &Line<S>) -> S {
     if line.is_near_axis(axis, d) | is_grazing(axis, line.nn, line.discriminant) {
@@ -51,7 +53,7 @@ pub(super) fn displacement<S: Real>(axis: &impl Axis<S>, d: S::Vector, line: &Li
     S::from_f64(ORDINARY_DISPLACEMENT)
 }
 
-/// Takes numbers one by one, as `exact_chord`.
+/// Takes separate numbers, as `exact_chord` does.
 #[cold]
 #[inline(never)]
 fn rare_displacement<S: Real>(sizes: S, nn: S, reach: S, discriminant: S) -> S {
@@ -63,7 +65,7 @@ fn rare_displacement<S: Real>(sizes: S, nn: S, reach: S, discriminant: S) -> S {
     squared_k * at_least(1.0 / LEAST_GAP, reach / discriminant)
 }
 
-/// The square of (1), of the square of its last two factors.
+/// The square of (1), from the square of its last two factors.
 #[inline(always)]
 pub(super) fn squared_rounding<S: Real>(displacement: S, squared_sizes: S) -> S {
     S::from_f64(ROUNDING) * displacement * squared_sizes
@@ -71,8 +73,8 @@ pub(super) fn squared_rounding<S: Real>(displacement: S, squared_sizes: S) -> S 
 
 /// The chord by exact arithmetic.
 ///
-/// Takes numbers one by one: they are handed over in registers, and the caller need not have
-/// its vectors in memory for a case that is rare.
+/// Takes separate numbers: they are passed in registers, and the caller does not need its
+/// vectors in memory for this rare case.
 #[cold]
 #[inline(never)]
 #[expect(clippy::too_many_arguments, reason = "three vectors in registers")]
@@ -128,7 +130,7 @@ mod tests {
         [term(1, 2), term(2, 0), term(0, 1)]
     }
 
-    /// The axial positions of both roots in 500 bits, if the line comes into the wall.
+    /// The axial positions of both roots in 500 bits, if the line intersects the wall.
     fn positions(axis: &StatedAxis<f64>, x: DVec3, d: DVec3) -> Option<[Long; 2]> {
         let [a, x, d] = [axis.a, x, d].map(|v| v.to_array().map(long));
         let (n, m) = (cross(&a, &d), cross(&a, &x));

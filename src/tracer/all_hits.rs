@@ -1,24 +1,22 @@
-//! All hits of a ray, a batch at a time.
+//! All hits of a ray, in batches.
 //!
-//! A traversal keeps the first hits after the last one that is known, at most a
-//! batch of them. Hits have a total order, so that the next traversal continues
-//! exactly there: none is lost or repeated, also among many at the same `t`.
+//! A traversal keeps the first hits after the last known one, at most a batch of them. Hits
+//! have a total order, so the next traversal continues exactly there: none is lost or repeated,
+//! even among many at the same `t`.
 //!
-//! **Time.** A full batch ends the ray where its last hit is, so a traversal of
-//! solids in a row visits about as many as it keeps. Where N solids overlap, as
-//! coincident and concentric ones do, each traversal visits all of them, and
-//! batches of constant size would take N²/batch visits. So a traversal that
-//! visits more than [`GREATEST_COST`] primitives a hit that it may keep is followed
-//! by a batch of twice the size. Then
+//! **Time.** A full batch ends the ray at its last hit, so for solids in a row the number of
+//! visits is about that of the kept hits. If N solids overlap, as coincident and concentric
+//! ones do, each traversal visits all of them, and batches of constant size would take N²/batch
+//! visits. So the batch size doubles after a traversal that visits more than [`GREATEST_COST`]
+//! primitives per hit of its batch. Then
 //!
-//! - the traversals that double are at most log2 N, with at most N visits each;
-//! - the others visit at most [`GREATEST_COST`] primitives a hit.
+//! - at most log2 N traversals double the batch, with at most N visits each;
+//! - the others visit at most [`GREATEST_COST`] primitives per hit.
 //!
-//! Keeping the least k of the hits takes log k a hit, in a heap. Together that is
-//! N log N.
+//! Keeping the least k of the hits in a heap takes log k per hit. The total is N log N.
 //!
-//! **Memory.** A batch grows only while N > [`GREATEST_COST`] · batch, so it stays
-//! below N/8 hits, and at its first size where the range prunes.
+//! **Memory.** A batch grows only while N > [`GREATEST_COST`] · batch, so it stays below N/8
+//! hits, and at its first size if the range prunes.
 
 use super::frame::LocalRay;
 use super::query::{Found, Query, QueryMode};
@@ -26,26 +24,26 @@ use super::resolve::Which;
 use super::{Hit, HitFields, PartialHit, Tracer};
 use crate::math::Ray;
 
-/// A batch that suits most rays: a second traversal is needed for few, and
-/// keeping that many in order costs little.
+/// A batch size that suits most rays: few need a second traversal, and keeping this number of
+/// hits in order costs little.
 pub const DEFAULT_BATCH: usize = 32;
 
-/// The most primitives that a traversal visits for each hit of its batch before
-/// the batch grows. Less takes more memory for overlapping solids, more takes
-/// proportionally more time for them. Rays through thickets visit some five
-/// primitives a hit, and their batches shall not grow.
+/// The most primitives that a traversal visits per hit of its batch before the batch grows. A
+/// lower limit takes more memory for overlapping solids; a higher one takes proportionally more
+/// time for them. Rays through thickets visit some five primitives per hit, and their batches
+/// should not grow.
 const GREATEST_COST: usize = 16;
 
 /// The hits of [`Tracer::all_hits`].
 pub struct AllHits<'a> {
     tracer: &'a Tracer,
-    /// The ray in use, and the factor that turns its `t` back.
+    /// The normalized ray, and the factor from its `t` to the caller's.
     ray: Option<(Ray, f64)>,
-    /// The most hits of the next traversal.
+    /// The batch size of the next traversal.
     batch: usize,
-    /// The hits of the last traversal that have not been handed out.
+    /// The hits of the last traversal that are not returned yet.
     known: std::vec::IntoIter<Found>,
-    /// The last one of that traversal, after which the next continues.
+    /// The last hit of that traversal, after which the next continues.
     last: Option<Found>,
     is_complete: bool,
     /// The primitives visited so far.
@@ -56,7 +54,7 @@ impl<'a> AllHits<'a> {
     pub(super) fn new(tracer: &'a Tracer, ray: &Ray, batch: usize) -> Self {
         Self {
             tracer,
-            ray: tracer.in_use(ray),
+            ray: tracer.normalized(ray),
             batch: batch.max(1),
             known: Vec::new().into_iter(),
             last: None,
@@ -65,12 +63,12 @@ impl<'a> AllHits<'a> {
         }
     }
 
-    /// The same hits, with only those fields worked out that are in `fields`.
+    /// The same hits, with only the given fields computed.
     pub fn with(mut self, fields: HitFields) -> impl Iterator<Item = PartialHit> + 'a {
         std::iter::from_fn(move || Some(PartialHit::new(self.next_hit(fields)?, fields)))
     }
 
-    /// The next hit, with some fields worked out.
+    /// The next hit, with the given fields computed.
     fn next_hit(&mut self, fields: HitFields) -> Option<Hit> {
         if self.known.as_slice().is_empty() && !self.is_complete {
             self.search()?;
@@ -78,22 +76,22 @@ impl<'a> AllHits<'a> {
         let found = self.known.next()?;
         let (ray, factor) = self.ray?;
         let root = self.tracer.root.as_ref()?;
-        let which = Which::This(found.met);
+        let which = Which::This(found.hit);
         let hit = self
             .tracer
             .resolved(root, (&ray, factor), &found.place, which, fields);
         Some(hit)
     }
 
-    /// Finds the next hits, if there can be any.
+    /// Finds the next hits; `None` if there cannot be any.
     fn search(&mut self) -> Option<()> {
         let (ray, _) = self.ray?;
         let root = self.tracer.root.as_ref()?;
         let decisions = self.tracer.decisions();
         let mut query = Query::next(&ray, decisions, self.last.take(), self.batch);
         root.search(&LocalRay::new(&ray), &mut query);
-        let QueryMode::Next(next) = query.keep else {
-            unreachable!("a query keeps the kind of answer that it began with");
+        let QueryMode::Next(next) = query.mode else {
+            unreachable!("a query keeps its mode");
         };
         let hits = next.hits.into_sorted_vec();
         self.is_complete = hits.len() < self.batch;
@@ -126,8 +124,8 @@ mod tests {
     use crate::solid::{Caps, Cylinder};
     use crate::tracer::Options;
 
-    /// Cylinders across the ray from (-5, 0, 1/2) along x, each with its place on the
-    /// ray and its radius.
+    /// Cylinders across the ray from (-5, 0, 1/2) along x, each with its position on the ray
+    /// and its radius.
     fn tracer(cylinders: impl Iterator<Item = (f64, f64)>) -> Tracer {
         let record = |(number, (x, radius)): (usize, (f64, f64))| {
             let (p0, p1) = (DVec3::new(x, 0.0, 0.0), DVec3::new(x, 0.0, 1.0));
@@ -142,8 +140,7 @@ mod tests {
         Tracer::new(scene, &Options::default()).expect("a tracer")
     }
 
-    /// The hits of that ray, how many primitives it visited for each, and the size of
-    /// the last batch.
+    /// The number of hits of that ray, the visits per hit, and the size of the last batch.
     fn cost(tracer: &Tracer) -> (usize, f64, usize) {
         let ray = Ray::new(DVec3::new(-5.0, 0.0, 0.5), DVec3::X);
         let mut hits = tracer.all_hits(&ray, DEFAULT_BATCH);

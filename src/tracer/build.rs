@@ -16,7 +16,7 @@ use crate::solid::SolidCounts;
 /// Why a scene cannot be traced.
 #[derive(Debug, thiserror::Error)]
 pub enum TracerError {
-    /// Embree refused.
+    /// Embree reported an error.
     #[error(transparent)]
     Embree(#[from] embree::Error),
     /// A placement flattens too much.
@@ -54,14 +54,14 @@ pub enum TracerError {
     },
 }
 
-/// What a walk over all placements of the scene finds out.
+/// The result of a walk over all placements of the scene.
 pub(crate) struct Plan {
-    /// The prototypes that the root needs, children before parents.
+    /// The prototypes that the root uses, children before parents.
     pub order: Vec<PrototypeIndex>,
-    /// For every prototype, the solids in it and in all it places.
+    /// For every prototype, the solids in it and in everything that it places.
     pub instanced: Vec<SolidCounts>,
-    /// For every prototype, the placements in it and in all it places; counts
-    /// beyond u128 stay at its greatest number.
+    /// For every prototype, the placements in it and in everything that it places. Counts
+    /// saturate at the greatest u128.
     pub instances: Vec<u128>,
 }
 
@@ -87,8 +87,8 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Visits a prototype after all that it places. The description contains no
-    /// cycles, and scene files no more than [`GREATEST_DEPTH`] levels.
+    /// Visits a prototype after everything that it places. The description contains no cycles,
+    /// and scene files have at most [`GREATEST_DEPTH`] levels.
     fn visit(
         &mut self,
         scene: &Scene,
@@ -135,15 +135,15 @@ impl Plan {
     }
 }
 
-/// The roundings of a placement, if they can be borne.
+/// The roundings of a placement, or an error if they are too large.
 fn placement_errors(
     scene: &Scene,
     prototype: &crate::scene::Prototype,
     number: usize,
     placement: &Placement,
 ) -> Result<PlacementErrors, TracerError> {
-    let way = ChildFromParent::new(&placement.parent_from_child);
-    let errors = PlacementErrors::new(&placement.parent_from_child, &way);
+    let child_from_parent = ChildFromParent::new(&placement.parent_from_child);
+    let errors = PlacementErrors::new(&placement.parent_from_child, &child_from_parent);
     if errors.condition <= GREATEST_CONDITION {
         return Ok(errors);
     }
@@ -166,7 +166,7 @@ impl Default for Nesting {
 }
 
 impl Nesting {
-    /// That of two placements side by side.
+    /// The nesting of two placements side by side.
     fn with(&self, other: &Self) -> Self {
         Self {
             depth: self.depth.max(other.depth),
@@ -194,7 +194,7 @@ impl Nesting {
     }
 }
 
-/// Makes the prototypes in the plan's order; those it leaves out stay `None`.
+/// Creates the prototypes in the plan's order; others stay `None`.
 pub(crate) fn make(
     context: &BuildContext,
     scene: &Arc<Scene>,

@@ -1,16 +1,15 @@
-//! Which solids hold a point.
+//! The solids that contain a point.
 //!
-//! The point is asked about as a ray that is nothing but its origin: `t` from 0 to
-//! 0. So it goes down through placements by the very operations of a ray's origin,
-//! and Embree only finds candidates. None is lost: a solid that contains the point
-//! has it in its box, at `t = 0` of the ray, and that a ray is not kept from a box in
-//! which it has a point is what `frame` promises of all rays (`docs/derivations.md`,
-//! section 4: the point is below 4 in the frame, so that f32 rounds it by at most
-//! 2^-23, and boxes are grown by 2^-19 of a radius of at least 1). The callbacks
-//! collect and never accept, so that Embree goes on to the last box.
+//! The query is a ray that consists of its origin: `t` from 0 to 0. So the point goes down
+//! through placements by the same operations as a ray's origin, and Embree only reports
+//! candidates. None is lost: the box of a solid that contains the point contains it too, at
+//! `t = 0` of the ray, and `frame` guarantees that no ray misses a box that contains one of its
+//! points (`docs/derivations.md`, section 4: the point is below 4 in the frame, so that f32
+//! rounds it by at most 2^-23, and boxes are grown by 2^-19 of a radius of at least 1). The
+//! callbacks collect solids and never accept a hit, so Embree visits every box.
 //!
-//! The direction plays no part; it is (1, 1, 1) so that no component of it is zero
-//! where nothing is turned.
+//! The direction does not matter; it is (1, 1, 1), so that no component is zero unless a
+//! placement rotates it.
 
 use glam::DVec3;
 
@@ -22,8 +21,7 @@ use crate::math::Ray;
 use crate::scene::PrototypeIndex;
 use crate::solid::SolidKind;
 
-/// A solid that contains a point. Ordered by the instance path, then by the
-/// primitive.
+/// A solid that contains a point. Ordered by the instance path, then by the primitive.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Containing {
     /// The placements from the root to the prototype, outermost first.
@@ -37,22 +35,22 @@ pub struct Containing {
 }
 
 impl Tracer {
-    /// The solids that hold a point, in order. Solids are closed: a point of the
-    /// surface counts, and so does one in a tube, for ends that are open belong to
-    /// the surface and not to the solid. None hold a point that is not finite.
+    /// The solids that contain a point, in order. Solids are closed: a point of the surface is
+    /// contained, and so is one in a tube, because open ends belong to the surface and not to
+    /// the solid. No solid contains a point that is not finite.
     ///
-    /// The point's numbers and the solid's are taken as they are, and in the root the
-    /// answer is exact. Through placements the point is rounded as the origin of a ray.
+    /// The numbers of the point and of the solid are taken as they are, and in the root the
+    /// result is exact. Through placements the point is rounded like the origin of a ray.
     ///
-    /// Of a scene that was built for a view ([`Options::view`](super::Options::view))
-    /// it is known only what contains points in that.
+    /// In a scene that was built for a view ([`Options::view`](super::Options::view)), the
+    /// result is valid only for points in the view.
     #[must_use]
     pub fn contains(&self, point: DVec3) -> Vec<Containing> {
         self.containing(point, Prototype::search)
     }
 
-    /// As [`Tracer::contains`], without Embree: every placement and every solid is
-    /// asked. It is the witness that the traversal loses nothing, and very slow.
+    /// As [`Tracer::contains`], without Embree: it tests every placement and every solid. It
+    /// verifies that the traversal loses nothing, and is very slow.
     #[must_use]
     pub fn contains_exhaustive(&self, point: DVec3) -> Vec<Containing> {
         self.containing(point, Prototype::search_exhaustively)
@@ -70,10 +68,10 @@ impl Tracer {
         let (Some(root), Some((ray, _))) = (&self.root, normalize_direction(&ray)) else {
             return Vec::new();
         };
-        let mut query = Query::holding(&ray);
+        let mut query = Query::containing(&ray);
         trace(root, &LocalRay::new(&ray), &mut query);
-        let QueryMode::Containing(places) = query.keep else {
-            unreachable!("the query keeps what it was told to keep");
+        let QueryMode::Containing(places) = query.mode else {
+            unreachable!("a query keeps its mode");
         };
         let mut containing: Vec<_> = places
             .into_iter()

@@ -1,20 +1,17 @@
-//! Counts of what queries do, for benchmarks: how often Embree calls back, and
-//! how many rays are put to how many cylinders.
+//! Counts of the work of queries, for benchmarks: callbacks from Embree, and tests of rays
+//! against solids.
 //!
-//! Without the feature `counters` nothing is counted, and the functions are
-//! empty. Counts are a thread's own, so that counting costs no more than it has
-//! to and queries on other threads do not disturb it.
+//! Without the feature `counters` nothing is counted, and the functions are empty. Counts are
+//! per thread, which is cheap and unaffected by queries on other threads.
 
-/// What the queries of a thread did.
+/// The work of a thread's queries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Calls from Embree, for solids and for placements. One of a packet counts
-    /// once.
+    /// Calls from Embree, for solids and for placements. A call for a packet counts once.
     pub callbacks: u64,
-    /// Rays put to a cylinder, or to a block of cylinders, which counts once.
+    /// Tests of a ray against a solid.
     pub solves: u64,
-    /// Rays handed on to a placed prototype. A packet that a callback in an instance of
-    /// Embree's needs there counts once.
+    /// Rays passed on to a placed prototype. A packet in an instance of Embree's counts once.
     pub placements: u64,
 }
 
@@ -55,8 +52,8 @@ mod counting {
     }
 }
 
-/// What this thread's queries did since the last call; `None` where the library
-/// was built without the feature `counters`.
+/// The work of this thread's queries since the last call; `None` if the library was built
+/// without the feature `counters`.
 #[must_use]
 pub fn take() -> Option<Counts> {
     counting::take()
@@ -73,6 +70,6 @@ pub(super) fn solved(rays: u32) {
 }
 
 #[inline(always)]
-pub(super) fn handed_on(rays: u32) {
+pub(super) fn passed_on(rays: u32) {
     counting::add(|counts| counts.placements += u64::from(rays));
 }

@@ -3,19 +3,19 @@
 use super::frame::LocalRay;
 use crate::solid::{Chord, ConvexSolid, Intersection};
 
-/// How hits, misses and parts of solids are decided. Set operations decide by
-/// rounded numbers always.
+/// How hits, misses and parts of solids are decided. Set operations always decide from rounded
+/// numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Decisions {
-    /// From differences of points as f64 rounds them.
+    /// From rounded differences of points.
     #[default]
     Rounded,
-    /// From the numbers as stated; see [`ConvexSolid::exact_chord`].
+    /// From the stated numbers; see [`ConvexSolid::exact_chord`].
     Exact,
 }
 
 impl Decisions {
-    /// What [`Options::exact`](super::Options::exact) says.
+    /// From [`Options::exact`](super::Options::exact).
     pub fn new(is_exact: bool) -> Self {
         if is_exact { Self::Exact } else { Self::Rounded }
     }
@@ -30,8 +30,8 @@ impl Decisions {
     }
 }
 
-/// The first intersection of a ray with a convex solid in a range of the whole ray's `t`, decided
-/// exactly. A call, so that what decides otherwise is compiled as if this were not there.
+/// The first intersection of a ray with a convex solid in a range of the whole ray's `t`,
+/// decided exactly. Not inlined, so that it does not affect the compilation of its callers.
 #[cold]
 #[inline(never)]
 pub(crate) fn exact_first<S: ConvexSolid>(

@@ -1,46 +1,43 @@
-//! How much memory a scene takes, from counts alone, before anything is made.
+//! An estimate of a scene's memory, from counts alone, before anything is built.
 //!
-//! **Records** are exact: the bytes of one, times what is stored.
+//! **Records** are exact: the size of a record times their number.
 //!
-//! **Embree's tree.** A tree over n primitives has nodes of 4 children (128
-//! bytes, SSE) or 8 (256 bytes, from AVX on) and a leaf of 16 bytes a primitive.
-//! A node of b children replaces b subtrees by one, so a full tree has
-//! (n - 1)/(b - 1) nodes. Real ones are less full, as the last level contains
-//! what is left over; how much depends on n and on where the primitives lie.
-//! Measured as `Device::memory_bytes`, with Embree 3.13.5, SSE2, AVX2 and
-//! AVX-512, on random boxes in a cube, on a plane, along a line, and so large
-//! that they overlap, n from 1 to 3 million:
+//! **Embree's tree.** A tree over n primitives has nodes of 4 children (128 bytes, SSE) or 8
+//! (256 bytes, from AVX on) and a leaf of 16 bytes per primitive. A node of b children replaces
+//! b subtrees by one, so a full tree has (n - 1)/(b - 1) nodes. Real trees are less full, as
+//! the last level contains the remainder, which depends on n and on the positions of the
+//! primitives. Measured as `Device::memory_bytes`, with Embree 3.13.5, SSE2, AVX2 and AVX-512,
+//! on random boxes in a cube, on a plane, along a line, and so large that they overlap, n from
+//! 1 to 3 million:
 //!
-//! - 4 children: 70 to 76 bytes a primitive, whatever n. The model says 72.5.
-//! - 8 children: a wave with the period of a factor of 8 in n, as splitting
-//!   evenly ends with 2 to 8 primitives for the last nodes. Evenly spread
-//!   in a cube the wave goes from 74 to 110 bytes, on a plane from 74 to 89, and
-//!   79 to 81 remain where primitives overlap or differ in size. The model is
-//!   the middle of the extremes at each phase ([`WAVE`]), and at most 18 bytes
-//!   off: nothing but the positions could say more.
-//! - The last blocks of each tree are not full. 610 bytes times the cube root of
-//!   n, and at least a block of 1152 bytes each for the tree and its leaves, hold
-//!   what is seen from 1 on, within 20 kB below 3000 primitives.
+//! - 4 children: 70 to 76 bytes per primitive, for any n. The model has 72.5.
+//! - 8 children: a wave with the period of a factor of 8 in n, since even splitting ends with 2
+//!   to 8 primitives for the last nodes. Evenly spread in a cube the wave goes from 74 to 110
+//!   bytes, on a plane from 74 to 89, and 79 to 81 remain if primitives overlap or differ in
+//!   size. The model is the middle of the extremes at each phase ([`WAVE`]), and at most 18
+//!   bytes off; only the positions could improve it.
+//! - The last blocks of each tree are not full. 610 bytes times the cube root of n, and at
+//!   least a block of 1152 bytes each for the tree and its leaves, cover the measurements from
+//!   n = 1 on, within 20 kB below 3000 primitives.
 //!
-//! So Embree's part is within 18 % from 3000 primitives on. Records come on top
-//! and are exact: the sum is within 10 % where cylinders are f64 or for
-//! placements, within 13 % where they are f32.
+//! So Embree's part is within 18 % from 3000 primitives on. Records are added and exact: the
+//! sum is within 10 % for f64 cylinders or for placements, within 13 % for f32 cylinders.
 //!
-//! **Groups** are not known from counts. A prototype with several has 4 bytes more an
-//! entry, which is within the error, and each of its placements a leaf for every
-//! group, which is not: the tree of a scene of placements grows by that factor.
+//! **Groups** are not known from counts. A prototype with several has 4 bytes more per entry,
+//! which is within the error, and each of its placements has a leaf for every group, which is
+//! not: the tree of a scene of placements grows by that factor.
 //!
-//! **Instances.** Embree takes [`INSTANCE_BYTES`] for each placement that is an instance
-//! of its own (`prototype::instances`), beside the leaf. Which are is not known from counts alone:
-//! those that are far smaller than what they are placed in are not. So the estimate has all
-//! that could be, with those in prototypes that are opened (`prototype::opened`): at most 2.5 MB
-//! a prototype.
+//! **Instances.** Embree takes [`INSTANCE_BYTES`] for each placement that is an instance of its
+//! own (`prototype::instances`), beside the leaf. Counts alone do not determine these:
+//! placements that are far smaller than their parents are not instances. So the estimate
+//! includes every possible instance, with those in prototypes that are opened
+//! (`prototype::opened`): at most 2.5 MB per prototype.
 //!
-//! **While building**, Embree has one reference of 32 bytes to each primitive of
-//! the scene it builds, in an array whose size is the next power of two. That
-//! is exact in every measurement with Embree 3.13.5; Embree 4.4 takes room for just
-//! as many as there are, which is less. Built at once, scenes come one after the
-//! other; the peak is taken to come with the largest, when all others are there.
+//! **While building**, Embree has a reference of 32 bytes to each primitive of the scene, in an
+//! array whose size is the next power of two. That is exact in every measurement with Embree
+//! 3.13.5; Embree 4.4 allocates only the required number, which is less. Scenes that are built
+//! at once are built one after the other; the peak is assumed at the largest, with all others
+//! present.
 
 use super::options::Layout;
 use super::prototype::{MOST_INNER, MOST_INSTANCES, MOST_OUTER, block_bytes};
@@ -49,17 +46,17 @@ use crate::math::LANES;
 use crate::scene::{ExpectedCounts, Placement};
 use crate::solid::SolidKind;
 
-/// Bytes of an instance: Embree 3.13.5's structures and what their allocator adds.
+/// Bytes of an instance: Embree 3.13.5's structures and the overhead of the allocator.
 pub(super) const INSTANCE_BYTES: u64 = 305;
 
-/// Bytes a primitive of a tree of nodes with 4 children.
+/// Bytes per primitive of a tree of nodes with 4 children.
 const NARROW: f64 = 72.5;
 
-/// Bytes a primitive of a tree of nodes with 8 children, at n = 8^k, and every
-/// power of √2 on.
+/// Bytes per primitive of a tree of nodes with 8 children, at n = 8^k and at every power of √2
+/// from there.
 const WAVE: [f64; 6] = [79.5, 87.5, 91.3, 87.5, 81.5, 77.0];
 
-/// Times the cube root of the number of primitives: what blocks leave free.
+/// Unused bytes in blocks, over the cube root of the number of primitives.
 const UNFILLED: f64 = 610.0;
 
 /// The least block that Embree takes for nodes or leaves.
@@ -78,7 +75,7 @@ impl Layout {
         }
     }
 
-    /// Bytes that the tracer keeps of `solids` of a kind beside their records.
+    /// Bytes that the tracer stores for `solids` of a kind in addition to their records.
     fn copies_bytes(self, solids: u64) -> u64 {
         if self.has_blocks(solids) {
             block_bytes(solids)
@@ -88,22 +85,22 @@ impl Layout {
     }
 }
 
-/// What a scene's memory should come to.
+/// An estimate of a scene's memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MemoryEstimate {
-    /// The records of solids and placements, those that are not built too.
+    /// The records of solids and placements, including those that are not built.
     pub records_bytes: u64,
-    /// The filters of blocks, and which records are in each.
+    /// The filters of blocks, and the numbers of their records.
     pub copies_bytes: u64,
     /// Embree's trees.
     pub embree_bytes: u64,
-    /// What Embree needs for a while, on top, when it builds the largest.
+    /// What Embree needs temporarily, in addition, to build the largest tree.
     pub building_bytes: u64,
 }
 
 impl MemoryEstimate {
-    /// The estimate for a scene that contains this much, built whole and limited to
-    /// `max_isa`, as [`Options`](super::Options) are.
+    /// The estimate for a scene with these contents, built whole and limited to `max_isa`, as
+    /// in [`Options`](super::Options).
     #[must_use]
     pub fn of(contents: &[ExpectedCounts], layout: Layout, max_isa: Option<MaxIsa>) -> Self {
         let is_wide = is_wide(max_isa);
@@ -138,7 +135,7 @@ impl MemoryEstimate {
         sum
     }
 
-    /// What is there once the scene is built.
+    /// The memory of the built scene.
     #[must_use]
     pub fn total_bytes(&self) -> u64 {
         self.records_bytes
@@ -146,15 +143,15 @@ impl MemoryEstimate {
             .saturating_add(self.embree_bytes)
     }
 
-    /// The most that is there while it is built.
+    /// The peak while it is built.
     #[must_use]
     pub fn peak_bytes(&self) -> u64 {
         self.total_bytes().saturating_add(self.building_bytes)
     }
 }
 
-/// How many instances of Embree's there may be in a prototype: its innermost placements, and
-/// all that it places with nothing but a few placements.
+/// The greatest number of Embree's instances in a prototype: its innermost placements, and the
+/// placements in those of its children that consist of a few placements only.
 fn instances(prototype: &ExpectedCounts, all: &[ExpectedCounts]) -> u64 {
     let placements = prototype.placements();
     if placements > MOST_INSTANCES as u64 {
@@ -180,14 +177,10 @@ fn instances(prototype: &ExpectedCounts, all: &[ExpectedCounts]) -> u64 {
 
 /// Whether Embree's nodes have 8 children.
 fn is_wide(max_isa: Option<MaxIsa>) -> bool {
-    let in_use = match (MaxIsa::best(), max_isa) {
-        (Some(best), Some(limit)) => Some(best.min(limit)),
-        (best, _) => best,
-    };
-    in_use.is_some_and(|isa| isa >= MaxIsa::Avx)
+    MaxIsa::in_use(max_isa).is_some_and(|isa| isa >= MaxIsa::Avx)
 }
 
-/// The bytes of Embree's tree over this many primitives.
+/// The bytes of Embree's tree over a number of primitives.
 fn tree_bytes(primitives: u64, is_wide: bool) -> u64 {
     if primitives == 0 {
         return 0;
@@ -198,7 +191,7 @@ fn tree_bytes(primitives: u64, is_wide: bool) -> u64 {
     (bytes as u64).max(BLOCK * primitives.min(2))
 }
 
-/// [`WAVE`] at a number of primitives, linear in its logarithm in between.
+/// [`WAVE`] at a number of primitives, interpolated linearly in its logarithm.
 fn wave(primitives: f64) -> f64 {
     let place = 2.0 * libm::log2(primitives) % WAVE.len() as f64;
     let before = place as usize % WAVE.len();
@@ -216,7 +209,7 @@ mod tests {
     use crate::math::Random;
     use crate::scene::{ExpectedSolids, PrototypeIndex, Records};
 
-    /// Boxes that nothing meets.
+    /// Boxes without solids.
     struct Boxes(Vec<Box32>);
 
     impl UserGeometry for Boxes {
@@ -271,7 +264,7 @@ mod tests {
         Boxes(boxes.collect())
     }
 
-    /// The bytes that Embree uses for a scene, and used at most.
+    /// The bytes that Embree uses for a scene, and the peak.
     fn measured(max_isa: MaxIsa, boxes: Boxes) -> (u64, u64) {
         let options = DeviceOptions {
             max_isa: Some(max_isa),
@@ -326,7 +319,7 @@ mod tests {
                         let ratio = estimate.embree_bytes as f64 / bytes as f64;
                         assert!((0.82..1.19).contains(&ratio), "{case}: Embree {ratio}");
                     }
-                    // A device itself has held more than the least scenes need.
+                    // The peak of a device itself exceeds that of the smallest scenes.
                     if count >= 100 {
                         let references = peak - bytes;
                         assert!(

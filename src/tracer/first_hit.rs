@@ -1,17 +1,17 @@
-//! The least that a query answers.
+//! The minimal result of a query.
 
 use super::query::{Nearest, SolidSlot};
 use crate::scene::{PrototypeIndex, Scene};
 use crate::solid::SolidKind;
 
-/// Where a ray first meets a surface, and which: what a query finds out before
-/// anything is worked out of it, as Embree's own queries do.
-/// [`Tracer::hit`](super::Tracer::hit) has the rest.
+/// The first hit of a ray: its parameter and its solid, which a query finds before any other
+/// field is computed. Embree's own queries return the same. [`Tracer::hit`](super::Tracer::hit)
+/// computes the rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FirstHit {
     /// The ray's parameter.
     pub t: f64,
-    /// The hit of the ray in use, whose direction is of usual length.
+    /// The hit of the normalized ray.
     pub(super) nearest: Nearest,
 }
 
@@ -25,7 +25,7 @@ impl FirstHit {
     /// The solid's number within its prototype, in the scene that was traced.
     ///
     /// # Panics
-    /// When the hit is of another scene.
+    /// When the hit belongs to another scene.
     #[must_use]
     pub fn primitive(&self, scene: &Scene) -> u32 {
         let SolidSlot { kind, record } = self.nearest.place.member;
@@ -45,7 +45,7 @@ impl FirstHit {
         &self.nearest.place.path
     }
 
-    /// A hit of the ray in use, with the factor that turns its `t` back.
+    /// From a hit of the normalized ray, and the factor from its `t` to the caller's.
     #[inline]
     pub(super) fn new(nearest: Nearest, factor: f64) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! What a query answers.
+//! The result of a query.
 
 use glam::DVec3;
 
@@ -6,12 +6,12 @@ use crate::math::Ray;
 use crate::scene::{MaterialIndex, PrototypeIndex};
 use crate::solid::{Crossing, Part, SolidKind, spawned_ray};
 
-/// A point where a ray meets the surface of a solid, in world space.
+/// An intersection of a ray and the surface of a solid, in world space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hit {
     /// The ray's parameter.
     pub t: f64,
-    /// The hit point, put onto the surface.
+    /// The hit point, projected onto the surface.
     pub point: DVec3,
     /// Bounds the distance of `point` from the true surface, in scene units.
     pub error: f64,
@@ -29,20 +29,19 @@ pub struct Hit {
     pub primitive: u32,
     /// The part of the surface.
     pub part: Part,
-    /// Whether the ray goes into the solid or out of it.
+    /// Whether the ray enters or leaves the solid.
     pub crossing: Crossing,
     /// The placements from the root to the prototype, outermost first.
     pub instance: Vec<u32>,
     /// The solid's material.
     pub material: MaterialIndex,
-    /// How far along the normal a new ray has to start.
+    /// The distance along the normal at which a new ray has to start.
     pub(crate) spawn_offset: f64,
 }
 
 impl Hit {
-    /// A ray that leaves the surface here, towards `direction`, and does not
-    /// meet it again where it starts: it begins on the side that `direction`
-    /// points to.
+    /// A ray that leaves the surface here, towards `direction`, and does not hit it again at
+    /// its start: it begins on the side that `direction` points to.
     #[must_use]
     pub fn spawn(&self, direction: DVec3) -> Ray {
         spawned_ray(self.point, self.normal, self.spawn_offset, direction)

@@ -1,12 +1,11 @@
 //! From a scene's description to Embree scenes, and hits in world space.
 //!
-//! [`Tracer::new`] makes each prototype that the root needs ready; its Embree
-//! scene is built at once or when a ray first reaches it ([`BuildTime`]). A query
-//! walks them with an f64 ray, or with a packet of those that go the same way
-//! (`batch`): Embree's f32 rays only find candidates (`frame`), the callbacks of a
-//! prototype solve or hand on to a placed prototype (`prototype`), the query keeps
-//! the best hits (`query`), and the fields that the caller requests are worked out at the
-//! end (`partial_hit`, `resolve`).
+//! [`Tracer::new`] prepares each prototype that the root uses; its Embree scene is built at
+//! once or when a ray first reaches it ([`BuildTime`]). A query traverses them with an f64 ray,
+//! or with a packet of coherent rays (`batch`). Embree's f32 rays only find candidates
+//! (`frame`). The callbacks of a prototype solve, or continue in a placed prototype
+//! (`prototype`), and the query keeps the best hits (`query`). The requested fields are
+//! computed at the end (`partial_hit`, `resolve`).
 
 mod all_hits;
 mod batch;
@@ -58,29 +57,28 @@ use query::{Query, QueryMode, SolidRef};
 use resolve::Which;
 use statistics::Counted;
 
-/// A scene that rays can be traced through, from any number of threads.
+/// A scene for tracing rays, from any number of threads.
 pub struct Tracer {
     scene: Arc<Scene>,
     root: Option<Arc<Prototype>>,
-    /// All that the root needs, by their indices.
+    /// Everything that the root uses, by index.
     prototypes: Vec<Option<Arc<Prototype>>>,
     device: Device,
     options: Options,
     isa: &'static str,
-    /// Whether the installed Embree takes packets.
+    /// Whether the installed Embree supports packets.
     traces_packets: bool,
     counted: Counted,
-    /// The middle of the scene, and how far from it a ray may start.
+    /// The center of the scene, and the greatest distance from it at which a ray may start.
     center: DVec3,
     farthest: f64,
 }
 
 impl Tracer {
-    /// Makes what the root of `scene` needs ready to be traced; what is built at
-    /// once, and what later, is a matter of `options`.
+    /// Prepares `scene` for tracing. `options` decide what is built at once and what later.
     ///
     /// # Errors
-    /// When Embree refuses, or a placement cannot be traced accurately.
+    /// When Embree reports an error, or a placement cannot be traced accurately.
     pub fn new(scene: Arc<Scene>, options: &Options) -> Result<Self, TracerError> {
         let plan = Plan::new(&scene)?;
         let device = Device::new(&DeviceOptions {
@@ -119,47 +117,47 @@ impl Tracer {
         })
     }
 
-    /// The first point of a surface that the ray meets. Of several at the same
-    /// `t`, that of the least instance path, then of the least primitive.
+    /// The first hit of the ray. Of several at the same `t`, that of the least instance path,
+    /// then of the least primitive.
     ///
-    /// `None` if there is none, if the ray is not valid ([`Ray::is_valid`]), or if it
-    /// starts farther than 2^100 times the size of the scene from the scene's middle.
+    /// `None` if there is none, if the ray is not valid ([`Ray::is_valid`]), or if it starts
+    /// farther than 2^100 times the size of the scene from the scene's center.
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
         let first = self.first_hit(ray)?;
         Some(self.hit(ray, &first))
     }
 
-    /// As [`Tracer::closest`], with only those fields worked out that are in `fields`.
+    /// As [`Tracer::closest`], with only the given fields computed.
     #[must_use]
     pub fn closest_with(&self, ray: &Ray, fields: HitFields) -> Option<PartialHit> {
         let first = self.first_hit(ray)?;
         Some(self.hit_with(ray, &first, fields))
     }
 
-    /// As [`Tracer::closest`], without working out anything but where on the ray
-    /// the hit is, and of which solid. [`Tracer::hit`] has the rest.
+    /// As [`Tracer::closest`], but computes only the `t` of the hit and its solid.
+    /// [`Tracer::hit`] computes the rest.
     #[must_use]
     pub fn first_hit(&self, ray: &Ray) -> Option<FirstHit> {
         self.first_hit_and_callbacks(ray).0
     }
 
-    /// [`Tracer::first_hit`], and what it cost.
+    /// [`Tracer::first_hit`], and the number of callbacks.
     fn first_hit_and_callbacks(&self, ray: &Ray) -> (Option<FirstHit>, u32) {
         self.answer(ray, Prototype::search)
     }
 
-    /// What there is to know of a first hit.
+    /// All fields of a first hit.
     ///
     /// # Panics
-    /// When `first` is not of this ray and this tracer; it may then also answer
-    /// with something else.
+    /// When `first` is not a hit of this ray and this tracer. It may then also return a wrong
+    /// hit.
     #[must_use]
     pub fn hit(&self, ray: &Ray, first: &FirstHit) -> Hit {
         self.hit_of_first(ray, first, HitFields::all())
     }
 
-    /// As [`Tracer::hit`], with only those fields worked out that are in `fields`.
+    /// As [`Tracer::hit`], with only the given fields computed.
     ///
     /// # Panics
     /// As [`Tracer::hit`].
@@ -170,41 +168,39 @@ impl Tracer {
 
     fn hit_of_first(&self, ray: &Ray, first: &FirstHit, fields: HitFields) -> Hit {
         let root = self.root.as_ref().expect("a hit is in a scene with a root");
-        let (ray, factor) = self.in_use(ray).expect("a ray that hits is valid");
+        let (ray, factor) = self.normalized(ray).expect("a ray that hits is valid");
         let which = Which::FirstAt(first.nearest.t);
         self.resolved(root, (&ray, factor), &first.nearest.place, which, fields)
     }
 
-    /// As [`Tracer::closest`], without Embree: every placement and every solid
-    /// is tried. It is the witness that the traversal loses nothing, with the
-    /// same solver, and very slow.
+    /// As [`Tracer::closest`], without Embree: it tries every placement and every solid. It
+    /// verifies that the traversal loses nothing, with the same solver, and is very slow.
     #[must_use]
     pub fn closest_exhaustive(&self, ray: &Ray) -> Option<Hit> {
         let first = self.answer(ray, Prototype::search_exhaustively).0?;
         Some(self.hit(ray, &first))
     }
 
-    /// Every point of a surface that the ray meets, in order of `t`, then of
-    /// instance path, primitive, entry before exit, and part. The first is that
-    /// of [`Tracer::closest`].
+    /// All hits of the ray, in order of `t`, then of instance path, primitive, entry before
+    /// exit, and part. The first is that of [`Tracer::closest`].
     ///
-    /// The hits are found on the way, `batch` of them in a traversal and more where
-    /// very many solids overlap, in a time of N log N for N hits. The answer is the
-    /// same for every `batch`, which is taken as at least 1. A tangent is an entry and an exit at the same `t`.
+    /// The iterator finds `batch` hits per traversal, and more if very many solids overlap, in
+    /// a time of N log N for N hits. The result is the same for every `batch`, which is at
+    /// least 1. A tangent is an entry and an exit at the same `t`.
     #[must_use]
     pub fn all_hits(&self, ray: &Ray, batch: usize) -> AllHits<'_> {
         AllHits::new(self, ray, batch)
     }
 
-    /// Whether the ray meets any surface.
+    /// Whether the ray hits any surface.
     #[must_use]
     pub fn occluded(&self, ray: &Ray) -> bool {
         self.occluded_and_callbacks(ray).0
     }
 
-    /// [`Tracer::occluded`], and what it cost.
+    /// [`Tracer::occluded`], and the number of callbacks.
     fn occluded_and_callbacks(&self, ray: &Ray) -> (bool, u32) {
-        let (Some(root), Some((ray, _))) = (&self.root, self.in_use(ray)) else {
+        let (Some(root), Some((ray, _))) = (&self.root, self.normalized(ray)) else {
             return (false, 0);
         };
         let mut query = Query::first(&ray, self.decisions());
@@ -218,7 +214,7 @@ impl Tracer {
         self.root.as_ref().map_or(Bounds::EMPTY, |root| root.bounds)
     }
 
-    /// What was built so far.
+    /// Statistics of what was built so far.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         let prototypes = self.prototypes.iter().flatten();
@@ -238,7 +234,7 @@ impl Tracer {
         }
     }
 
-    /// Embree's memory that it does not count: that of instances, before version 4.
+    /// The memory that Embree does not count: that of instances, before version 4.
     fn uncounted_bytes(&self) -> usize {
         if self.device.version().major >= 4 {
             return 0;
@@ -251,7 +247,7 @@ impl Tracer {
         prototypes.map(|prototype| prototype.instances()).sum()
     }
 
-    /// How its queries decide about hits.
+    /// How queries decide about hits.
     #[inline(always)]
     fn decisions(&self) -> Decisions {
         Decisions::new(self.options.exact)
@@ -263,10 +259,10 @@ impl Tracer {
         &self.scene
     }
 
-    /// The ray in use, and the factor that turns its `t` back; `None` for a ray that
+    /// The normalized ray, and the factor from its `t` to the caller's; `None` for a ray that
     /// is not valid or starts too far away.
     #[inline]
-    fn in_use(&self, ray: &Ray) -> Option<(Ray, f64)> {
+    fn normalized(&self, ray: &Ray) -> Option<(Ray, f64)> {
         let distance = (ray.origin - self.center).abs().max_element();
         (distance <= self.farthest)
             .then(|| normalize_direction(ray))
@@ -278,19 +274,20 @@ impl Tracer {
         ray: &Ray,
         trace: impl FnOnce(&Prototype, &LocalRay, &mut Query),
     ) -> (Option<FirstHit>, u32) {
-        let (Some(root), Some((ray, factor))) = (&self.root, self.in_use(ray)) else {
+        let (Some(root), Some((ray, factor))) = (&self.root, self.normalized(ray)) else {
             return (None, 0);
         };
         let mut query = Query::first(&ray, self.decisions());
         trace(root, &LocalRay::new(&ray), &mut query);
-        let first = match query.keep {
+        let first = match query.mode {
             QueryMode::First(nearest) => nearest.map(|nearest| FirstHit::new(nearest, factor)),
             QueryMode::Next(_) | QueryMode::Containing(_) => None,
         };
         (first, query.callbacks)
     }
 
-    /// The answer for a hit of the ray in use, with the factor that turns its `t` back.
+    /// The result for a hit of the normalized ray, with the factor from its `t` to the
+    /// caller's.
     fn resolved(
         &self,
         root: &Arc<Prototype>,
@@ -306,19 +303,20 @@ impl Tracer {
     }
 }
 
-/// How far from the middle of a scene a ray may start, in sizes of the scene's box:
-/// 2^100. From there f64 distinguishes only points 2^47 scenes apart on a ray, and the
-/// double-double step that brings the ray near (`frame`) has 2^-6 of the scene left.
+/// The greatest distance from the center of a scene at which a ray may start, in sizes of the
+/// scene's box: 2^100. From there f64 distinguishes only points of a ray that are 2^47 scenes
+/// apart, and the double-double step that moves the ray near (`frame`) leaves 2^-6 of the
+/// scene.
 const GREATEST_DISTANCE: f64 = power_of_two(100);
 
-/// Directions whose largest component is within these need no scaling: with
+/// Directions whose largest component is in this range need no scaling: with
 /// [`crate::scene::GREATEST_STRETCH`] they stay within what the solvers can square.
-const USUAL_LENGTHS: std::ops::Range<f64> = power_of_two(-32)..power_of_two(32);
+const UNSCALED_LENGTHS: std::ops::Range<f64> = power_of_two(-32)..power_of_two(32);
 
-/// The ray with a direction of a size that the solvers can square, and the factor
-/// that turns its `t` back; `None` for a ray that is not valid.
+/// The ray with a direction that the solvers can square, and the factor from its `t` to the
+/// caller's; `None` for a ray that is not valid.
 ///
-/// The factor is a power of two, so the scaling is exact (but for components of the
+/// The factor is a power of two, so the scaling is exact (except for components of the
 /// direction 2^-1000 times smaller than the largest).
 #[inline]
 fn normalize_direction(ray: &Ray) -> Option<(Ray, f64)> {
@@ -326,15 +324,15 @@ fn normalize_direction(ray: &Ray) -> Option<(Ray, f64)> {
         return None;
     }
     let length = ray.direction.abs().max_element();
-    if USUAL_LENGTHS.contains(&length) {
+    if UNSCALED_LENGTHS.contains(&length) {
         return Some((*ray, 1.0));
     }
     Some(rescaled(ray, length))
 }
 
-/// A limit of `t` that leaves the range of f64 is rounded inward, so that a `t` within
-/// the scaled limits is within the stated ones when it is turned back: rounding to
-/// nearest never reorders numbers.
+/// A limit of `t` that leaves the range of f64 is rounded inward. So a `t` within the scaled
+/// limits is within the stated ones when it is scaled back: rounding to nearest never reorders
+/// numbers.
 #[cold]
 fn rescaled(ray: &Ray, length: f64) -> (Ray, f64) {
     let factor = 1.0 / power_of_two_below(length);

@@ -1,8 +1,8 @@
-//! Solids and placements that are very far from the others of their prototype, or
-//! very large beside them. They look like mistakes: a row of zeros, a unit mistaken.
+//! Solids and placements that are very far from the others of their prototype, or very large
+//! compared with them. They are likely mistakes: a row of zeros, a wrong unit.
 //!
-//! They are the members of the small groups of `prototype/grouping.rs`: those that
-//! have to get a frame of their own, because the others would pay for them otherwise.
+//! They are the members of the small groups of `prototype/grouping.rs`: those that have a frame
+//! of their own because they would slow down the others.
 
 use super::build::Plan;
 use super::prototype::{Boxes, List};
@@ -10,23 +10,22 @@ use crate::math::Bounds;
 use crate::scene::{PrototypeIndex, Scene};
 use crate::solid::SolidKind;
 
-/// A group with at most this many members, or with at most a hundredth of its prototype's,
-/// is one of outliers.
+/// The greatest number of members of a group of outliers. A group with at most a hundredth of
+/// its prototype's members also counts as one.
 const FEW: u64 = 3;
 
-/// A solid or a placement that is far away from all others, or large beside them.
+/// A solid or a placement that is far away from all others, or large compared with them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outlier {
-    /// The prototype that it belongs to.
+    /// The prototype that contains it.
     pub prototype: PrototypeIndex,
     /// The kind of solid; `None` for a placement.
     pub kind: Option<SolidKind>,
-    /// The number within the prototype, of the primitive or the placement.
+    /// The number of the primitive or the placement within the prototype.
     pub number: u32,
-    /// The distance of its middle from that of the others' box, in half the diagonal
-    /// of that box.
+    /// The distance of its center from that of the others' box, in half diagonals of that box.
     pub distance: f64,
-    /// The diagonal of its box, in the diagonal of the others' box.
+    /// The diagonal of its box, in diagonals of the others' box.
     pub size: f64,
 }
 
@@ -36,7 +35,7 @@ pub struct Outlier {
 #[must_use]
 pub fn outliers(scene: &Scene) -> Vec<Outlier> {
     let mut outliers = Vec::new();
-    // What cannot be traced has no groups either.
+    // A scene that cannot be traced has no groups.
     let Ok(plan) = Plan::new(scene) else {
         return outliers;
     };
@@ -63,7 +62,7 @@ pub fn outliers(scene: &Scene) -> Vec<Outlier> {
                             prototype.solids.primitive(kind, position as usize),
                         ),
                         List::Placements { group: 0 } => (None, position),
-                        // An outlier of the placed prototype, which is named there.
+                        // An outlier of the placed prototype, which is reported there.
                         List::Placements { .. } => return None,
                     };
                     let bounds = all.entry(list, position);

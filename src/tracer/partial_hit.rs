@@ -1,9 +1,9 @@
-//! A hit of which only some fields are worked out.
+//! A hit with only some fields computed.
 //!
-//! Most users of a hit need few of its fields, and some fields cost as much as the query
-//! that finds the hit: `u` an arc tangent, the error bound and the margin of spawned rays
-//! norms of every placement, the path an allocation. [`HitFields`] names those that a user
-//! needs; a [`PartialHit`] returns those and `None` for the others.
+//! Most callers need few fields of a hit, and some fields cost as much as the query that finds
+//! it: `u` takes an arc tangent, the error bound and the margin of spawned rays take norms of
+//! every placement, the path takes an allocation. [`HitFields`] selects fields; a
+//! [`PartialHit`] returns those and `None` for the others.
 
 use bitflags::bitflags;
 use glam::DVec3;
@@ -14,10 +14,10 @@ use crate::scene::{MaterialIndex, PrototypeIndex};
 use crate::solid::{Crossing, Part, SolidKind};
 
 bitflags! {
-    /// A set of the fields of a [`Hit`] that are worked out on request. All its other
-    /// fields are always there.
+    /// A set of the fields of a [`Hit`] that are computed on request. All its other fields are
+    /// always present.
     ///
-    /// A field has the same bits in whichever set it is requested.
+    /// A field has the same bits in every set that contains it.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
     pub struct HitFields: u8 {
         /// [`Hit::point`].
@@ -30,7 +30,7 @@ bitflags! {
         const ERROR = 1 << 3;
         /// [`Hit::instance`].
         const PATH = 1 << 4;
-        /// What [`Hit::spawn`] needs.
+        /// The input of [`Hit::spawn`].
         const SPAWN = 1 << 5;
     }
 }
@@ -168,7 +168,7 @@ mod tests {
     use crate::solid::{Caps, Cylinder};
     use crate::tracer::{Options, Tracer};
 
-    /// Each field costs what it takes only where it is requested.
+    /// Each field costs time only if it is requested.
     #[test]
     fn fields_that_are_not_requested_are_not_worked_out() {
         let cylinder = Cylinder::new(DVec3::ZERO, DVec3::Z, 0.5, Caps::Both).unwrap();

@@ -1,22 +1,20 @@
-//! From the best hit of a query to the answer in world space.
+//! From the best hit of a query to the result in world space.
 //!
-//! The fields that the user requests are worked out once, for the hit that won. The path of
-//! placements is walked down again, with the very steps of the query, to the ray in the
-//! solid's own space; the surface point found there is then carried up.
+//! The requested fields are computed once, for the best hit. The ray is mapped down the path of
+//! placements again, with the same steps as in the query, to the solid's own space; the surface
+//! point there is then mapped up.
 //!
-//! **The error of the point.** The true surface is that of the solid's exact
-//! numbers, carried through the exact placements. The point starts within the
-//! surface's own bound of it. A placement `p = L c + T` stretches that by at
-//! most `‖L‖` and rounds: three products and sums a component, below
-//! `4 u |L| |c|`, and the last sum, `u |p|`. The inverse is not used on the way
-//! up, so its error does not enter.
+//! **The error of the point.** The true surface is that of the solid's exact numbers, mapped by
+//! the exact placements. The point starts within the surface's own error bound. A placement
+//! `p = L c + T` stretches that by at most `‖L‖` and rounds: three products and sums per
+//! component, below `4 u |L| |c|`, and the last sum, `u |p|`. The inverse is not used for
+//! mapping up, so its error does not enter.
 //!
-//! **Where a spawned ray may start.** `solid::SpawnMargin` says what the solver
-//! may displace. On the way up, counted in the space reached:
+//! **The start of a spawned ray.** `solid::SpawnMargin` has the displacements of the solver.
+//! Mapping up adds, in the parent's space:
 //!
-//! - for each placement, `inverse_error` (see `math::placement`) times the
-//!   distance to the child's origin, and times the solid's size for the
-//!   direction;
+//! - for each placement, `inverse_error` (see `math::placement`) times the distance to the
+//!   child's origin, and times the solid's size for the direction;
 //! - for the normal, its angle times the condition of the placement.
 
 use std::borrow::Borrow;
@@ -36,12 +34,12 @@ use crate::scene::{Listed, MaterialIndex, Scene, SolidList};
 use crate::solid::{Intersection, SpawnMargin, SurfacePoint};
 use crate::with_solid_kind;
 
-/// What a query is to work out of a hit.
+/// The intersection that a hit is computed from.
 #[derive(Clone, Copy)]
 pub(crate) enum Which {
     /// The first intersection with the solid, which is at this `t`.
     FirstAt(f64),
-    /// This one.
+    /// This intersection.
     This(SurfaceHit),
 }
 
@@ -49,13 +47,13 @@ pub(crate) enum Which {
 struct LocalHit {
     intersection: Intersection,
     surface: SurfacePoint,
-    /// `None` where no rays are spawned.
+    /// `None` if no rays are spawned.
     margin: Option<SpawnMargin>,
     primitive: u32,
     material: MaterialIndex,
 }
 
-/// What is to be worked out, once it is known of which solid.
+/// The inputs for computing the hit of a solid.
 struct Search<'a> {
     ray: &'a LocalRay,
     t_min: f64,
@@ -65,11 +63,11 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The intersection. `first` computes it for a query that knows only its `t`, by the same
-    /// operations as the query: it is the same intersection.
-    fn met(&self, first: impl FnOnce(f64) -> Option<SurfaceHit>) -> SurfaceHit {
+    /// The intersection. For a query that stored only its `t`, `first` computes it again by the
+    /// same operations, with the same result.
+    fn hit(&self, first: impl FnOnce(f64) -> Option<SurfaceHit>) -> SurfaceHit {
         match self.which {
-            Which::This(met) => met,
+            Which::This(hit) => hit,
             Which::FirstAt(t) => first(t).expect("a hit is found again"),
         }
     }
@@ -77,12 +75,12 @@ impl Search<'_> {
     fn on_solid<L: SolidList<Solid: TracedSolid>>(&self, list: &L, position: usize) -> LocalHit {
         let solid = list.solid(position);
         let solid = solid.borrow();
-        let met = self.met(|t| solid.first(self.ray, self.decisions, self.t_min, t));
-        let surface = solid.surface(self.ray, &met);
+        let hit = self.hit(|t| solid.first(self.ray, self.decisions, self.t_min, t));
+        let surface = solid.surface(self.ray, &hit);
         LocalHit {
-            intersection: met.intersection,
+            intersection: hit.intersection,
             surface,
-            margin: self.margin(|| solid.spawn_margin(&met, &surface)),
+            margin: self.margin(|| solid.spawn_margin(&hit, &surface)),
             primitive: list.primitive(position),
             material: list.material(position),
         }
@@ -97,8 +95,8 @@ impl Search<'_> {
 const OF_NORMAL: HitFields = HitFields::NORMAL.union(HitFields::SPAWN);
 const OF_ERROR: HitFields = HitFields::ERROR.union(HitFields::SPAWN);
 
-/// A surface point on its way up to the world. What is not needed is NaN; the point, which
-/// costs least, is always there.
+/// A surface point that is mapped up to the world. Fields that are not needed are NaN; the
+/// point, which costs least, is always computed.
 struct Carried {
     fields: HitFields,
     point: DVec3,
@@ -127,17 +125,17 @@ impl Carried {
     }
 
     /// From a child's space to its parent's.
-    fn carry(&mut self, way: &ChildFromParent, parent_from_child: &DAffine3) {
+    fn carry(&mut self, child_from_parent: &ChildFromParent, parent_from_child: &DAffine3) {
         let child_point = self.point;
         let moved = parent_from_child.matrix3 * child_point;
         self.point = moved + parent_from_child.translation;
         if self.fields.intersects(OF_NORMAL) {
-            self.normal = way.parent_normal(self.normal);
+            self.normal = child_from_parent.parent_normal(self.normal);
         }
         if !self.fields.intersects(OF_ERROR) {
             return;
         }
-        let errors = PlacementErrors::new(parent_from_child, way);
+        let errors = PlacementErrors::new(parent_from_child, child_from_parent);
         let terms = (parent_from_child.matrix3.abs() * child_point.abs()).length();
         let rounding = UNIT_ROUNDOFF * (4.0 * terms + self.point.length());
         self.error = errors.stretch * self.error + rounding;
@@ -150,8 +148,8 @@ impl Carried {
     }
 }
 
-/// The answer for a hit of a query with `ray` that decided so. Of the fields that [`HitFields`] names, those
-/// that are not in `fields` are NaN, and the path is empty.
+/// The result for a hit of a query with `ray` and these decisions. Of the fields that
+/// [`HitFields`] names, those that are not in `fields` are NaN, and the path is empty.
 pub(crate) fn resolve(
     scene: &Scene,
     root: &Arc<Prototype>,
@@ -159,20 +157,20 @@ pub(crate) fn resolve(
     place: &SolidRef,
     (decisions, which, fields): (Decisions, Which, HitFields),
 ) -> Hit {
-    // Down to the prototype that was hit.
+    // Maps the ray down to the prototype that was hit.
     let mut local = LocalRay::new(ray);
     let mut placements = SmallVec::<[(ChildFromParent, &DAffine3); 4]>::new();
-    Prototype::along_way(root, place, |group, placement| {
+    Prototype::for_each_step(root, place, |group, placement| {
         if let Some(placement) = placement {
-            let way = ChildFromParent::new(&placement.parent_from_child);
-            placements.push((way, &placement.parent_from_child));
-            local = local.in_child(&way);
+            let child_from_parent = ChildFromParent::new(&placement.parent_from_child);
+            placements.push((child_from_parent, &placement.parent_from_child));
+            local = local.in_child(&child_from_parent);
         }
         local = group.frame.approach(&local);
     });
     let description = &scene.prototypes[place.prototype.0 as usize];
 
-    // The point on the solid.
+    // Computes the point on the solid.
     let search = Search {
         ray: &local,
         t_min: ray.t_min,
@@ -192,10 +190,10 @@ pub(crate) fn resolve(
         material,
     } = local;
 
-    // Up again to the world.
+    // Maps the point up to the world.
     let mut carried = Carried::new(fields, &surface, margin);
-    for (way, parent_from_child) in placements.iter().rev() {
-        carried.carry(way, parent_from_child);
+    for (child_from_parent, parent_from_child) in placements.iter().rev() {
+        carried.carry(child_from_parent, parent_from_child);
     }
     let Carried {
         point,

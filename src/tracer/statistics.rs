@@ -17,16 +17,15 @@ pub struct Statistics {
     pub unique: SolidCounts,
     /// Solids in the scene with every placement counted.
     pub instanced: SolidCounts,
-    /// Placements in the scene, those within placed prototypes counted each
-    /// time.
+    /// Placements in the scene, with those in placed prototypes counted each time.
     pub instances: u128,
-    /// Placements that are instances of Embree's own, of what is built.
+    /// Placements that are instances of Embree's, in what is built.
     pub embree_instances: u64,
     /// Memory that Embree uses.
     pub embree_bytes: usize,
     /// Memory of the records of solids and placements.
     pub records_bytes: usize,
-    /// What was left out because the scene does not need it, so far.
+    /// What was not built so far, because it was not needed.
     pub skipped: Vec<String>,
     /// The version of the Embree library.
     pub embree_version: String,
@@ -34,13 +33,13 @@ pub struct Statistics {
     pub isa: String,
 }
 
-/// What stays the same of a tracer's statistics.
+/// The constant part of a tracer's statistics.
 pub(super) struct Counted {
     pub unique: SolidCounts,
     pub instanced: SolidCounts,
     pub instances: u128,
     pub described_bytes: usize,
-    /// The prototypes that the root needs.
+    /// The prototypes that the root uses.
     needed: Vec<PrototypeIndex>,
 }
 
@@ -61,8 +60,8 @@ impl Counted {
         }
     }
 
-    /// A sentence for each prototype that was not built, and one for rows that
-    /// are no solid.
+    /// A sentence for each prototype that was not built, and one for rows of tables that are no
+    /// solid.
     pub fn skipped(
         &self,
         scene: &Scene,
@@ -102,7 +101,7 @@ impl Counted {
     }
 }
 
-/// The memory of what the description keeps for solids and placements.
+/// The memory of solids and placements in the description.
 fn described_bytes(scene: &Scene) -> usize {
     let prototypes = scene.prototypes.iter();
     prototypes

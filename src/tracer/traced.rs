@@ -1,8 +1,8 @@
-//! What a query needs of a solid of any kind.
+//! The interface of a solid of any kind to a query.
 //!
-//! A convex solid answers from the one interval in which a line is inside it. A
-//! solid that is not convex may intersect a line in several; it answers for itself, and its
-//! hits name the operand with the surface that is hit by a *leaf*.
+//! A convex solid computes hits from the one interval of a line inside it. A line may intersect
+//! another solid in several intervals. Such a solid computes hits itself, and a *leaf* in the
+//! hit selects the operand with the surface.
 
 use glam::DVec3;
 
@@ -21,17 +21,17 @@ use crate::solid::{
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SurfaceHit {
     pub intersection: Intersection,
-    /// Which of the solids that it is made of is met; 0 where it is one.
+    /// The operand that is hit; 0 for a convex solid.
     pub leaf: u32,
-    /// Whether the normal is that solid's reversed.
+    /// Whether the normal is the operand's reversed.
     pub is_reversed: bool,
-    /// The number of the crossing, where one solid is entered more than once; 0
-    /// where it is not.
+    /// The number of the crossing, for a solid that may be entered more than once; 0 for a
+    /// convex solid.
     pub rank: u32,
 }
 
 impl SurfaceHit {
-    /// An intersection with a solid that is one.
+    /// An intersection with a convex solid.
     #[inline(always)]
     pub fn whole(intersection: Intersection) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl SurfaceHit {
     }
 }
 
-/// A row of the rays of a packet and their ranges.
+/// A row of a packet's rays and their ranges.
 pub(crate) struct RowOfPacket<'a> {
     pub rays: &'a PacketRays,
     pub row: usize,
@@ -52,13 +52,13 @@ pub(crate) struct RowOfPacket<'a> {
 }
 
 impl RowOfPacket<'_> {
-    /// Whether no ray was moved nearer, so that f64 has their origins.
+    /// Whether no ray was moved nearer, so that all origins are f64 points.
     pub fn is_plain(&self) -> bool {
         let base = &self.rays.base[self.row];
         (0..LANES).all(|lane| base.lane(lane) == DVec3::ZERO)
     }
 
-    /// The rays as seen from a point.
+    /// The rays relative to a point.
     #[inline(always)]
     pub fn seen_from(&self, point: DVec3) -> RayLanes {
         let (rays, row) = (self.rays, self.row);
@@ -72,29 +72,28 @@ impl RowOfPacket<'_> {
     }
 }
 
-/// A solid as queries know it.
+/// A solid in a query.
 pub(crate) trait TracedSolid: Listed + Send + Sync {
-    /// What it is called, which says in which list it is.
+    /// The kind, which selects its list.
     fn kind(&self) -> SolidKind;
 
     /// A box that contains it.
     fn bounds(&self) -> Bounds;
 
-    /// The first intersections of the `active` rays of a row, without those that
-    /// [`TracedSolid::first`] has to find.
+    /// The first intersections of the `active` rays of a row. Open rays are left to
+    /// [`TracedSolid::first`].
     #[inline(always)]
     fn first_in_row(&self, _: &RowOfPacket, active: LaneMask) -> QuickLanes {
         QuickLanes::all_open(active)
     }
 
-    /// The same decided exactly.
+    /// As [`TracedSolid::first_in_row`], decided exactly.
     #[inline(always)]
     fn exact_first_in_row(&self, _: &RowOfPacket, active: LaneMask) -> QuickLanes {
         QuickLanes::all_open(active)
     }
 
-    /// The first intersection of the ray with its surface in a range of the whole
-    /// ray's `t`.
+    /// The first intersection of the ray with the surface in a range of the whole ray's `t`.
     fn first(
         &self,
         ray: &LocalRay,
@@ -103,7 +102,7 @@ pub(crate) trait TracedSolid: Listed + Send + Sync {
         t_max: f64,
     ) -> Option<SurfaceHit>;
 
-    /// Hands on all of them.
+    /// Passes all such intersections to `keep`.
     fn for_each_hit(
         &self,
         ray: &LocalRay,
@@ -113,11 +112,11 @@ pub(crate) trait TracedSolid: Listed + Send + Sync {
         keep: impl FnMut(SurfaceHit),
     );
 
-    /// The point of the surface where the ray meets it.
-    fn surface(&self, ray: &LocalRay, met: &SurfaceHit) -> SurfacePoint;
+    /// The point of the surface at a hit.
+    fn surface(&self, ray: &LocalRay, hit: &SurfaceHit) -> SurfacePoint;
 
-    /// By how much a query that starts at that point may be displaced.
-    fn spawn_margin(&self, met: &SurfaceHit, surface: &SurfacePoint) -> SpawnMargin;
+    /// The displacement of a query that starts at that point.
+    fn spawn_margin(&self, hit: &SurfaceHit, surface: &SurfacePoint) -> SpawnMargin;
 
     /// Whether the closed solid contains a point.
     fn contains(&self, point: DVec3) -> bool;
@@ -179,8 +178,8 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
         }
     }
 
-    fn surface(&self, ray: &LocalRay, met: &SurfaceHit) -> SurfacePoint {
-        let Intersection { part, t_local, .. } = met.intersection;
+    fn surface(&self, ray: &LocalRay, hit: &SurfaceHit) -> SurfacePoint {
+        let Intersection { part, t_local, .. } = hit.intersection;
         let from_anchor = ray.origin_from(self.anchor()) + ray.direction * t_local;
         self.surface_point(part, from_anchor)
     }
@@ -195,23 +194,23 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
 }
 
 impl From<ComposedIntersection> for SurfaceHit {
-    fn from(met: ComposedIntersection) -> Self {
+    fn from(hit: ComposedIntersection) -> Self {
         Self {
-            intersection: met.intersection,
-            leaf: met.leaf,
-            is_reversed: met.is_reversed,
-            rank: met.rank,
+            intersection: hit.intersection,
+            leaf: hit.leaf,
+            is_reversed: hit.is_reversed,
+            rank: hit.rank,
         }
     }
 }
 
 impl From<&SurfaceHit> for ComposedIntersection {
-    fn from(met: &SurfaceHit) -> Self {
+    fn from(hit: &SurfaceHit) -> Self {
         Self {
-            intersection: met.intersection,
-            leaf: met.leaf,
-            is_reversed: met.is_reversed,
-            rank: met.rank,
+            intersection: hit.intersection,
+            leaf: hit.leaf,
+            is_reversed: hit.is_reversed,
+            rank: hit.rank,
         }
     }
 }
@@ -241,19 +240,19 @@ impl TracedSolid for Composition {
     ) {
         let from = |anchor| ray.origin_from(anchor);
         let range = [t_min, t_max];
-        self.intersections(from, ray.direction, ray.shift, range, |met| {
-            keep(met.into())
+        self.intersections(from, ray.direction, ray.shift, range, |hit| {
+            keep(hit.into())
         });
     }
 
-    fn surface(&self, ray: &LocalRay, met: &SurfaceHit) -> SurfacePoint {
-        self.surface(&met.into(), |anchor| {
-            ray.origin_from(anchor) + ray.direction * met.intersection.t_local
+    fn surface(&self, ray: &LocalRay, hit: &SurfaceHit) -> SurfacePoint {
+        self.surface(&hit.into(), |anchor| {
+            ray.origin_from(anchor) + ray.direction * hit.intersection.t_local
         })
     }
 
-    fn spawn_margin(&self, met: &SurfaceHit, surface: &SurfacePoint) -> SpawnMargin {
-        self.spawn_margin(&met.into(), surface)
+    fn spawn_margin(&self, hit: &SurfaceHit, surface: &SurfacePoint) -> SpawnMargin {
+        self.spawn_margin(&hit.into(), surface)
     }
 
     fn contains(&self, point: DVec3) -> bool {

@@ -307,7 +307,7 @@ fn verify_lanes(
     for lane in 0..LANES {
         let is_active = active >> lane & 1 == 1;
         let expected = first(lane).filter(|_| is_active);
-        let is_met = answer.met.0[lane];
+        let is_met = answer.hit.0[lane];
         if answer.open.0[lane] {
             assert!(is_active && !is_met, "{name}: lane {lane}");
             count.open += 1;

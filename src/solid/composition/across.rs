@@ -1,19 +1,19 @@
 //! The plane across a direction, divided by the surfaces that contain the direction.
 //!
-//! At the scale of `neighbourhood.rs` a surface with the outward normal `n` and the height
-//! `h` of its bend is the line `w·n = h`, inside where `w·n < h`. Every cell that
-//! the lines make has a stretch of a line at its border. So of each line all stretches
-//! between its crossings with others are looked at, from both sides; lines
-//! that coincide are crossed together.
+//! At the scale of `neighbourhood.rs` a surface with the outward normal `n` and the height `h`
+//! of its bend is the line `w·n = h`, inside where `w·n < h`. Every cell of the arrangement of
+//! lines has a segment of a line at its border. So both sides of every segment between the
+//! crossings of a line are examined; lines that coincide are crossed together.
 //!
-//! Members of a group are parallel. Lines of different groups cross, unless one belongs to
-//! an apex that a plane touches along this direction. Heights of parallel lines are equal
-//! within what curvatures may be off ([`Piece::height_error`]), and crossings with a line are one
-//! within what two such errors move them.
+//! Members of a group are parallel. Lines of different groups cross, unless one belongs to an
+//! apex that a plane touches along this direction. Heights of parallel lines are equal if they
+//! differ by no more than the error of curvatures ([`Piece::height_error`]). Crossings of a
+//! line are one if they differ by no more than two such errors move them.
 //!
-//! Where first order is exact, planes may differ by far less than their normals in f64 are off.
-//! Then the sines between lines come from the exact normals. A line's places are in or out
-//! of another by the side of the crossing that they are on, never by a product of normals in f64.
+//! Where first order is exact, planes may differ by far less than the errors of their normals
+//! in f64. Then the sines between lines come from the exact normals, and a point of a line is
+//! inside or outside of another line by its side of their crossing, never by a product of
+//! normals in f64.
 
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
@@ -30,48 +30,48 @@ struct Line {
     /// Unit vector.
     normal: DVec2,
     height: f64,
-    /// By how much the height may be off.
+    /// The error bound of the height.
     height_error: f64,
     /// θ of the piece.
     turned: f64,
     is_of_apex: bool,
 }
 
-/// How a line lies to another.
+/// The relation of a line to another.
 #[derive(Clone, Copy, Debug)]
 enum Relation {
-    /// They are one; their normals may be opposite.
+    /// They coincide; their normals may be opposite.
     Coincides { is_turned: bool },
     /// They are parallel, and the first is inside or outside of the other.
     IsParallel { is_within: bool },
-    /// They cross, at this place along the first.
+    /// They cross, at this position along the first.
     Crosses {
         place: f64,
-        /// By how much the place may be off.
+        /// The error bound of the position.
         error: f64,
-        /// Whether the places behind are outside of the other.
+        /// Whether positions beyond are outside of the other.
         leaves: bool,
     },
 }
 
 /// The plane across a direction.
 pub(super) struct Across<'a, A: FirstOrder> {
-    place: &'a Place<'a, A::Way>,
+    place: &'a Place<'a, A::Exact>,
     first_order: &'a A,
     axes: [DVec3; 2],
     lines: SmallVec<[Line; 8]>,
 }
 
-/// The two sides of a stretch of a line: the inner and the outer one of its piece.
+/// The two sides of a segment of a line: the inner and the outer side of its piece.
 pub(super) struct Sides {
-    /// The pieces whose lines are this one, and whether the inner side is outside of them.
+    /// The pieces whose lines coincide here, and whether the inner side is outside of them.
     on_the_line: SmallVec<[(usize, bool); 8]>,
     /// The other pieces, and whether both sides are inside of them.
     others: SmallVec<[(usize, bool); 8]>,
 }
 
 impl Sides {
-    /// Those of a plane in which all pieces lie.
+    /// The sides of a plane that contains all pieces.
     pub fn of_plane(pieces: &Pieces) -> Self {
         let first = pieces.first().map_or(DVec3::ZERO, |piece| piece.normal);
         let pieces = pieces.iter().enumerate();
@@ -93,7 +93,7 @@ impl Sides {
 }
 
 impl<'a, A: FirstOrder> Across<'a, A> {
-    pub fn new(place: &'a Place<'a, A::Way>, first_order: &'a A) -> Self {
+    pub fn new(place: &'a Place<'a, A::Exact>, first_order: &'a A) -> Self {
         let (x, y) = place.direction.any_orthonormal_pair();
         Self {
             place,
@@ -117,8 +117,8 @@ impl<'a, A: FirstOrder> Across<'a, A> {
         });
     }
 
-    /// Hands on both sides of every stretch of every line.
-    pub fn each_border(&self, mut look: impl FnMut(&Sides)) {
+    /// Passes both sides of every segment of every line to `look`.
+    pub fn for_each_border(&self, mut look: impl FnMut(&Sides)) {
         for (index, line) in self.lines.iter().enumerate() {
             let mut relations = SmallVec::<[Relation; 8]>::new();
             relations.extend(self.lines.iter().map(|other| self.relation(line, other)));
@@ -187,7 +187,7 @@ impl<'a, A: FirstOrder> Across<'a, A> {
     }
 }
 
-/// A place on each stretch of a line, from the foot of the origin.
+/// A position on each segment of a line, counted from the point nearest to the origin.
 fn stretches(relations: &[Relation]) -> SmallVec<[f64; 8]> {
     let mut crossings = SmallVec::<[(f64, f64); 8]>::new();
     for relation in relations {
@@ -200,7 +200,7 @@ fn stretches(relations: &[Relation]) -> SmallVec<[f64; 8]> {
     let (Some(first), Some(last)) = (crossings.first(), crossings.last()) else {
         return SmallVec::from_slice(&[0.0]);
     };
-    // Any length will do beyond the first and the last.
+    // Any distance beyond the first and the last crossing serves.
     let beyond = 1.0 + first.0.abs().max(last.0.abs());
     let mut places = SmallVec::new();
     places.push(first.0 - beyond);

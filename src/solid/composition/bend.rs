@@ -21,7 +21,7 @@ pub(super) struct Bend {
     around: DVec3,
     along: DVec3,
     curvature_around: f64,
-    /// Where `v·along` is negative, and where it is not.
+    /// For negative `v·along`, and for others.
     curvature_along: [f64; 2],
 }
 
@@ -29,7 +29,7 @@ pub(super) struct Bend {
 pub(super) type Angles = SmallVec<[f64; 8]>;
 
 impl Bend {
-    /// That of a plane.
+    /// The bend of a plane.
     pub const FLAT: Self = Self {
         around: DVec3::ZERO,
         along: DVec3::ZERO,
@@ -37,7 +37,7 @@ impl Bend {
         curvature_along: [0.0; 2],
     };
 
-    /// That of a sphere, or of a wall which `around` and `along` span.
+    /// The bend of a sphere, or of a wall whose tangent plane `around` and `along` span.
     pub fn new(
         around: DVec3,
         along: DVec3,
@@ -78,12 +78,12 @@ impl Bend {
         }
     }
 
-    /// Adds the directions in which one surface may change from above
-    /// to below another; `sign` is -1 if the normal of the other is opposite.
+    /// Adds the directions in which one surface may change from above to below another. `sign`
+    /// is -1 if the normal of the other is opposite.
     ///
     /// Each height is `A + B cos 2φ + C sin 2φ` on either side of a seam. The roots of the
-    /// difference are added for all combinations of sides: a direction too many only
-    /// divides what need not be divided.
+    /// difference are added for all combinations of sides: a superfluous direction does no
+    /// harm.
     pub fn add_crossings(&self, other: &Self, sign: f64, [x, y]: [DVec3; 2], angles: &mut Angles) {
         for one in self.harmonics(x, y) {
             for two in other.harmonics(x, y) {
@@ -92,7 +92,8 @@ impl Bend {
                 if amplitude == 0.0 {
                     continue;
                 }
-                // Surfaces that only touch are nearest where rounding may lose a double root.
+                // Where surfaces only touch, rounding may lose a double root; the clamp keeps
+                // it.
                 let cosine = (-a / amplitude).clamp(-1.0, 1.0);
                 let (middle, half) = (libm::atan2(c, b), libm::acos(cosine));
                 for angle in [middle + half, middle - half] {

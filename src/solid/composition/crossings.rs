@@ -1,15 +1,15 @@
 //! The crossings of a line with the surface of a composition.
 //!
-//! The composition is a closed set, and the line is in it over closed intervals. Each
-//! begins with an entry and ends with an exit, in turn; `line.rs` decides what is before and behind
-//! each station. Where the line is outside on both sides or inside on both,
-//! what is around the point itself decides whether it is a *touch*: from outside the point
-//! is an interval of its own, an entry and an exit; from inside, where the point is not
-//! inside of the set, an exit and an entry. From the surface to the inside is no crossing.
+//! The composition is a closed set that contains closed intervals of the line. Each interval
+//! begins with an entry and ends with an exit; `line.rs` classifies the stretches before and
+//! after each station. Where the line is outside on both sides, or inside on both, the
+//! neighbourhood of the point decides whether it is a *touch*. From outside, the point is an
+//! interval of its own: an entry and an exit. From inside, where the point is not interior to
+//! the set, it is an exit and an entry. A change from the surface to the inside is no crossing.
 //!
 //! A crossing has the `t` and the part of a leaf, bit for bit: of the first leaf whose chord
-//! ends there and whose surface is the composition's surface there, as far as there is one.
-//! The normal points out of the composition, whichever side of the leaf that is.
+//! ends there and whose surface is the composition's surface there, if such a leaf exists. The
+//! normal points out of the composition, whichever side of the leaf that is.
 
 use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
@@ -20,12 +20,12 @@ use super::neighbourhood::{Face, Neighbourhood};
 use crate::solid::Crossing::{self, Enter, Leave};
 use crate::solid::{ChordEnd, Intersection, Location};
 
-/// A point where a ray meets a composition.
+/// An intersection of a ray and a composition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComposedIntersection {
-    /// The point, the part being that of the leaf.
+    /// The point, with the part of the leaf.
     pub intersection: Intersection,
-    /// The operand whose surface it is, as a position in [`Composition::operands`].
+    /// The operand with this surface, as a position in [`Composition::operands`].
     pub leaf: u32,
     /// Whether the composition is on the outer side of the leaf's surface, so that its normal
     /// is the leaf's reversed.
@@ -36,12 +36,11 @@ pub struct ComposedIntersection {
 }
 
 impl Composition {
-    /// The points at which a ray is on the surface, among those with `t_min <= t +
-    /// shift <= t_max`, in order.
+    /// The intersections of a ray with the surface with `t_min <= t + shift <= t_max`, in
+    /// order.
     ///
-    /// `origin_from` returns the ray's origin as seen from an anchor. The
-    /// range, `shift` and the direction are as for
-    /// [`ConvexSolid::first`](crate::solid::ConvexSolid::first).
+    /// `origin_from` returns the ray's origin relative to an anchor. The range, `shift` and the
+    /// direction are as for [`ConvexSolid::first`](crate::solid::ConvexSolid::first).
     pub fn intersections(
         &self,
         origin_from: impl Fn(DVec3) -> DVec3,
@@ -51,8 +50,8 @@ impl Composition {
         mut keep: impl FnMut(ComposedIntersection),
     ) {
         let range = [t_min, t_max];
-        self.for_each_hit(origin_from, direction, shift, range, |met| {
-            keep(met);
+        self.for_each_hit(origin_from, direction, shift, range, |hit| {
+            keep(hit);
             false
         });
     }
@@ -67,8 +66,8 @@ impl Composition {
         range: [f64; 2],
     ) -> Option<ComposedIntersection> {
         let mut first = None;
-        self.for_each_hit(origin_from, direction, shift, range, |met| {
-            first = Some(met);
+        self.for_each_hit(origin_from, direction, shift, range, |hit| {
+            first = Some(hit);
             true
         });
         first
@@ -95,8 +94,8 @@ impl Composition {
                 let is_here = begins.start <= start && start <= begins.end;
                 let continues = behind.location == Location::Boundary;
                 if (is_between || is_here && continues)
-                    && let Some(met) = start_within(&line, &before, shift, t_min)
-                    && is_enough(met)
+                    && let Some(hit) = start_within(&line, &before, shift, t_min)
+                    && is_enough(hit)
                 {
                     return;
                 }
@@ -104,7 +103,7 @@ impl Composition {
             for (face, crossing, end) in crossings(&line, station, &before, &behind) {
                 rank += 1;
                 let t = end.t + shift;
-                let met = ComposedIntersection {
+                let hit = ComposedIntersection {
                     intersection: Intersection {
                         t,
                         t_local: end.t,
@@ -115,7 +114,7 @@ impl Composition {
                     is_reversed: face.is_reversed,
                     rank,
                 };
-                if t_min <= t && t <= t_max && is_enough(met) {
+                if t_min <= t && t <= t_max && is_enough(hit) {
                     return;
                 }
             }
@@ -124,9 +123,9 @@ impl Composition {
     }
 }
 
-/// The intersection where the range of a ray starts that runs within the surface, which it has
-/// before it: with the first leaf whose surface that is. Of a ray that starts at a station, it is a
-/// face beside the stretch before, which reaches up to the station.
+/// The intersection at the start of the range of a ray that runs within the surface: with the
+/// first leaf that has the surface. If the ray starts at a station, it is a face of the stretch
+/// before, which reaches up to the station.
 fn start_within(
     line: &Line,
     before: &Stretch,
@@ -148,7 +147,7 @@ fn start_within(
     })
 }
 
-/// The crossings of a station, each with the face that is crossed and a point of the line.
+/// The crossings at a station, each with the face that is crossed and a point of the line.
 fn crossings(
     line: &Line,
     station: usize,
@@ -156,7 +155,7 @@ fn crossings(
     behind: &Stretch,
 ) -> SmallVec<[(Face, Crossing, ChordEnd); 2]> {
     use Location::{Inside, Outside};
-    // Where one leaf is entered or left, all around is what is before or behind.
+    // Where only one leaf is entered or left, the stretches before and behind decide.
     if let Some((leaf, end, enters)) = line.only_change_at(station) {
         if before.location == behind.location {
             return SmallVec::new();
@@ -209,8 +208,8 @@ fn crossings(
         .collect()
 }
 
-/// The face that is crossed at a station: that of the first leaf whose chord ends there and
-/// which has one. `which` chooses of two ends of one chord.
+/// The face that is crossed at a station: that of the first leaf with a face there whose chord
+/// ends there. `which` selects one of two ends of one chord.
 fn face_at_end(
     line: &Line,
     station: usize,
@@ -227,8 +226,9 @@ fn face_at_end(
     })
 }
 
-/// A face that the line is in or touches at a station, where no chord ends that has one. Where
-/// walls change places along a ruling they have none at that point, but beside it.
+/// A face that the line lies in or touches at a station, where no chord of a leaf with a face
+/// ends. Where walls change places along a ruling, they have no face at that point, but beside
+/// it.
 fn face_beside(
     line: &Line,
     station: usize,
@@ -246,8 +246,8 @@ fn face_beside(
     Some((face, end))
 }
 
-/// What is left where turned numbers round so that the stretches differ and no face around the
-/// station does: the end of a chord.
+/// The end of a chord. It serves where the roundings of turned solids make the stretches differ
+/// while no face around the station does.
 fn any_face(
     line: &Line,
     station: usize,

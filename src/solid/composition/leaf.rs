@@ -1,4 +1,4 @@
-//! A leaf of a composition as a line meets it.
+//! A leaf of a composition and its intersection with a line.
 
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -7,16 +7,16 @@ use super::super::spawn::SOLVER_DISPLACEMENT;
 use super::piece::{Nearness, Pieces, Viewed};
 use crate::solid::{AnySolid, Chord, ChordEnd, Part};
 
-/// What an end of a chord or another station is.
+/// The kind of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum What {
     Enter,
     Leave,
-    /// Two walls that touch along the line have the same curvature.
+    /// Two walls that touch along the line have the same curvature here.
     Osculation,
 }
 
-/// A leaf and where the line is inside it.
+/// A leaf and the interval of the line inside it.
 pub(super) struct Leaf<'a> {
     pub solid: &'a AnySolid,
     pub from_anchor: DVec3,
@@ -26,13 +26,13 @@ pub(super) struct Leaf<'a> {
 }
 
 impl Leaf<'_> {
-    /// Bounds how far solid and line may be displaced.
+    /// Bounds the displacement of solid and line.
     pub fn displacement(&self) -> f64 {
         let anchor = self.solid.anchor().length();
         SOLVER_DISPLACEMENT * (self.from_anchor.length() + anchor + self.solid.size())
     }
 
-    /// The point at a parameter, from the anchor.
+    /// The point at a parameter, relative to the anchor.
     pub fn at(&self, direction: DVec3, t: f64) -> DVec3 {
         self.from_anchor + direction * t
     }
@@ -45,12 +45,12 @@ impl Leaf<'_> {
         surface.normal.dot(direction).abs()
     }
 
-    /// The part within which the line runs between the ends of the chord.
+    /// The part that contains the line between the ends of the chord.
     pub fn lies_on(&self) -> Option<Part> {
         self.chord.as_ref()?.lies_on
     }
 
-    /// The ends of the chord that are at a station.
+    /// The ends of the chord at a station.
     pub fn ends_at(&self, station: usize) -> SmallVec<[ChordEnd; 2]> {
         let ends = self
             .chord
@@ -67,8 +67,8 @@ impl Leaf<'_> {
         self.chord.is_some() && enter <= station && station < leave
     }
 
-    /// The part of the wall along which the line runs, as the radius of curvature across
-    /// the line at a parameter.
+    /// The radius of curvature across the line, at a parameter, of the wall that contains the
+    /// line.
     pub fn ruling_radius(&self, leaf: u32, direction: DVec3, t: f64) -> Option<f64> {
         let viewed = Viewed {
             leaf,
@@ -87,7 +87,7 @@ impl Leaf<'_> {
     }
 }
 
-/// An end of a leaf's chord, or an osculation that the leaf has part in.
+/// An end of a leaf's chord, or an osculation of the leaf's wall.
 #[derive(Clone, Copy)]
 pub(super) struct Event {
     pub t: f64,

@@ -1,36 +1,35 @@
 //! A line through the leaves of a composition.
 //!
-//! Each leaf is met in one interval of `t`, its [`Chord`]. All ends of all chords, in
-//! order, are the *stations* of the line, and what is between two is a *stretch*. Over a
-//! stretch every leaf has the line inside or outside, or the line lies within the leaf's
-//! surface: in a face, along an edge, or along a ruling of a wall. All points of a stretch have
-//! the same around them, so that one of them decides what the composition has there: the formula
-//! of the operations where the line is in no surface, else the neighbourhood.
+//! The line intersects each leaf in one interval of `t`, its [`Chord`]. The ends of all chords,
+//! in order, are the *stations* of the line; the part between two is a *stretch*. Along a
+//! stretch every leaf has the line inside or outside, or within its surface: in a face, along
+//! an edge, or along a ruling of a wall. All points of a stretch have the same neighbourhood,
+//! so one of them decides whether the composition contains it: by the formula of the operations
+//! if the line is in no surface, else by the neighbourhood.
 //!
-//! **Walls along one ruling.** A line may be a ruling of two walls that touch along it. Of
-//! these the one that bends more is the inner one. A wall's radius of curvature `R(t)` along a ruling is
-//! linear: constant on a cylinder, proportional to the distance from the apex on a cone. Where two become equal the walls
-//! change places, so there is another station. If they are equal at two points they are
-//! everywhere, and the walls are one. So pieces that are equal to second order over a
-//! stretch are equal.
+//! **Walls along one ruling.** A line may be a ruling of two walls that touch along it. The
+//! wall that bends more is the inner one. A wall's radius of curvature `R(t)` along a ruling is
+//! linear: constant on a cylinder, proportional to the distance from the apex on a cone. Where
+//! two radii become equal the walls change places, so there is another station. If they are
+//! equal at two points they are equal everywhere, and the walls are one. So pieces that are
+//! equal to second order along a stretch are equal.
 //!
-//! **Stations that are one.** Faces are meant to coincide (a bore as long as its block),
-//! but the numbers that state turned ones are rounded, and so is each leaf's `t`. A
-//! solver's answer is exact for solids and rays displaced by at most
-//! `SOLVER_DISPLACEMENT` times the sizes that it sees ([`spawn`](super::super::spawn)),
-//! and rounding the numbers of a turned solid moves it by a few u of its coordinates,
-//! which are among these sizes. A plane displaced by δ is met elsewhere by `δ / |n·d|`,
-//! `n` its unit normal. So two ends are one station if
+//! **Ends in one station.** Faces are meant to coincide (a bore as long as its block), but the
+//! numbers of turned solids are rounded, and so is each leaf's `t`. A solver's result is exact
+//! for solids and rays displaced by at most `SOLVER_DISPLACEMENT` times the sizes that it uses
+//! ([`spawn`](super::super::spawn)). Rounding the numbers of a turned solid moves it by a few u
+//! of its coordinates, which are among these sizes. Displacing a plane by δ moves its
+//! intersection by `δ / |n·d|`, `n` its unit normal. So two ends are one station if
 //!
 //! ```text
 //! |t - t'| |n·d| <= 2 δ, δ the greater of both                             (1)
 //! ```
 //!
-//! with the normal that has the greater `|n·d|`: of parallel faces either. What
-//! (1) passes over is thinner than what displacements can make or remove. Normals are
-//! worked out only where (1) may be true at an angle that is not below 2^-26. `|t - t'| |n·d|` is the
-//! distance of the one point from the plane of the other, so the pieces of a surface that
-//! pass through a station are those within 2 δ of it (`piece.rs`).
+//! with the normal of the greater `|n·d|`; of parallel faces, either. What (1) ignores is
+//! thinner than what displacements can create or remove. Normals are computed only if (1) may
+//! be true at an angle of at least 2^-26. `|t - t'| |n·d|` is the distance of the one point
+//! from the plane of the other, so the pieces of a surface that pass through a station are
+//! those within 2 δ of it (`piece.rs`).
 
 use std::ops::Range;
 
@@ -45,11 +44,11 @@ use super::turned::Turned;
 use crate::math::power_of_two;
 use crate::solid::{ChordEnd, Location, Part};
 
-/// What the composition has along a stretch.
+/// The location of a stretch in the composition.
 #[derive(Clone, Debug)]
 pub(super) struct Stretch {
     pub location: Location,
-    /// The surface within which the line runs, if it does.
+    /// The neighbourhood, if the line runs within a surface.
     pub within: Option<Neighbourhood>,
 }
 
@@ -129,7 +128,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// Where the linear radii of two walls are the same.
+    /// The parameter at which the linear radii of two walls are equal.
     fn osculation(&self, leaves: [u32; 2]) -> Option<f64> {
         let [one, other] = leaves.map(|leaf| &self.leaves[leaf as usize]);
         let chords = [one.chord.as_ref()?, other.chord.as_ref()?];
@@ -145,7 +144,7 @@ impl<'a> Line<'a> {
         (start < end && 0.0 < share && share < 1.0).then_some(start + share * (end - start))
     }
 
-    /// Puts the events in order and finds out which are one station.
+    /// Sorts the events and groups them into stations.
     fn find_stations(&mut self) {
         self.events
             .sort_unstable_by(|one, other| one.t.total_cmp(&other.t));
@@ -165,7 +164,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// Whether (1) is true for two events.
+    /// Whether two events are one station, by (1).
     fn are_one(&self, one: usize, other: usize) -> bool {
         let events = [one, other].map(|position| self.events[position]);
         let apart = events[1].t - events[0].t;
@@ -200,13 +199,13 @@ impl<'a> Line<'a> {
         self.events[start].t..self.events[end - 1].t
     }
 
-    /// The ends of a leaf's chord that are at a station.
+    /// The ends of a leaf's chord at a station.
     pub fn ends_at(&self, leaf: u32, station: usize) -> SmallVec<[ChordEnd; 2]> {
         self.leaves[leaf as usize].ends_at(station)
     }
 
-    /// The one leaf that changes at a station, with the end of its chord and whether the line is
-    /// in it behind the station; `None` where more is to be considered.
+    /// The one leaf that changes at a station, with the end of its chord and whether the line
+    /// is inside it behind the station; `None` if the station is not as simple.
     pub fn only_change_at(&self, station: usize) -> Option<(u32, ChordEnd, bool)> {
         let range = self.stations[station].clone();
         if self.has_within || range.len() > 1 {
@@ -224,12 +223,12 @@ impl<'a> Line<'a> {
         self.leaves[leaf as usize].has_behind(station)
     }
 
-    /// The part of a leaf within which the line runs between the ends of the chord.
+    /// The part of a leaf that contains the line between the ends of the chord.
     pub fn lies_on(&self, leaf: u32) -> Option<Part> {
         self.leaves[leaf as usize].lies_on()
     }
 
-    /// The leaves on whose surface the line is at a station, in order.
+    /// The leaves whose surfaces contain the point of a station, in order.
     pub fn touched_at(&self, station: usize) -> SmallVec<[u32; 8]> {
         let mut touched: SmallVec<[u32; 8]> = self.events[self.stations[station].clone()]
             .iter()
@@ -244,7 +243,7 @@ impl<'a> Line<'a> {
         touched
     }
 
-    /// The leaves within whose surface the line runs behind a station.
+    /// The leaves whose surfaces contain the line behind a station.
     fn running_behind(&self, station: usize) -> impl Iterator<Item = u32> + '_ {
         (0..).zip(&self.leaves).filter_map(move |(index, leaf)| {
             (leaf.lies_on().is_some() && leaf.has_behind(station)).then_some(index)
@@ -257,7 +256,7 @@ impl<'a> Line<'a> {
         leaves.map(|leaf| leaf.has_behind(station)).collect()
     }
 
-    /// What the composition has behind a station, up to the next.
+    /// The stretch behind a station, up to the next.
     pub fn behind(&self, station: usize) -> Stretch {
         let mut leaves = self.leaves_behind(station);
         if self.has_within {
@@ -270,7 +269,7 @@ impl<'a> Line<'a> {
                 };
             }
         }
-        let location = if self.composition.holds(&leaves) {
+        let location = if self.composition.evaluate(&leaves) {
             Location::Inside
         } else {
             Location::Outside
@@ -281,17 +280,17 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// What is around a point of the stretch behind a station, which runs within the surface
-    /// of some leaves.
+    /// The neighbourhood of a point of the stretch behind a station, where the surfaces of the
+    /// leaves `running` contain the line.
     fn around_stretch(
         &self,
         station: usize,
         running: &[u32],
         leaves: &mut [bool],
     ) -> Neighbourhood {
-        let holds = |leaves: &[bool]| self.composition.holds(leaves);
+        let is_inside = |leaves: &[bool]| self.composition.evaluate(leaves);
         if let &[leaf] = running {
-            return Neighbourhood::of_one_leaf(leaf, self.lies_on(leaf), leaves, holds);
+            return Neighbourhood::of_one_leaf(leaf, self.lies_on(leaf), leaves, is_inside);
         }
         let (start, end) = (self.range_of(station).end, self.range_of(station + 1).start);
         let distance = self.distance(running);
@@ -305,24 +304,25 @@ impl<'a> Line<'a> {
             )
             .add_pieces(&mut pieces);
         }
-        // Those that the line crosses are near the middle of a short stretch too.
+        // Pieces that the line crosses are also near the middle of a short stretch; they are
+        // removed.
         let half = self.direction * (0.5 * (end - start));
         pieces.retain(|piece| {
             piece.normal.dot(half).abs() <= distance || self.lies_on(piece.leaf) == Some(piece.part)
         });
-        Neighbourhood::of_pieces(&pieces, &Turned(&pieces), leaves, holds)
+        Neighbourhood::of_pieces(&pieces, &Turned(&pieces), leaves, is_inside)
     }
 
-    /// What is around the point of a station, where the line is on the surfaces of the leaves
-    /// `touched`.
+    /// The neighbourhood of the point of a station, where the line is on the surfaces of the
+    /// leaves `touched`.
     pub fn around_station(&self, station: usize, touched: &[u32]) -> Neighbourhood {
         // A leaf that ends at the station is replaced by its pieces.
         let mut leaves = self.leaves_behind(station);
-        let holds = |leaves: &[bool]| self.composition.holds(leaves);
+        let is_inside = |leaves: &[bool]| self.composition.evaluate(leaves);
         if let &[leaf] = touched {
             let ends = self.ends_at(leaf, station);
             let parts = ends.iter().map(|end| end.part);
-            return Neighbourhood::of_one_leaf(leaf, parts, &mut leaves, holds);
+            return Neighbourhood::of_one_leaf(leaf, parts, &mut leaves, is_inside);
         }
         let distance = self.distance(touched);
         let mut pieces = Pieces::new();
@@ -341,10 +341,11 @@ impl<'a> Line<'a> {
             self.view(index, t, distance, &named)
                 .add_pieces(&mut pieces);
         }
-        Neighbourhood::of_pieces(&pieces, &Turned(&pieces), &mut leaves, holds)
+        Neighbourhood::of_pieces(&pieces, &Turned(&pieces), &mut leaves, is_inside)
     }
 
-    /// How near a piece passes the points of leaves that it counts for.
+    /// The greatest distance at which a piece counts as passing through a point of these
+    /// leaves.
     fn distance(&self, leaves: &[u32]) -> f64 {
         let leaves = leaves.iter().map(|&leaf| &self.leaves[leaf as usize]);
         2.0 * leaves.map(Leaf::displacement).fold(0.0, f64::max)

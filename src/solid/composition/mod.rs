@@ -1,24 +1,24 @@
-//! Solids composed of others by set operations, regularised.
+//! Solids composed of others by regularized set operations.
 //!
-//! **The set.** A leaf is a closed solid with an open interior. The operations are a
-//! formula over the interiors: a point that is on no leaf's boundary satisfies it or not. The
-//! composition is the closure of the points that do (Requicha's regularised
-//! operations): a point belongs to it if every neighbourhood has an open piece in which the
-//! formula is true. So a solid without itself is empty, solids that only touch have nothing
-//! in common, solids that touch in a face are one without a face between them, and what
-//! ends in the plane of another face leaves no film there.
+//! **The set.** A leaf is a closed solid with an open interior. The operations are a formula
+//! over the interiors: a point on no leaf's boundary satisfies it or not. The composition is
+//! the closure of the points that do (Requicha's regularized operations): a point belongs to it
+//! if every neighbourhood contains an open set in which the formula is true. So a solid minus
+//! itself is empty, solids that only touch have nothing in common, solids that touch in a face
+//! unite without a face between them, and a cut that ends in the plane of another face leaves
+//! no film there.
 //!
-//! A point is *inside* if the formula is true in all open pieces around it, *outside* if
-//! in none, and otherwise on the *boundary*. All queries follow from that:
+//! A point is *inside* if the formula is true in all open cells around it, *outside* if in
+//! none, and otherwise on the *boundary*. All queries follow from that:
 //!
-//! - `neighbourhood.rs`, with `across.rs`, decides what is around a point that is on the
-//!   surfaces of several leaves; `piece.rs` and `bend.rs` describe these there, and `operand/`
+//! - `neighbourhood.rs`, with `across.rs`, classifies the cells around a point on the surfaces
+//!   of several leaves; `piece.rs` and `bend.rs` describe these surfaces there, and `operand/`
 //!   has those of each kind of solid;
-//! - `first_order.rs` is what it takes from normals: `turned.rs` compares them in f64, for
-//!   points of lines, `planes.rs` exactly, for stated points;
-//! - `locate` below uses it for points as stated;
-//! - `line.rs` orders the points where a line changes and classifies what is between them, and
-//!   `crossings.rs` turns that into hits.
+//! - `first_order.rs` is the interface for decisions from normals: `turned.rs` compares them in
+//!   f64, for points of lines, `planes.rs` exactly, for stated points;
+//! - `locate` below uses it for stated points;
+//! - `line.rs` orders the points where a line crosses leaves and classifies the stretches
+//!   between them, and `crossings.rs` turns that into hits.
 
 mod across;
 mod bend;
@@ -46,21 +46,20 @@ use piece::{Nearness, Pieces, Viewed};
 use planes::Planes;
 use turned::Turned;
 
-/// A solid that is composed of others by set operations: the closure of the result of
-/// the operations on the operands' interiors. Its surface is the boundary of that.
+/// A solid that is composed of others by set operations: the closure of the result of the
+/// operations on the operands' interiors. Its surface is the boundary of that closure.
 ///
-/// What a scene file states has no open ends, no disks and no operation without
-/// an operand. An operation without an operand is empty, and a solid with open ends
-/// counts as closed.
+/// Scene files reject open ends, disks and operations without an operand. Here, an operation
+/// without an operand is empty, and a solid with open ends counts as closed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Composition {
-    /// A solid as it is.
+    /// A single solid.
     Solid(AnySolid),
-    /// What is in any of them.
+    /// The points in any of the operands.
     Union(Vec<Composition>),
-    /// What is in all of them.
+    /// The points in all operands.
     Intersection(Vec<Composition>),
-    /// What is in the first and in none of the others.
+    /// The points in the first operand and in none of the others.
     Difference(Vec<Composition>),
 }
 
@@ -69,14 +68,14 @@ pub enum Composition {
 pub struct Operand {
     /// The solid.
     pub solid: AnySolid,
-    /// Whether it is taken away: then the composition is on the other side of its
-    /// surface, where no other leaf has one too. What is taken away from something that
-    /// is taken away is not.
+    /// Whether it is subtracted. Then the composition is on the outer side of its surface,
+    /// unless another leaf has a surface there too. An operand that is subtracted twice is not
+    /// subtracted.
     pub is_subtracted: bool,
 }
 
 impl Composition {
-    /// What it is called, by its outermost operation. A single solid is a union of one.
+    /// The kind of the outermost operation. A single solid is a union of one.
     #[must_use]
     pub fn kind(&self) -> SolidKind {
         match self {
@@ -86,7 +85,7 @@ impl Composition {
         }
     }
 
-    /// The solids that it is composed of, from the first to the last.
+    /// The solids of all operands, from the first to the last.
     #[must_use]
     pub fn solids(&self) -> Vec<AnySolid> {
         self.operands()
@@ -95,8 +94,7 @@ impl Composition {
             .collect()
     }
 
-    /// The same with what becomes of them; a position in it is the
-    /// [`ComposedIntersection::leaf`].
+    /// The operands; a position in the list is the [`ComposedIntersection::leaf`].
     #[must_use]
     pub fn operands(&self) -> Vec<Operand> {
         let mut operands = Vec::new();
@@ -125,14 +123,14 @@ impl Composition {
         }
     }
 
-    /// The solids that it is composed of, in the order of [`Composition::operands`].
+    /// The solids of all operands, in the order of [`Composition::operands`].
     fn leaves(&self) -> SmallVec<[&AnySolid; 8]> {
         let mut leaves = SmallVec::new();
         self.for_each_leaf(false, &mut |solid, _| leaves.push(solid));
         leaves
     }
 
-    /// The memory that it takes beside itself.
+    /// The heap memory that it uses.
     #[must_use]
     pub fn heap_bytes(&self) -> usize {
         match self {
@@ -144,9 +142,9 @@ impl Composition {
         }
     }
 
-    /// A box that contains it: of a union the box of all boxes, of an intersection what
-    /// is in all of them, of a difference the first. [`Bounds::EMPTY`] where that
-    /// shows that nothing is left.
+    /// A box that contains it: for a union the box of all boxes, for an intersection the common
+    /// box, for a difference the first box. [`Bounds::EMPTY`] if the boxes show that nothing is
+    /// left.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         match self {
@@ -160,34 +158,34 @@ impl Composition {
         }
     }
 
-    /// Evaluates the formula at a place; `is_within` returns whether a leaf contains it in
+    /// Evaluates the formula at a point; `is_within` has for each leaf whether the point is in
     /// its interior.
-    fn holds(&self, is_within: &[bool]) -> bool {
-        self.holds_for(&mut is_within.iter().copied())
+    fn evaluate(&self, is_within: &[bool]) -> bool {
+        self.evaluate_next(&mut is_within.iter().copied())
     }
 
-    /// The same; takes one of `leaves` for each leaf of this formula and leaves the rest.
-    fn holds_for(&self, leaves: &mut impl Iterator<Item = bool>) -> bool {
+    /// Evaluates the formula; takes one item of `leaves` for each leaf and leaves the rest.
+    fn evaluate_next(&self, leaves: &mut impl Iterator<Item = bool>) -> bool {
         match self {
             Self::Solid(_) => leaves.next().unwrap_or(false),
             Self::Union(parts) => parts
                 .iter()
-                .fold(false, |any, part| any | part.holds_for(leaves)),
+                .fold(false, |any, part| any | part.evaluate_next(leaves)),
             Self::Intersection(parts) => {
                 let all = parts
                     .iter()
-                    .fold(true, |all, part| all & part.holds_for(leaves));
+                    .fold(true, |all, part| all & part.evaluate_next(leaves));
                 all && !parts.is_empty()
             }
             Self::Difference(parts) => {
                 let mut parts = parts.iter();
-                let first = parts.next().is_some_and(|part| part.holds_for(leaves));
-                parts.fold(first, |rest, part| rest & !part.holds_for(leaves))
+                let first = parts.next().is_some_and(|part| part.evaluate_next(leaves));
+                parts.fold(first, |rest, part| rest & !part.evaluate_next(leaves))
             }
         }
     }
 
-    /// Where a point is, as stated.
+    /// The location of a stated point.
     #[must_use]
     pub fn locate(&self, point: DVec3) -> Location {
         let solids = self.leaves();
@@ -201,11 +199,11 @@ impl Composition {
             .zip(&located)
             .filter_map(|(leaf, location)| (*location == Location::Boundary).then_some(leaf))
             .collect();
-        let holds = |is_within: &[bool]| self.holds(is_within);
+        let is_inside = |is_within: &[bool]| self.evaluate(is_within);
         match touched.as_slice() {
-            [] if holds(&is_within) => Location::Inside,
+            [] if is_inside(&is_within) => Location::Inside,
             [] => Location::Outside,
-            &[leaf] => Neighbourhood::of_one_leaf(leaf, [], &mut is_within, holds).location(),
+            &[leaf] => Neighbourhood::of_one_leaf(leaf, [], &mut is_within, is_inside).location(),
             several => {
                 let mut pieces = Pieces::new();
                 for &leaf in several {
@@ -223,11 +221,11 @@ impl Composition {
                 }
                 let found = match Planes::at(point, &pieces, &solids) {
                     Some(planes) => {
-                        Neighbourhood::of_pieces(&pieces, &planes, &mut is_within, holds)
+                        Neighbourhood::of_pieces(&pieces, &planes, &mut is_within, is_inside)
                     }
                     None => {
                         let turned = Turned(&pieces);
-                        Neighbourhood::of_pieces(&pieces, &turned, &mut is_within, holds)
+                        Neighbourhood::of_pieces(&pieces, &turned, &mut is_within, is_inside)
                     }
                 };
                 found.location()
@@ -241,38 +239,38 @@ impl Composition {
         self.locate(point).is_held()
     }
 
-    /// The point of a part of a leaf's surface that is nearest to a point that is
-    /// seen from the leaf's anchor, with the normal that points out of the
-    /// composition.
+    /// The point of a hit, from the point relative to the leaf's anchor: the nearest point of
+    /// the part of the leaf's surface, with the normal that points out of the composition.
     ///
     /// # Panics
     /// When there is no such leaf.
     #[must_use]
     pub fn surface(
         &self,
-        met: &ComposedIntersection,
+        hit: &ComposedIntersection,
         from_anchor: impl FnOnce(DVec3) -> DVec3,
     ) -> SurfacePoint {
-        let solid = self.leaves()[met.leaf as usize];
-        let part = met.intersection.part;
+        let solid = self.leaves()[hit.leaf as usize];
+        let part = hit.intersection.part;
         let mut surface = solid.surface_point(part, from_anchor(solid.anchor()));
-        if met.is_reversed {
+        if hit.is_reversed {
             surface.normal = -surface.normal;
         }
         surface
     }
 
-    /// As [`SpawnMargin::of_solid`], of a point that [`Composition::surface`] returned.
+    /// As [`SpawnMargin::of_solid`], for a point that [`Composition::surface`] returned.
     ///
     /// # Panics
     /// When there is no such leaf.
     #[must_use]
-    pub fn spawn_margin(&self, met: &ComposedIntersection, surface: &SurfacePoint) -> SpawnMargin {
-        self.leaves()[met.leaf as usize].spawn_margin(surface)
+    pub fn spawn_margin(&self, hit: &ComposedIntersection, surface: &SurfacePoint) -> SpawnMargin {
+        self.leaves()[hit.leaf as usize].spawn_margin(surface)
     }
 }
 
-/// What is in the boxes of all operands of an intersection; [`Bounds::EMPTY`] if nothing is.
+/// The common part of the boxes of all operands of an intersection; [`Bounds::EMPTY`] if there
+/// is none.
 fn common_box(operands: &[Composition]) -> Bounds {
     let boxes = operands.iter().map(Composition::bounds);
     let common = boxes.reduce(|one, other| Bounds {

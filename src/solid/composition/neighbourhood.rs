@@ -1,31 +1,31 @@
 //! Classifies the neighbourhood of a point by the set operations.
 //!
 //! Surfaces that pass through a point `p` divide a small ball around it into open cells. In
-//! each of them every leaf is inside or outside, so the formula of the operations has one
-//! value there. The regularised set contains `p` if the value is true in some cell, and `p`
-//! is inside of it if it is true in all; a piece of a leaf's surface is part of the set's
-//! surface where the values on its two sides differ.
+//! each cell every leaf is inside or outside, so the formula of the operations has one value
+//! there. The regularized set contains `p` if the value is true in some cell, and `p` is
+//! interior if it is true in all. A piece of a leaf's surface is part of the set's surface if
+//! the values on its two sides differ.
 //!
-//! **Every cell is beside a piece**, so it is enough to look at both sides of each:
+//! **Every cell is beside a piece**, so it is enough to examine both sides of each piece:
 //!
 //! 1. *First order.* Seen from `p`, pieces are circles on the sphere of directions: great
-//!    circles for tangent planes, small ones for apexes ([`Piece`]). Pieces with one
-//!    tangent plane are one circle, a *group*. On the circle of each group the points where
-//!    others cross it, and those where the heights of its own members change their
-//!    order, leave arcs. One direction in each arc represents all of it: there
-//!    every other group is on one known side.
-//! 2. *Second order.* In a direction `v`, at the distance `s`, the plane across it is taken
-//!    at the scale `s²`. A piece whose circle contains `v` is a straight line there, with the
-//!    offset `h(v)` of its [`Bend`](super::bend::Bend). Members of one group are parallel lines, and what is
-//!    between two is a sliver between surfaces that touch. Where circles cross, also
-//!    three or more at one point, all their lines together divide that plane
-//!    (`across.rs`): so a face that cuts off nothing at first order, like a sphere
-//!    that touches an edge of a cuboid, is seen to do so.
+//!    circles for tangent planes, small ones for apexes ([`Piece`]). Pieces with one tangent
+//!    plane are one circle, a *group*. The points where other circles cross the circle of a
+//!    group, and those where the heights of its own members change their order, divide it into
+//!    arcs. One direction in each arc represents the whole arc: every other group is on one
+//!    known side there.
+//! 2. *Second order.* In a direction `v`, at the distance `s`, the plane across it is taken at
+//!    the scale `s²`. A piece whose circle contains `v` is a straight line there, with the
+//!    offset `h(v)` of its [`Bend`](super::bend::Bend). Members of one group are parallel
+//!    lines, and between two of them is a sliver between surfaces that touch. Where two or more
+//!    circles cross at one point, all their lines together divide that plane (`across.rs`).
+//!    This detects a face that cuts off nothing to first order, like a sphere that touches an
+//!    edge of a cuboid.
 //!
-//! Pieces that are equal to second order count as coinciding. In the planes, spheres,
-//! cylinders and cones of a composition they then are the same surface, or touch along a
-//! curve or in a point of third order, where neither is on one side of the other on
-//! both sides of the point; what is between them is thinner than any angle.
+//! Pieces that are equal to second order count as coinciding. Planes, spheres, cylinders and
+//! cones with this property are the same surface, or they touch along a curve or in a point of
+//! third order. There neither is on one side of the other on both sides of the point, and the
+//! gap between them is thinner than any angle.
 
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -40,7 +40,7 @@ use crate::solid::{Location, Part};
 /// A piece of the surface of a composition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Face {
-    /// The leaf that has it.
+    /// The leaf with this piece.
     pub leaf: u32,
     pub part: Part,
     /// Whether the composition is outside of the leaf there.
@@ -59,7 +59,7 @@ pub(super) struct Neighbourhood {
 }
 
 impl Neighbourhood {
-    /// What the regularised set has at the point.
+    /// The location of the point in the regularized set.
     pub fn location(&self) -> Location {
         match (self.has_inside, self.has_outside) {
             (true, true) => Location::Boundary,
@@ -79,7 +79,8 @@ impl Neighbourhood {
         }
     }
 
-    /// That of a point on the surface of one leaf alone: it is inside or outside of it.
+    /// The neighbourhood of a point on the surface of one leaf alone: one cell inside of the
+    /// leaf and one outside.
     pub fn of_one_leaf(
         leaf: u32,
         parts: impl IntoIterator<Item = Part>,
@@ -105,8 +106,8 @@ impl Neighbourhood {
         found
     }
 
-    /// That of a point on the surfaces of several. `leaves` contains for every other leaf
-    /// whether the point is inside of it, and `is_inside` evaluates the formula.
+    /// The neighbourhood of a point on the surfaces of several leaves. `leaves` has for every
+    /// other leaf whether the point is inside of it, and `is_inside` evaluates the formula.
     pub fn of_pieces(
         pieces: &Pieces,
         first_order: &impl FirstOrder,
@@ -127,7 +128,7 @@ impl Neighbourhood {
     }
 }
 
-/// The group of each piece, named by its first member.
+/// The group of each piece, given by its first member.
 fn groups(count: usize, first_order: &impl FirstOrder) -> SmallVec<[usize; 8]> {
     let mut groups = SmallVec::<[usize; 8]>::new();
     for index in 0..count {
@@ -141,7 +142,7 @@ struct Explorer<'a, A, F> {
     pieces: &'a Pieces,
     first_order: &'a A,
     groups: SmallVec<[usize; 8]>,
-    /// Of each piece, whether the cell is inside of it.
+    /// For each piece, whether the cell is inside of it.
     is_within: SmallVec<[bool; 8]>,
     leaves: &'a mut [bool],
     is_inside: F,
@@ -150,7 +151,7 @@ struct Explorer<'a, A, F> {
 
 impl<A: FirstOrder, F: Fn(&[bool]) -> bool> Explorer<'_, A, F> {
     fn explore(&mut self) {
-        // Faces in one plane, as at the mouth of a bore, have two sides and no more.
+        // Faces in one plane, as at the mouth of a bore, have only two sides.
         if self.groups.iter().all(|group| *group == 0) && self.pieces.iter().all(Piece::is_plane) {
             return self.compare(&Sides::of_plane(self.pieces), DVec3::ZERO);
         }
@@ -161,7 +162,7 @@ impl<A: FirstOrder, F: Fn(&[bool]) -> bool> Explorer<'_, A, F> {
         }
     }
 
-    /// Looks at both sides of the members of a group, all around.
+    /// Examines both sides of the members of a group, all around.
     fn explore_group(&mut self, group: usize) {
         let circle = Circle::new(&self.pieces[group]);
         let others: SmallVec<[usize; 8]> = (0..self.pieces.len())
@@ -169,16 +170,16 @@ impl<A: FirstOrder, F: Fn(&[bool]) -> bool> Explorer<'_, A, F> {
             .collect();
         let changes = self.changes(group, &circle);
         self.first_order
-            .each_place(&circle, group, &others, &changes, |place| self.look(place));
+            .for_each_place(&circle, group, &others, &changes, |place| self.look(place));
     }
 
-    /// The angles where members of a group change their order.
+    /// The angles at which members of a group change their order.
     fn changes(&self, group: usize, circle: &Circle) -> Angles {
         let (axes, mut angles) = ([circle.x, circle.y], Angles::new());
         if !self.pieces[group].is_flat_to_first_order() {
             return angles;
         }
-        // The members of the group, one of each surface.
+        // The members of the group, one for each surface.
         let mut distinct = SmallVec::<[&Piece; 8]>::new();
         for (piece, _) in (self.pieces.iter().zip(&self.groups)).filter(|(_, of)| **of == group) {
             if distinct.iter().any(|one| one.coincides_with(piece)) {
@@ -196,8 +197,8 @@ impl<A: FirstOrder, F: Fn(&[bool]) -> bool> Explorer<'_, A, F> {
         angles
     }
 
-    /// Looks at all cells around a place of a group's circle.
-    fn look(&mut self, place: &Place<A::Way>) {
+    /// Examines all cells around a place of a group's circle.
+    fn look(&mut self, place: &Place<A::Exact>) {
         let mut across = Across::new(place, self.first_order);
         for (index, piece) in self.pieces.iter().enumerate() {
             if place.groups.contains(&self.groups[index]) {
@@ -206,7 +207,7 @@ impl<A: FirstOrder, F: Fn(&[bool]) -> bool> Explorer<'_, A, F> {
                 self.is_within[index] = self.first_order.is_within(place, index);
             }
         }
-        across.each_border(|sides| self.compare(sides, place.direction));
+        across.for_each_border(|sides| self.compare(sides, place.direction));
     }
 
     /// Compares the cells on both sides of a line.
@@ -236,7 +237,7 @@ impl<A: FirstOrder, F: Fn(&[bool]) -> bool> Explorer<'_, A, F> {
                 let Some(part) = piece.part_towards(direction) else {
                     continue;
                 };
-                // Outside of the first line is the second side.
+                // The outer side of the first line is the second side.
                 self.found.add_face(Face {
                     leaf: piece.leaf,
                     part,
@@ -246,8 +247,8 @@ impl<A: FirstOrder, F: Fn(&[bool]) -> bool> Explorer<'_, A, F> {
         }
     }
 
-    /// Whether the pieces of a line are the same surface, not surfaces that touch along this
-    /// direction: of those each has its own sides in directions beside it.
+    /// Whether the pieces of a line are the same surface. If they are surfaces that touch along
+    /// this direction, each has sides of its own in the directions beside it.
     fn are_one_surface(&self, sides: &Sides) -> bool {
         let mut pieces = sides.on_the_line().map(|(index, _)| &self.pieces[index]);
         let first = pieces.next();

@@ -1,31 +1,31 @@
 //! The pieces of a leaf's surface that pass through a point.
 //!
-//! A leaf is convex, and near a point of its surface it is what all pieces there have
-//! inside of them: a face one, an edge two, a corner of a cuboid three. To first order a
-//! piece is the set of the directions `v` with
+//! A leaf is convex, and near a point of its surface it is the intersection of the insides of
+//! all pieces there: one for a face, two for an edge, three for a corner of a cuboid. To first
+//! order a piece is the set of the directions `v` with
 //!
 //! ```text
 //! v·n < k                                                                  (1)
 //! ```
 //!
-//! where `n` is the outward normal and `k = 0`; at the apex of a cone `n` points from the
-//! solid along the axis and `k` is minus the cosine of the angle between axis and wall. To
-//! second order a smooth piece has a [`Bend`].
+//! where `n` is the outward normal and `k = 0`. At the apex of a cone `n` points from the solid
+//! along the axis, and `k` is minus the cosine of the angle between axis and wall. To second
+//! order a smooth piece has a [`Bend`].
 //!
 //! **Which pieces pass through the point of a line** is decided by the displacement δ that
-//! `line.rs` derives: those within 2 δ of it. The same displacement bounds how far a normal
-//! may be turned: a plane whose points are displaced by δ over an extent `l` by `2 δ / l`,
-//! and the normal of a surface of radius `R` by `δ / R` more. Two normals count as parallel if
+//! `line.rs` derives: those within 2 δ of the point. The same displacement bounds how far a
+//! normal may be turned: for a plane whose points are displaced by δ over an extent `l`, by
+//! `2 δ / l`, and for a surface of radius `R` by `δ / R` more. Two normals count as parallel if
 //!
 //! ```text
 //! sin of the angle between them <= 2 θ, θ the greater of both              (2)
 //! ```
 //!
-//! A cuboid's normals are stated as unit vectors, whose `l` is 1. Curvatures are off by the
-//! share θ of themselves in the same way.
+//! A cuboid's normals are stated as unit vectors, with `l = 1`. Curvatures have the relative
+//! error θ in the same way.
 //!
-//! **Which pieces pass through a stated point** is decided exactly, and so is what their
-//! tangent planes divide (`planes.rs`).
+//! **Which pieces pass through a stated point** is decided exactly, and so is how their tangent
+//! planes divide the directions (`planes.rs`).
 
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -42,7 +42,7 @@ pub(super) struct Piece {
     /// The position of the leaf among the operands.
     pub leaf: u32,
     pub part: Part,
-    /// On a seam the direction from the sphere, which `part` is, into the wall.
+    /// On a seam, the direction from the sphere (the `part`) into the wall.
     pub to_wall: Option<DVec3>,
     /// `n` of (1), a unit vector.
     pub normal: DVec3,
@@ -53,16 +53,15 @@ pub(super) struct Piece {
     pub turned: f64,
 }
 
-/// The pieces at a point, those of a leaf side by side.
+/// The pieces at a point, grouped by leaf.
 pub(super) type Pieces = SmallVec<[Piece; 8]>;
 
-/// When a piece passes through a point.
+/// The condition for a piece to pass through a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Nearness<'a> {
-    /// When it is at most as far from the point, or has one of the parts that the solver
-    /// names.
+    /// Its distance from the point is at most this, or its part is one that the solver reports.
     Within { distance: f64, named: &'a [Part] },
-    /// When the point as stated is on it.
+    /// It contains the stated point exactly.
     Exactly(DVec3),
 }
 
@@ -70,7 +69,7 @@ pub(super) enum Nearness<'a> {
 pub(super) struct Viewed<'a> {
     pub leaf: u32,
     pub solid: &'a AnySolid,
-    /// The point, from the solid's anchor.
+    /// The point, relative to the solid's anchor.
     pub from_anchor: DVec3,
     /// δ of the point.
     pub displacement: f64,
@@ -83,7 +82,7 @@ impl Viewed<'_> {
         with_solid!(self.solid, solid => solid.add_pieces(self, pieces));
     }
 
-    /// Whether a part passes through the point that is at this distance from it.
+    /// Whether a part at this distance from the point passes through it.
     pub fn passes(&self, part: Part, distance: f64) -> bool {
         match self.nearness {
             Nearness::Within {
@@ -111,8 +110,8 @@ impl Viewed<'_> {
         }
     }
 
-    /// An apex from which the solid reaches along `axis`; the angle between them has the
-    /// cosine.
+    /// An apex from which the solid extends along `axis`. `cosine` is that of the angle between
+    /// axis and wall.
     pub fn apex(&self, part: Part, axis: DVec3, cosine: f64, turned: f64) -> Piece {
         Piece {
             cosine: -cosine,
@@ -122,8 +121,7 @@ impl Viewed<'_> {
 }
 
 impl Piece {
-    /// The part that it is in a direction of the tangent plane; `None` where that is along a
-    /// seam.
+    /// The part in a direction of the tangent plane; `None` if the direction is along a seam.
     pub fn part_towards(&self, direction: DVec3) -> Option<Part> {
         let Some(to_wall) = self.to_wall else {
             return Some(self.part);
@@ -138,7 +136,7 @@ impl Piece {
         }
     }
 
-    /// Whether two pieces are the same to first order: one plane, or one cone.
+    /// Whether two pieces are equal to first order: one plane, or one cone.
     pub fn is_tangent_to(&self, other: &Self) -> bool {
         let allowed = 2.0 * self.turned.max(other.turned);
         let is_parallel = self.normal.cross(other.normal).length() <= allowed;
@@ -150,7 +148,7 @@ impl Piece {
             }
     }
 
-    /// Whether two pieces are the same to second order.
+    /// Whether two pieces are equal to second order.
     pub fn coincides_with(&self, other: &Self) -> bool {
         let allowed = 2.0 * self.height_error().max(other.height_error());
         let sign = self.normal.dot(other.normal).signum();
@@ -163,7 +161,7 @@ impl Piece {
                 .all(|v| (self.bend.height(v) - sign * other.bend.height(v)).abs() <= 2.0 * allowed)
     }
 
-    /// Whether it has a tangent plane: all but an apex have.
+    /// Whether it has a tangent plane, that is, is not an apex.
     pub fn is_flat_to_first_order(&self) -> bool {
         self.cosine == 0.0
     }
@@ -173,7 +171,7 @@ impl Piece {
         self.is_flat_to_first_order() && self.bend.greatest() == 0.0
     }
 
-    /// By how much a height of the bend may be off.
+    /// The error bound of the bend's heights.
     pub fn height_error(&self) -> f64 {
         self.turned * self.bend.greatest()
     }

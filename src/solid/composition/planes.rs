@@ -1,21 +1,21 @@
 //! First order from exact normals.
 //!
-//! Pieces with tangent planes through one point divide the directions as their planes do. With
-//! an outward normal `n` of each ([`outward`](super::operand::outward)), of any length, all of
-//! that is signs of polynomials:
+//! The tangent planes through one point divide the directions. With an outward normal `n` of
+//! each ([`outward`](super::operand::outward)), of any length, all decisions are signs of
+//! polynomials:
 //!
 //! - Two pieces are one group if `n1 × n2 = 0`.
-//! - The plane of the group `g` is crossed by that of `j` in `±c`, `c = g × n_j`. Seen against
+//! - The plane of `j` crosses the plane of the group `g` in `±c`, `c = g × n_j`. Seen against
 //!   `g`, `c_k` is counterclockwise of `c_j` by less than half a turn if
-//!   `(c_j × c_k)·g = |g|² g·(n_j × n_k)` is positive, which is the sign of `c_j·n_k`. If it is
-//!   zero, they are one line.
-//! - Neighbouring crossings are less than half a turn apart, so that their sum is in the arc
-//!   between them. If there is one line alone, `±g × c` are in the arcs.
+//!   `(c_j × c_k)·g = |g|² g·(n_j × n_k)` is positive, which has the sign of `c_j·n_k`. If it
+//!   is zero, they are one line.
+//! - Neighbouring crossings are less than half a turn apart, so their sum is in the arc between
+//!   them. If there is only one line, `±g × c` are in the arcs.
 //! - A direction `v` is inside of a piece if `v·n < 0`.
 //!
-//! Directions in f64 serve for heights of second order alone. Where an arc is
-//! narrower than f64 resolves, they are that of its ends, and heights that differ by no more
-//! than their own errors coincide as everywhere.
+//! Directions in f64 are used only for heights of second order. If an arc is narrower than f64
+//! resolves, they are those of its ends, and heights that differ by no more than their own
+//! errors coincide as everywhere.
 
 use std::cmp::Ordering;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -36,14 +36,14 @@ pub(super) struct Planes(SmallVec<[Vector; 8]>);
 
 /// A direction in which other groups cross the circle of a group.
 struct Crossing {
-    way: Vector,
-    /// The normal of the first of them, so that `way` is `g ×` it.
+    direction: Vector,
+    /// The normal of the first of them, so that `direction` is `g ×` it.
     normal: Vector,
     groups: SmallVec<[usize; 4]>,
 }
 
 impl Planes {
-    /// Those of pieces at a stated point; `None` if an apex is among them.
+    /// The planes of pieces at a stated point; `None` if an apex is among them.
     pub fn at(point: DVec3, pieces: &Pieces, solids: &[&AnySolid]) -> Option<Self> {
         let normals = pieces.iter().map(|piece| {
             let solid = solids[piece.leaf as usize];
@@ -57,17 +57,17 @@ impl Planes {
         let mut half = SmallVec::<[Crossing; 8]>::new();
         for &other in others {
             let mut normal = self.0[other].clone();
-            let mut way = cross(&self.0[own], &normal);
-            // All of one half turn, from the first.
+            let mut direction = cross(&self.0[own], &normal);
+            // All are within half a turn from the first.
             let turn = half.first().map(|first| first.turn_to(&normal));
             if turn == Some(Ordering::Less) {
-                (normal, way) = (opposite(&normal), opposite(&way));
+                (normal, direction) = (opposite(&normal), opposite(&direction));
             }
             let found = half.iter_mut().find(|one| one.turn_to(&normal).is_eq());
             match found {
                 Some(one) => one.groups.push(other),
                 None => half.push(Crossing {
-                    way,
+                    direction,
                     normal,
                     groups: SmallVec::from_slice(&[own, other]),
                 }),
@@ -84,12 +84,12 @@ impl Crossing {
     /// Whether the crossing with a plane, `g ×` its normal, is counterclockwise (`Greater`) or
     /// clockwise of this one.
     fn turn_to(&self, normal: &Vector) -> Ordering {
-        sign(&dot(&self.way, normal))
+        sign(&dot(&self.direction, normal))
     }
 
     fn opposite(&self) -> Self {
         Self {
-            way: opposite(&self.way),
+            direction: opposite(&self.direction),
             normal: opposite(&self.normal),
             groups: self.groups.clone(),
         }
@@ -97,7 +97,7 @@ impl Crossing {
 }
 
 impl FirstOrder for Planes {
-    type Way = Vector;
+    type Exact = Vector;
     const IS_EXACT: bool = true;
 
     fn are_one(&self, one: usize, other: usize) -> bool {
@@ -105,7 +105,7 @@ impl FirstOrder for Planes {
         across.iter().all(|number| sign(number).is_eq())
     }
 
-    fn each_place(
+    fn for_each_place(
         &self,
         circle: &Circle,
         own: usize,
@@ -113,17 +113,17 @@ impl FirstOrder for Planes {
         changes: &Angles,
         mut look: impl FnMut(&Place<Vector>),
     ) {
-        let mut look = |direction: DVec3, way: &Vector, groups: &[usize]| {
+        let mut look = |direction: DVec3, exact: &Vector, groups: &[usize]| {
             look(&Place {
                 direction,
                 error: 0.0,
                 groups,
-                way: way.clone(),
+                exact: exact.clone(),
             });
         };
         let crossings = self.crossings(own, others);
         if crossings.is_empty() {
-            // All pieces are of the group, so that nothing depends on the way.
+            // All pieces are in the group, so the exact direction does not matter.
             let first = changes.first().copied().unwrap_or(0.0);
             for start in [first, first + PI] {
                 for angle in middles(start, PI, changes) {
@@ -136,23 +136,26 @@ impl FirstOrder for Planes {
             |direction: DVec3| libm::atan2(direction.dot(circle.y), direction.dot(circle.x));
         for (position, crossing) in crossings.iter().enumerate() {
             let next = &crossings[(position + 1) % crossings.len()];
-            let direction = unit(&crossing.way);
-            look(direction, &crossing.way, &crossing.groups);
+            let direction = unit(&crossing.direction);
+            look(direction, &crossing.direction, &crossing.groups);
             let start = angle(direction);
-            let (way, width) = if crossings.len() == 2 {
-                (cross(&self.0[own], &crossing.way), PI)
+            let (within, width) = if crossings.len() == 2 {
+                (cross(&self.0[own], &crossing.direction), PI)
             } else {
-                let width = reduced(angle(unit(&next.way)) - start);
-                (sum(&crossing.way, &next.way), width.clamp(0.0, PI))
+                let width = reduced(angle(unit(&next.direction)) - start);
+                (
+                    sum(&crossing.direction, &next.direction),
+                    width.clamp(0.0, PI),
+                )
             };
             for angle in middles(start, width, changes) {
-                look(circle.at(angle), &way, &[own]);
+                look(circle.at(angle), &within, &[own]);
             }
         }
     }
 
     fn is_within(&self, place: &Place<Vector>, piece: usize) -> bool {
-        sign(&dot(&place.way, &self.0[piece])).is_lt()
+        sign(&dot(&place.exact, &self.0[piece])).is_lt()
     }
 
     fn sine(&self, place: &Place<Vector>, one: usize, other: usize) -> Option<f64> {
@@ -162,10 +165,10 @@ impl FirstOrder for Planes {
             &dot(&across, &across),
             &dot(one, one).times(&dot(other, other)),
         );
-        // Sines below 2^-511 count as that: their order could matter only where three
+        // Sines below 2^-511 are replaced by that: their order could matter only where three
         // such planes bend, and the sign is exact.
         let size = square.max(f64::MIN_POSITIVE).sqrt();
-        Some(match sign(&dot(&place.way, &across)) {
+        Some(match sign(&dot(&place.exact, &across)) {
             Ordering::Less => -size,
             _ => size,
         })
@@ -186,8 +189,8 @@ fn middles(start: f64, width: f64, changes: &Angles) -> Angles {
         .collect()
 }
 
-/// An angle from an arc's start, in the turn whose middle is that of half a turn: roundings
-/// of what is within the arc stay next to it.
+/// An angle relative to an arc's start, in the turn around half a turn. An angle within the arc
+/// stays next to it in spite of rounding.
 fn reduced(angle: f64) -> f64 {
     angle - TAU * libm::floor((angle + FRAC_PI_2) / TAU)
 }

@@ -1,7 +1,7 @@
 //! First order from normals in f64, which may be turned.
 //!
 //! Every piece may be turned by its θ ([`Piece`]). Pieces whose normals differ by less are one
-//! circle, and crossings of a circle that may be one direction are one.
+//! circle, and crossings on a circle that may have one direction are one.
 
 use std::f64::consts::{PI, TAU};
 
@@ -16,12 +16,12 @@ use super::piece::{Piece, Pieces};
 /// Decides from the pieces alone.
 pub(super) struct Turned<'a>(pub &'a Pieces);
 
-/// Where a group is crossed by others.
+/// A crossing of a group's circle with others.
 struct Crossing {
     angle: f64,
-    /// By how much the angle may be off.
+    /// The error bound of the angle.
     error: f64,
-    /// The groups that contain the direction; none where only members change their order.
+    /// The groups that contain the direction; empty where only members change their order.
     groups: SmallVec<[usize; 4]>,
 }
 
@@ -32,7 +32,7 @@ impl Crossing {
     }
 
     fn merge(&mut self, other: Self) {
-        // The angle of two groups' crossing rather than one of a mere change of order.
+        // The angle of a crossing is preferred to that of a mere change of order.
         if self.groups.is_empty() {
             self.angle = other.angle;
         }
@@ -90,14 +90,14 @@ impl Turned<'_> {
 }
 
 impl FirstOrder for Turned<'_> {
-    type Way = ();
+    type Exact = ();
     const IS_EXACT: bool = false;
 
     fn are_one(&self, one: usize, other: usize) -> bool {
         self.0[one].is_tangent_to(&self.0[other])
     }
 
-    fn each_place(
+    fn for_each_place(
         &self,
         circle: &Circle,
         own: usize,
@@ -110,7 +110,7 @@ impl FirstOrder for Turned<'_> {
                 direction,
                 error,
                 groups,
-                way: (),
+                exact: (),
             });
         };
         let crossings = self.bounds(circle, own, others, changes);
@@ -140,12 +140,10 @@ impl FirstOrder for Turned<'_> {
     }
 }
 
-/// The angles of the directions of a circle that another piece has too, and by how much they
-/// may be off.
+/// The angles of a circle's directions that another piece has too, with their error bounds.
 ///
 /// On the circle `v·n' - k'` is `M cos(φ - φ0) - K`. A piece that is turned by θ moves the
-/// roots by `2 θ / (M sin(φ - φ0))`, and circles whose distance from touching is below `2 θ`
-/// touch.
+/// roots by `2 θ / (M sin(φ - φ0))`. Circles whose distance from touching is below `2 θ` touch.
 fn crossings(circle: &Circle, own: &Piece, other: &Piece) -> SmallVec<[(f64, f64); 2]> {
     let error = 2.0 * own.turned.max(other.turned);
     let (a, b) = (circle.x.dot(other.normal), circle.y.dot(other.normal));

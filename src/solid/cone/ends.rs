@@ -1,10 +1,10 @@
-//! What a cone and a rounded cone are between: two points with a radius each.
+//! The ends of a cone or a rounded cone: two points with a radius each.
 
 use glam::DVec3;
 
 use super::wall::{Fit, Taper};
 use crate::solid::Cylinder;
-use crate::solid::way::{Between, ExactWay};
+use crate::solid::offset::{Between, ExactOffset};
 
 /// Two points and the radius at either, all taken as exact numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub(in crate::solid) struct Ends {
     pub radius1: f64,
 }
 
-/// Why numbers are not a cone.
+/// Why numbers do not define a cone.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ConeError {
     /// A coordinate of an endpoint is NaN, infinite or beyond [`Cylinder::GREATEST`].
@@ -56,8 +56,8 @@ impl Ends {
     /// The ends of a solid.
     ///
     /// # Errors
-    /// When one of the numbers alone is out of range, or both radii are zero. The
-    /// points may coincide.
+    /// When one of the numbers is out of range, or both radii are zero. The points may
+    /// coincide.
     pub fn new(p0: DVec3, p1: DVec3, radius0: f64, radius1: f64) -> Result<Self, ConeError> {
         for (which, point) in [("p0", p0), ("p1", p1)] {
             if !Cylinder::is_in_range(point) {
@@ -75,13 +75,13 @@ impl Ends {
         Ok(Self {
             p0,
             p1,
-            // A radius of -0 is one of 0.
+            // Turns -0 into 0.
             radius0: radius0.abs(),
             radius1: radius1.abs(),
         })
     }
 
-    /// From the one point to the other, rounded.
+    /// The offset from the first point to the second, rounded.
     #[inline(always)]
     pub fn axis(&self) -> DVec3 {
         self.p1 - self.p0
@@ -92,13 +92,13 @@ impl Ends {
         self.axis().length()
     }
 
-    /// The length and the greater diameter together.
+    /// The sum of the length and the greater diameter.
     pub fn size(&self) -> f64 {
         self.length() + 2.0 * self.radius0.max(self.radius1)
     }
 
-    /// The same as [`Ends::taper`], with the axis as stated.
-    pub fn exact_taper(&self, fit: Fit) -> Taper<ExactWay> {
+    /// As [`Ends::taper`], with the exact axis.
+    pub fn exact_taper(&self, fit: Fit) -> Taper<ExactOffset> {
         let axis = Between {
             from: self.p0,
             to: self.p1,
@@ -111,7 +111,7 @@ impl Ends {
         }
     }
 
-    /// The cone's wall that belongs to them.
+    /// The cone's wall with these ends.
     #[inline(always)]
     pub fn taper(&self, fit: Fit) -> Taper {
         Taper {

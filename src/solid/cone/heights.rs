@@ -1,20 +1,20 @@
-//! Where the points of a line on a cone's wall lie between the two ends.
+//! The heights of a line's points on a cone's wall, compared with the two ends.
 //!
-//! Heights `y = x·a + t s`, `s = d·a`, are compared with those at which the wall
-//! ends: 0 and `|a|²` for a cone through two disks; for one that touches two balls
-//! the circles in which it does, at `-r0 Δ` and `|a|² - r1 Δ`, the seams.
+//! Heights `y = x·a + t s`, `s = d·a`, are compared with those at which the wall ends. For a
+//! cone through two disks these are 0 and `|a|²`. A cone that touches two balls touches them in
+//! circles, the seams, at `-r0 Δ` and `|a|² - r1 Δ`.
 //!
-//! At a root of the wall the rounded height is off by some u of its terms and by
-//! what `t` is off, at most 2^-29 of itself (`wall.rs`). Within [`NEAR`] of an end the
-//! question is settled exactly: with `Â = β A`, `B̂ = β B` and `Ê = |a|² E`, the roots
-//! are `t = (-B̂ ∓ √R) / Â`, `R = β |a|² Ê`, so that
+//! At a root of the wall the rounded height is off by some u of its terms and by the error of
+//! `t`, at most 2^-29 of itself (`wall.rs`). Within [`NEAR`] of an end the comparison is exact:
+//! with `Â = β A`, `B̂ = β B` and `Ê = |a|² E`, the roots are `t = (-B̂ ∓ √R) / Â`,
+//! `R = β |a|² Ê`, so that
 //!
 //! ```text
 //! (y - end) Â = P ∓ s √R,   P = (x·a - end) Â - s B̂
 //! ```
 //!
-//! and the sign of that follows from the signs of `P`, `s` and `P² - s² R`. So a line
-//! that touches a rim is not lost, and none slips through a seam.
+//! whose sign follows from the signs of `P`, `s` and `P² - s² R`. So a line that touches a rim
+//! is not lost, and none passes through a seam.
 
 use std::cmp::Ordering::{self, Equal, Greater, Less};
 
@@ -23,33 +23,34 @@ use glam::DVec3;
 use super::wall::{Fit, Measures, Taper, Term};
 use crate::math::power_of_two;
 use crate::solid::exact::{Expression, Number, dot, quotient, sign, vector};
-use crate::solid::way::Way;
+use crate::solid::offset::Offset;
 
-/// How near to an end rounded heights do not tell, relative to their terms.
+/// The distance from an end, relative to their terms, within which rounded heights are not
+/// decisive.
 pub(super) const NEAR: f64 = power_of_two(-28);
 
-/// Below this share of its terms a sum is computed exactly.
+/// The share of its terms below which a sum is computed exactly.
 pub(super) const CANCELS: f64 = power_of_two(-20);
 
-/// Which end of the wall.
+/// An end of the wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::solid) enum End {
-    /// That at `p0`.
+    /// The end at `p0`.
     First,
-    /// That at `p1`.
+    /// The end at `p1`.
     Second,
 }
 
-/// Which root of the wall.
+/// A root of the wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::solid) enum Root {
-    /// Where the line comes in.
+    /// Where the line enters.
     Enter,
-    /// Where it goes out.
+    /// Where the line leaves.
     Leave,
 }
 
-/// What rounded products make of a line as seen along the axis.
+/// A line as seen along the axis, from rounded products.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rounded {
     pub slope: f64,
@@ -58,7 +59,7 @@ pub(super) struct Rounded {
 
 impl Rounded {
     #[inline(always)]
-    pub fn new(taper: &Taper<impl Way>, x: DVec3, d: DVec3) -> Self {
+    pub fn new(taper: &Taper<impl Offset>, x: DVec3, d: DVec3) -> Self {
         let (a, delta) = (taper.axis(), taper.radius1 - taper.radius0);
         let (from_p0, from_p1) = (x.dot(a), (x - a).dot(a));
         let [seam0, seam1] = match taper.fit {
@@ -72,14 +73,14 @@ impl Rounded {
     }
 }
 
-/// The size of the terms of heights at `t = 0`, of a line that starts at a distance.
+/// The size of the terms of heights at `t = 0`, for a line whose origin is at a distance.
 #[inline(always)]
-pub(super) fn terms(taper: &Taper<impl Way>, distance: f64) -> f64 {
+pub(super) fn terms(taper: &Taper<impl Offset>, distance: f64) -> f64 {
     let (length, delta) = (taper.axis().length(), taper.radius1 - taper.radius0);
     length * (distance + length) + taper.radius0.max(taper.radius1) * delta.abs()
 }
 
-/// Where a line comes through the plane that it is so far above of at `t = 0`.
+/// The parameter at which a line crosses a plane, from its height above the plane at `t = 0`.
 #[inline(always)]
 pub(super) fn plane_at(above: f64, slope: f64) -> f64 {
     -above / slope
@@ -91,7 +92,7 @@ pub(in crate::solid) struct Heights<'a, A, X> {
     taper: &'a Taper<A>,
     x: X,
     d: DVec3,
-    /// What `t = 1` adds to the height; its sign is exact.
+    /// The change of the height per unit of `t`; its sign is exact.
     pub slope: f64,
     /// The heights above the ends at `t = 0`; their signs are exact.
     pub above: [f64; 2],
@@ -99,7 +100,7 @@ pub(in crate::solid) struct Heights<'a, A, X> {
     terms: f64,
 }
 
-impl<'a, A: Way, X: Way> Heights<'a, A, X> {
+impl<'a, A: Offset, X: Offset> Heights<'a, A, X> {
     pub fn new(taper: &'a Taper<A>, x: X, d: DVec3) -> Self {
         let terms = terms(taper, x.rounded().length());
         let checked = |rounded: f64, terms: f64, which| {
@@ -132,19 +133,19 @@ impl<'a, A: Way, X: Way> Heights<'a, A, X> {
         }
     }
 
-    /// Where the line comes through the plane across the axis at an end.
+    /// The parameter at which the line crosses the plane across the axis at an end.
     pub fn at(&self, end: End) -> f64 {
         plane_at(self.above(end), self.slope)
     }
 
-    /// How the height of a root, which is about at `t`, compares with an end.
+    /// Compares the height of a root, which is near `t`, with an end.
     pub fn compare(&self, root: Root, t: f64, end: End) -> Ordering {
-        let way = t * self.slope;
-        let height = self.above(end) + way;
-        if t.is_finite() && height.abs() <= NEAR * (self.terms + way.abs()) {
+        let rise = t * self.slope;
+        let height = self.above(end) + rise;
+        if t.is_finite() && height.abs() <= NEAR * (self.terms + rise.abs()) {
             return self.compare_exactly(root, end);
         }
-        // Out of the ranges of solids and rays it may be no number.
+        // NaN is possible outside of the ranges of solids and rays.
         height.partial_cmp(&0.0).unwrap_or(Equal)
     }
 
@@ -176,7 +177,7 @@ impl<'a, A: Way, X: Way> Heights<'a, A, X> {
     }
 }
 
-/// What is computed exactly.
+/// The exact quantities.
 #[derive(Clone, Copy, Debug)]
 enum Which {
     /// `s`.
@@ -200,7 +201,7 @@ struct At<'a, A, X> {
     which: Which,
 }
 
-impl<A: Way, X: Way> Expression for At<'_, A, X> {
+impl<A: Offset, X: Offset> Expression for At<'_, A, X> {
     fn value<N: Number>(&self) -> N {
         let taper = self.taper;
         let (a, x) = (taper.a.exactly::<N>(), self.x.exactly());

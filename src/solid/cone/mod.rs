@@ -1,4 +1,4 @@
-//! The truncated cone as users state it.
+//! The truncated cone as users define it.
 
 mod ends;
 pub(super) mod heights;
@@ -12,9 +12,9 @@ use glam::DVec3;
 
 use super::cylinder::{disk_reach, middle};
 use super::exact::{self, Expression, Number, difference, dot};
-use super::passing::Line;
+use super::offset::Offset;
 use super::quick::{Quick, Range};
-use super::way::Way;
+use super::reject::Line;
 use super::{
     Caps, Chord, ConvexSolid, Cylinder, Location, Part, RayOrigin, SolidKind, SurfacePoint,
     triple_product,
@@ -24,14 +24,13 @@ pub use ends::ConeError;
 pub(super) use ends::Ends;
 use wall::{Fit, Measures};
 
-/// The surface of a part of a circular cone: two endpoints, the radius at
-/// either and its caps, all taken as exact numbers.
+/// The surface of a part of a circular cone: two endpoints, the radius at each and its caps,
+/// all taken as exact numbers.
 ///
-/// With `a = p1 - p0`, the solid is the set of the points `x` of which the axial
-/// position `h = (x - p0)·a / |a|²` is in `[0, 1]` and whose distance to the
-/// line `p0 p1` is at most `radius0 + h (radius1 - radius0)`. The surface is its
-/// wall and those of its disks that `caps` names. One radius may be zero: the
-/// disk there is a point, the apex.
+/// With `a = p1 - p0`, the solid is the set of points `x` whose axial position
+/// `h = (x - p0)·a / |a|²` is in `[0, 1]` and whose distance from the line `p0 p1` is at most
+/// `radius0 + h (radius1 - radius0)`. The surface consists of its wall and those of its disks
+/// that `caps` names. One radius may be zero: the disk there is a point, the apex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
     ends: Ends,
@@ -59,7 +58,7 @@ impl Cone {
         Ok(Self { ends, caps })
     }
 
-    /// The cone of numbers that [`Cone::new`] accepted before.
+    /// The cone of numbers that [`Cone::new`] has accepted before.
     #[inline]
     pub(crate) fn from_valid(p0: DVec3, p1: DVec3, radius0: f64, radius1: f64, caps: Caps) -> Self {
         let ends = Ends {
@@ -164,7 +163,7 @@ impl ConvexSolid for Cone {
     }
 
     fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
-        let from_p0 = origin.way_from(self.ends.p0);
+        let from_p0 = origin.offset_from(self.ends.p0);
         if self.rejects(from_p0.rounded(), direction) {
             return None;
         }
@@ -176,7 +175,7 @@ impl ConvexSolid for Cone {
 
     #[inline(always)]
     fn rejects(&self, from_anchor: DVec3, direction: DVec3) -> bool {
-        Line::new(from_anchor, direction).passes_wall(&self.ends.taper(Fit::Disks))
+        Line::new(from_anchor, direction).misses_wall(&self.ends.taper(Fit::Disks))
     }
 
     #[inline(always)]
@@ -194,7 +193,7 @@ impl ConvexSolid for Cone {
         }
         let cone = self;
         let within = |limit| Location::of_sign(exact::sign(&Beyond { cone, point, limit }));
-        // The other nappe begins where the slab has ended.
+        // The other nappe is outside of the slab.
         let along = within(Limit::Disk0).min(within(Limit::Disk1));
         match along {
             Location::Outside => along,

@@ -1,32 +1,33 @@
-//! What rounded products make of a line and a cone's wall, and when that will do.
+//! The terms of a line and a cone's wall from rounded products, and when they are accurate
+//! enough.
 //!
-//! Each of `A`, `B`, `C` and `E` of `wall.rs` is a difference; the bounds of
-//! [`Bounds::new`] follow from `|δn| <= 3 u |a| |d|`, `|δm| <= 3 u |a| |x|`,
-//! `|δ(x × d)| <= 3 u |x| |d|` and `|δ(d·a)| <= 3 u |a| |d|`, u = 2^-53. Where
-//! one is too large for what the value is used for, which is rare but for lines that
-//! graze the wall or are nearly along it, all are computed from exact numbers: then
-//! their signs are exact, and their relative errors at most some ten u.
+//! Each of `A`, `B`, `C` and `E` of `wall.rs` is a difference. The bounds of [`Bounds::new`]
+//! follow from `|δn| <= 3 u |a| |d|`, `|δm| <= 3 u |a| |x|`, `|δ(x × d)| <= 3 u |x| |d|` and
+//! `|δ(d·a)| <= 3 u |a| |d|`, u = 2^-53. If an error is too large for the use of the value,
+//! which is rare except for lines that graze the wall or are nearly along it, all terms are
+//! computed from exact numbers. Then their signs are exact, and their relative errors at most
+//! some ten u.
 //!
-//! The rule is: an error of `A` or `B` below [`GOOD`] of the value, of `B` of the
-//! sum `|B| + s`, `s = |a|² √(E/β)`, that does not cancel. Of `E` the sign is needed,
-//! and of the root `s` what it adds to that sum: for an origin `k` sizes away the
-//! relative error of `E` is some `k u`, but `s` is a k-th of `|B|`. So an error of
-//! `E` that leaves the sign certain will do if it displaces the sum by less than
-//! [`GOOD_FROM_AFAR`] of it, and for a line that certainly misses, any.
+//! The rule is: the error of `A` is below [`GOOD`] of its value, and that of `B` below [`GOOD`]
+//! of the sum `|B| + s`, `s = |a|² √(E/β)`, that does not cancel. `E` contributes its sign, and
+//! the root `s` to that sum: for an origin `k` sizes away the relative error of `E` is about
+//! `k u`, but `s` is a k-th of `|B|`. So an error of `E` that leaves the sign certain is small
+//! enough if it displaces the sum by less than [`GOOD_FROM_AFAR`] of it. For a line that
+//! certainly misses, any error is.
 //!
-//! `x` and `a` may be rounded differences ([`Way`]). That adds u to the first, third and
-//! fourth of these bounds and 2 u to the second, so that errors are below twice the
-//! bounds. Exact numbers are those of the differences.
+//! `x` and `a` may be rounded differences ([`Offset`]). That adds u to the first, third and
+//! fourth of these bounds and 2 u to the second, so that errors are below twice the bounds.
+//! Exact numbers are then those of the differences.
 //!
-//! Of the two roots one has no cancellation in its sum `q`; where the other's terms
-//! cancel it is `C / q`, with an error of `C` below [`GOOD_CONSTANT_TERM`].
+//! One of the two roots has no cancellation in its sum `q`. If the terms of the other cancel,
+//! that root is `C / q`, with an error of `C` below [`GOOD_CONSTANT_TERM`].
 //!
 //! # Without roots
 //!
-//! The bounds take five roots. Simpler ones, which are above them, decide nearly all
-//! lines, and lanes have no others. With `R` = [`ROUNDINGS`] = 1.5 · 2^-49, `σ = Δ²/β`, `τ =
-//! (β + Δ²) / |a|²`, `X = |x|²`, `P = |a|² |d|²`, `F = |k|² + τ w²`, `M = |d| (r0 |a| + |Δ| |x|)`
-//! and `T = |x| |a| |d|`, the bounds are
+//! The bounds take five roots. Simpler ones, which are above them, decide nearly all lines, and
+//! are the only ones in lanes. With `R` = [`ROUNDINGS`] = 1.5 · 2^-49, `σ = Δ²/β`,
+//! `τ = (β + Δ²) / |a|²`, `X = |x|²`, `P = |a|² |d|²`, `F = |k|² + τ w²`,
+//! `M = |d| (r0 |a| + |Δ| |x|)` and `T = |x| |a| |d|`, the bounds are
 //!
 //! ```text
 //! |δA| <= R (2 + σ) P
@@ -35,9 +36,10 @@
 //! |δE| <= R (|k| M + τ |w| T + F + 3 u (M² + τ T²))
 //! ```
 //!
-//! for `|n|` and `|d·a|` are at most `√P`, `|m|` at most `|x| |a|`, and `|g|` at most `r0 |a|² +
-//! |Δ| |x| |a|`, but for some u of them. Since `(p + q)² <= (1 + η) p² + (1 + 1/η) q²` for any `η > 0`,
-//! `M²` is at most `2 K` with `K = |d|² (r0² |a|² + Δ² X)`, and
+//! since `|n|` and `|d·a|` are at most `√P`, `|m|` at most `|x| |a|`, and `|g|` at most
+//! `r0 |a|² + |Δ| |x| |a|`, except for some u of them. Since
+//! `(p + q)² <= (1 + η) p² + (1 + 1/η) q²` for any `η > 0`, `M²` is at most `2 K` with
+//! `K = |d|² (r0² |a|² + Δ² X)`, and
 //!
 //! ```text
 //! (|k| M + τ |w| T)² <= H = 10 |k|² K + 5/4 τ² w² T²
@@ -45,8 +47,8 @@
 //! |δE| <= R (L + 3 u G)
 //! ```
 //!
-//! with the lesser factors for the terms that are the greater ones of slender solids from afar.
-//! So all errors are below what the rule demands where
+//! with the lesser factors for the terms that are greater for slender solids from afar. So all
+//! errors are below what the rule requires if
 //!
 //! ```text
 //! (2 + σ) P < 2^12 |A|                                                     (6)
@@ -54,50 +56,49 @@
 //! 3 u G < E,    L² < 5376² E²    or    L² < 2^80 E²  and  L² < 20² (β/|a|⁴) E (|B| + s)²
 //! ```
 //!
-//! The factors are `2^12 R`, which is 3/4 of [`GOOD`]; `5377 R` for `E`, 0.985 of that; and for the
-//! last alternative `21 R`, 0.985 of [`GOOD_FROM_AFAR`], since `s² = |a|⁴ E/β`: what is left is
-//! more than the roundings of (6). Comparisons are strict, so that what overflows or is no
-//! number is not plain. `E` is above [`LEAST`], so that what `L²` loses to underflow is nothing.
+//! The factors are `2^12 R`, which is 3/4 of [`GOOD`]; `5377 R` for `E`, 0.985 of that; and for
+//! the last alternative `21 R`, 0.985 of [`GOOD_FROM_AFAR`], since `s² = |a|⁴ E/β`. The
+//! remainder exceeds the roundings of (6). Comparisons are strict, so that overflow and NaN are
+//! not plain. `E` is above [`LEAST`], so `L²` loses nothing that matters to underflow.
 //!
-//! **Rounded differences.** `x = o - p0` and `a = p1 - p0` may be off by u of each
-//! component, and `Δ` is by u. That adds u to each of the errors of `n`, `m`, `x × d` and
-//! `d·a` above (3 u becomes 4 u; 5 u and 6 u for `k` and `w` become 7 u and 8 u), and up to
-//! 4 u to that of `β`. `|δE|` is then at most `14 u |k| M + 16 u τ |w| T + 15 u F`, still below (5).
-//! In `A` and `C` the parts with `β` are off by 34 u at most, half as much again as `R`: (6) leaves
-//! the sign of `A` certain by a factor of 2^36. So the signs of `A` and `E` that (6)
-//! decides are those of the numbers that `o`, `p0` and `p1` give without rounding.
+//! **Rounded differences.** `x = o - p0` and `a = p1 - p0` may be off by u of each component,
+//! and `Δ` is off by u. That adds u to each of the errors of `n`, `m`, `x × d` and `d·a` above
+//! (3 u becomes 4 u; 5 u and 6 u for `k` and `w` become 7 u and 8 u), and up to 4 u to that of
+//! `β`. `|δE|` is then at most `14 u |k| M + 16 u τ |w| T + 15 u F`, still below (5). In `A`
+//! and `C` the parts with `β` are off by at most 34 u, half as much again as `R`: (6) leaves
+//! the sign of `A` certain by a factor of 2^36. So the signs of `A` and `E` that (6) decides
+//! are those of the numbers that `o`, `p0` and `p1` give without rounding.
 
 use glam::DVec3;
 
 use super::wall::{Roots, Taper};
 use crate::math::{UNIT_ROUNDOFF, power_of_two};
-use crate::solid::way::Way;
+use crate::solid::offset::Offset;
 
-/// The relative error up to which rounded products will do: a root then has less
-/// than 2^-11 of an ulp of f32.
+/// The relative error up to which rounded products are used: a root then has less than 2^-11 of
+/// an ulp of f32.
 const GOOD: f64 = power_of_two(-36);
 
-/// How much of the sum that does not cancel the error of `√E` may be: the point of a
-/// hit is then within 2^-44 of the way to it.
+/// The greatest share of the noncancelling sum that the error of `√E` may be: the hit point is
+/// then within 2^-44 of its distance from the origin.
 const GOOD_FROM_AFAR: f64 = power_of_two(-44);
 
-/// The relative error of `C`, which is that of a `t` near zero, up to which rounded
-/// products will do: as of the triple product's constant term, 30 bits are left, more
-/// than an f32 has.
+/// The relative error of `C`, and so of a `t` near zero, up to which rounded products are used:
+/// as for the triple product's constant term, 30 bits are left, more than an f32 has.
 const GOOD_CONSTANT_TERM: f64 = power_of_two(-30);
 
-/// The factor of all bounds: the roundings named above and those of further products and
-/// sums, at most 13 u, and of `β`, at most 10 u.
+/// The factor of all bounds: the roundings named above, those of further products and sums, at
+/// most 13 u, and those of `β`, at most 10 u.
 const ROUNDINGS: f64 = 24.0 * UNIT_ROUNDOFF;
 
-/// How many times the bounds are exceeded at most if `x` and `a` are rounded. Only the sign of
-/// `E` is decided so near to a bound that it matters.
+/// The factor by which errors may exceed the bounds if `x` and `a` are rounded. It matters only
+/// for the sign of `E`, which may be decided close to its bound.
 const INPUTS: f64 = 2.0;
 
-/// `E` up to this is not plain: products of it may have been lost to underflow.
+/// An `E` up to this is not plain: products of it may have been lost to underflow.
 const LEAST: f64 = power_of_two(-400);
 
-/// A rounded difference and a bound of its error.
+/// A rounded difference and its error bound.
 #[derive(Clone, Copy, Debug)]
 struct Difference {
     value: f64,
@@ -105,13 +106,13 @@ struct Difference {
 }
 
 impl Difference {
-    /// Whether the error is at most a share of the value, or the value no number.
+    /// Whether the error is at most a share of the value, or NaN.
     fn is_within(&self, share: f64) -> bool {
         !(share * self.value.abs() < self.error)
     }
 }
 
-/// What rounded products make of (2) and (4).
+/// The terms of (2) and (4) from rounded products.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rounded {
     radius0: f64,
@@ -139,7 +140,7 @@ pub(super) struct Rounded {
 impl Rounded {
     /// `beta` is `β` of the taper.
     #[inline(always)]
-    pub fn new(taper: &Taper<impl Way>, x: DVec3, d: DVec3, beta: f64) -> Self {
+    pub fn new(taper: &Taper<impl Offset>, x: DVec3, d: DVec3, beta: f64) -> Self {
         let (axis, radius0) = (taper.axis(), taper.radius0);
         let delta = taper.radius1 - radius0;
         let (aa, dd, xx) = (axis.dot(axis), d.dot(d), x.dot(x));
@@ -172,7 +173,7 @@ impl Rounded {
         }
     }
 
-    /// Whether the roots, but for `C`, are good by (6).
+    /// Whether the roots, apart from `C`, are accurate enough by (6).
     #[inline(always)]
     pub fn is_plain(&self) -> bool {
         const FAR: f64 = 3.0 * UNIT_ROUNDOFF;
@@ -204,9 +205,8 @@ impl Rounded {
         self.m.dot(self.m) - self.g * (self.g / self.beta)
     }
 
-    /// Bounds the error of [`Rounded::constant_term`], if that may be above
-    /// [`GOOD_CONSTANT_TERM`], and is zero otherwise. Of (5), with the 1.5 of `R` rounded
-    /// up to 2.
+    /// Bounds the error of [`Rounded::constant_term`] if that may be above
+    /// [`GOOD_CONSTANT_TERM`]; zero otherwise. From (5), with the 1.5 of `R` rounded up to 2.
     #[inline(always)]
     pub fn error_of_constant_term(&self) -> f64 {
         let sigma = self.delta * self.delta / self.beta;
@@ -216,7 +216,7 @@ impl Rounded {
         if is_good { 0.0 } else { error }
     }
 
-    /// `C` of (2), if it is good.
+    /// `C` of (2), if it is accurate enough.
     pub fn good_constant_term(&self) -> Option<f64> {
         let (aa, g) = (self.aa, self.g);
         let reach = self.xx.sqrt() * aa.sqrt();
@@ -238,7 +238,7 @@ fn at_most(one: f64, other: f64) -> f64 {
     if one < other { one } else { other }
 }
 
-/// The terms of [`Rounded`] with their bounds.
+/// The terms of [`Rounded`] with their error bounds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     a: Difference,
@@ -283,18 +283,18 @@ impl Bounds {
         Self { a, b, e, s }
     }
 
-    /// Whether the line certainly does not reach the wall.
+    /// Whether the line certainly misses the wall.
     pub fn rejects(&self) -> bool {
         self.e.value < -INPUTS * self.e.error
     }
 
-    /// Whether the roots, but for `C`, are good.
+    /// Whether the roots, apart from `C`, are accurate enough.
     pub fn is_good(&self) -> bool {
         let sum = |error| Difference {
             value: self.b.value.abs() + self.s,
             error,
         };
-        // A relative error of at most a quarter is less than doubled in the root.
+        // A relative error of at most a quarter less than doubles in the root.
         let of_root = self.s * (self.e.error / self.e.value);
         let is_root_good = self.e.is_within(GOOD)
             || self.e.is_within(0.25) && sum(of_root).is_within(GOOD_FROM_AFAR);

@@ -1,27 +1,27 @@
 //! Ray against cone: the wall's interval, cut by the disks.
 //!
-//! `wall.rs` finds where the line is inside the infinite wall; that is overlapped
-//! with the slab between the disks by where the roots lie to the disks' planes
-//! (`heights.rs`). The other nappe lies beyond the apex, so outside of the slab.
+//! `wall.rs` computes the interval in which the line is inside the infinite wall. Comparing the
+//! heights of its ends with the disks' planes (`heights.rs`) intersects it with the slab
+//! between the disks. The other nappe is beyond the apex, and so outside of the slab.
 
 use std::cmp::Ordering::{Equal, Greater, Less};
 
 use glam::DVec3;
 
 use super::heights::{End, Heights, Root};
-use super::wall::{Inside, Meets, Taper};
+use super::wall::{Inside, Taper, WallIntersection};
 use crate::solid::Part;
 use crate::solid::chord::{Chord, ChordEnd};
-use crate::solid::way::Way;
+use crate::solid::offset::Offset;
 
 /// The interval in which the line `p0 + x + t d` is inside the closed cone with this wall.
-pub(super) fn chord<A: Way>(taper: &Taper<A>, x: impl Way, d: DVec3) -> Option<Chord> {
-    let meets = taper.meets(x, d)?;
+pub(super) fn chord<A: Offset>(taper: &Taper<A>, x: impl Offset, d: DVec3) -> Option<Chord> {
+    let hit = taper.intersect(x, d)?;
     let heights = Heights::new(taper, x, d);
-    match meets {
-        Meets::Along => Some(along(&heights, Part::Side)),
-        Meets::Inside(inside) if heights.slope == 0.0 => across(&heights, inside),
-        Meets::Inside(inside) => oblique(&heights, inside),
+    match hit {
+        WallIntersection::Along => Some(along(&heights, Part::Side)),
+        WallIntersection::Inside(inside) if heights.slope == 0.0 => across(&heights, inside),
+        WallIntersection::Inside(inside) => oblique(&heights, inside),
     }
 }
 
@@ -33,8 +33,8 @@ fn part_at(end: End) -> Part {
     }
 }
 
-/// The ends in the order in which the line comes through their planes.
-fn in_order(heights: &Heights<impl Way, impl Way>) -> (End, End) {
+/// The ends in the order in which the line crosses their planes.
+fn in_order(heights: &Heights<impl Offset, impl Offset>) -> (End, End) {
     if heights.slope > 0.0 {
         (End::First, End::Second)
     } else {
@@ -42,8 +42,8 @@ fn in_order(heights: &Heights<impl Way, impl Way>) -> (End, End) {
     }
 }
 
-/// The chord of a line of the wall, from end to end; it lies on `part`.
-pub(in crate::solid) fn along(heights: &Heights<impl Way, impl Way>, part: Part) -> Chord {
+/// The chord of a ruling of the wall, from end to end; it lies on `part`.
+pub(in crate::solid) fn along(heights: &Heights<impl Offset, impl Offset>, part: Part) -> Chord {
     let (near, far) = in_order(heights);
     let rim = |end| ChordEnd {
         t: heights.at(end),
@@ -57,9 +57,9 @@ pub(in crate::solid) fn along(heights: &Heights<impl Way, impl Way>, part: Part)
     }
 }
 
-/// The chord of a line across the axis: from wall to wall at one height, which may
-/// be that of a disk.
-fn across(heights: &Heights<impl Way, impl Way>, inside: Inside) -> Option<Chord> {
+/// The chord of a line across the axis: from wall to wall at one height, which may be that of a
+/// disk.
+fn across(heights: &Heights<impl Offset, impl Offset>, inside: Inside) -> Option<Chord> {
     let [above0, above1] = heights.above;
     if above0 < 0.0 || above1 > 0.0 {
         return None;
@@ -84,9 +84,9 @@ fn across(heights: &Heights<impl Way, impl Way>, inside: Inside) -> Option<Chord
 }
 
 /// The chord of any other line.
-fn oblique(heights: &Heights<impl Way, impl Way>, inside: Inside) -> Option<Chord> {
+fn oblique(heights: &Heights<impl Offset, impl Offset>, inside: Inside) -> Option<Chord> {
     let (near, far) = in_order(heights);
-    // How far the line has come, as seen in its own direction.
+    // The height of a root compared with an end, in the direction of the line.
     let passed = |root, t, end| {
         let above = heights.compare(root, t, end);
         if heights.slope > 0.0 {
@@ -105,10 +105,10 @@ fn oblique(heights: &Heights<impl Way, impl Way>, inside: Inside) -> Option<Chor
         part: part_at(end),
         on_rim,
     };
-    // A root that is not cut off is on the wall, or on the rim of the disk through
-    // which the line would otherwise go the other way.
+    // A root that is not cut off is on the wall, or on the rim of the other disk, through which
+    // the line would pass in the other direction.
     let on_wall = |t, other, is_at_other| ChordEnd {
-        // The plane's, so that a line turned round has the same.
+        // The `t` of the plane, so that the reversed line has the same.
         t: if is_at_other { heights.at(other) } else { t },
         part: if is_at_other {
             part_at(other)
@@ -117,7 +117,7 @@ fn oblique(heights: &Heights<impl Way, impl Way>, inside: Inside) -> Option<Chor
         },
         on_rim: is_at_other,
     };
-    // A line that leaves where it enters only touches a rim; both ends are on it.
+    // A line that leaves where it enters only touches a rim; then both ends are on it.
     let (touches_near, touches_far) = (leave(near) == Equal, enter(far) == Equal);
     let enter = match enter(near) {
         Greater => on_wall(inside.enter, far, touches_far),
@@ -129,7 +129,7 @@ fn oblique(heights: &Heights<impl Way, impl Way>, inside: Inside) -> Option<Chor
     };
     Some(Chord {
         enter,
-        // At an edge the two may come out in the wrong order by a rounding.
+        // At an edge, rounding may put the two in the wrong order.
         leave: ChordEnd {
             t: leave.t.max(enter.t),
             ..leave

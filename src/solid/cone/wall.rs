@@ -1,4 +1,4 @@
-//! The infinite wall of a cone: where a line is inside it.
+//! The infinite wall of a cone, and the interval of a line inside it.
 //!
 //! With the axis `a = p1 - p0`, the radii `r0` and `r1`, `Δ = r1 - r0`, the ray
 //! `o + t d` and `x = o - p0`, let `n = a × d`, `m = a × x`, and count heights as
@@ -8,10 +8,10 @@
 //! β |m + t n|² <= (g + t h)²,   g = r0 |a|² + Δ (x·a),   h = Δ s           (1)
 //! ```
 //!
-//! and `g + t h >= 0`, which distinguishes its nappe from the other. `β = |a|²` is the cone
-//! through the rims of the disks of radius `r0` and `r1` (its radius at height
-//! `y` is `r0 + Δ y / |a|²`); `β = |a|² - Δ²` is the cone that touches the balls of
-//! these radii. Divided by `β`, (1) is `A t² + 2 B t + C <= 0` with
+//! and `g + t h >= 0`, which selects the nappe. `β = |a|²` is the cone through the rims of the
+//! disks of radius `r0` and `r1` (its radius at height `y` is `r0 + Δ y / |a|²`);
+//! `β = |a|² - Δ²` is the cone that touches the balls of these radii. Divided by `β`, (1) is
+//! `A t² + 2 B t + C <= 0` with
 //!
 //! ```text
 //! A = |n|² - h²/β,   B = m·n - g h/β,   C = |m|² - g²/β                    (2)
@@ -31,67 +31,64 @@
 //! E = |k|² - w² (β + Δ²) / |a|²,   t = (-B ∓ |a|² √(E/β)) / A              (4)
 //! ```
 //!
-//! Why this form: `n`, `w` and `k` (the moment of the line about the apex, times
-//! `Δ`) do not change when the origin slides along the ray, so no square of the
-//! distance enters `E` and is taken off again. For `Δ = 0` it is the triple
-//! product's `r0² |n|² - w²`.
+//! Why this form: `n`, `w` and `k` (the moment of the line about the apex, times `Δ`) do not
+//! change when the origin slides along the ray, so no square of the distance enters `E` and
+//! cancels later. For `Δ = 0`, `E` is the triple product's `r0² |n|² - w²`.
 //!
-//! `A` is positive for a line that is steeper to the axis than the wall: it is
-//! inside of one nappe between the roots. It is negative for one that is less
-//! steep, which is inside of both nappes all the way from a root, and zero for one
-//! parallel to a line of the wall; `h` says which of the half-lines is on the nappe
-//! of the solid.
+//! `A` is positive for a line that is steeper to the axis than the wall: it is inside of one
+//! nappe between the roots. `A` is negative for a less steep line, which is inside of each
+//! nappe from a root on, and zero for a line parallel to a ruling of the wall. `h` decides
+//! which of the half-lines is on the solid's nappe.
 //!
-//! Each of `A`, `B`, `C` and `E` is a difference. `rounded.rs` says when rounded
-//! products will do for it. Where they do not, it is computed from exact numbers: then
-//! its sign is exact, and its relative error at most some ten u, u = 2^-53. Of the two roots one
-//! has no cancellation in its sum `q`; where the other's terms cancel it is `C / q`.
+//! Each of `A`, `B`, `C` and `E` is a difference. `rounded.rs` decides whether rounded products
+//! are accurate enough for it. If they are not, it is computed from exact numbers: then its
+//! sign is exact, and its relative error at most some ten u, u = 2^-53. One of the two roots
+//! has no cancellation in its sum `q`; if the terms of the other cancel, that root is `C / q`.
 
 use glam::DVec3;
 
 use super::rounded::{Bounds, Rounded};
 use crate::solid::exact::{Expression, Number, cross, dot, quotient, vector};
-use crate::solid::way::Way;
+use crate::solid::offset::Offset;
 
-/// Which cone belongs to two radii.
+/// The cone for two radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::solid) enum Fit {
-    /// That through the rims of two disks.
+    /// The cone through the rims of two disks.
     Disks,
-    /// The one that touches two balls; neither contains the other.
+    /// The cone that touches two balls, neither of which contains the other.
     Balls,
 }
 
-/// The infinite wall, as seen from `p0`.
+/// The infinite wall, relative to `p0`.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solid) struct Taper<A = DVec3> {
-    /// The way from `p0` to `p1`.
+    /// The offset from `p0` to `p1`.
     pub a: A,
     pub radius0: f64,
     pub radius1: f64,
     pub fit: Fit,
 }
 
-/// The interval of `t` in which a line is inside the wall; either end may be
-/// infinite.
+/// The interval of `t` in which a line is inside the wall. Either end may be infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::solid) struct Inside {
-    /// Where it comes in.
+    /// Where the line enters.
     pub enter: f64,
-    /// Where it goes out.
+    /// Where the line leaves.
     pub leave: f64,
 }
 
-/// How a line lies to the wall.
+/// The intersection of a line with the wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::solid) enum Meets {
-    /// It is inside over an interval.
+pub(in crate::solid) enum WallIntersection {
+    /// The line is inside over an interval.
     Inside(Inside),
-    /// It is one of the lines that the wall is made of.
+    /// The line is a ruling of the wall.
     Along,
 }
 
-/// What the roots of (2) are made of.
+/// The terms of the roots of (2).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Roots {
     /// `A`.
@@ -103,7 +100,7 @@ pub(super) struct Roots {
 }
 
 impl Roots {
-    /// Of `A`, `B` and `E`, and of `|a|²` and `β`.
+    /// From `A`, `B` and `E`, and from `|a|²` and `β`.
     #[inline(always)]
     pub fn new([a, b, e]: [f64; 3], aa: f64, beta: f64) -> Self {
         let s = aa * (e / beta).sqrt();
@@ -129,8 +126,9 @@ impl Roots {
         sum.abs() < 0.5 * self.b.abs()
     }
 
-    /// The interval that they bound, on the nappe that `rises` in the line's direction if the
-    /// line is less steep than the wall. `constant_term` is called where terms cancel.
+    /// The interval between the roots, on the solid's nappe. `rises` is whether that nappe
+    /// extends in the line's direction, for a line that is less steep than the wall.
+    /// `constant_term` is called if terms cancel.
     #[inline(always)]
     pub fn inside(&self, rises: bool, constant_term: impl Fn() -> f64) -> Inside {
         let root = |sum: f64| {
@@ -158,7 +156,7 @@ impl Roots {
     }
 }
 
-impl<A: Way> Taper<A> {
+impl<A: Offset> Taper<A> {
     /// `a`, rounded.
     #[inline(always)]
     pub fn axis(&self) -> DVec3 {
@@ -175,7 +173,7 @@ impl<A: Way> Taper<A> {
         }
     }
 
-    /// `β` from rounded products, and whether it is [`Taper::beta`].
+    /// `β` from rounded products, and whether it equals [`Taper::beta`].
     #[inline(always)]
     pub fn rounded_beta(&self) -> (f64, bool) {
         let (aa, delta) = (self.axis().length_squared(), self.radius1 - self.radius0);
@@ -185,9 +183,9 @@ impl<A: Way> Taper<A> {
         }
     }
 
-    /// Where the line `x + t d` is inside the wall, on the solid's nappe if it is
-    /// less steep than the wall. `None` if nowhere, and for NaN.
-    pub fn meets(&self, x: impl Way, d: DVec3) -> Option<Meets> {
+    /// The intersection of the line `x + t d` with the wall, on the solid's nappe if the line
+    /// is less steep than the wall. `None` if it misses, and for NaN.
+    pub fn intersect(&self, x: impl Offset, d: DVec3) -> Option<WallIntersection> {
         if !(x.rounded().is_finite() && d.is_finite()) {
             return None;
         }
@@ -200,23 +198,23 @@ impl<A: Way> Taper<A> {
         let rises = h > 0.0;
         if roots.a == 0.0 {
             if roots.noncancelling() == 0.0 {
-                // In a plane that touches the wall, along a line of it or beside.
+                // In a plane that touches the wall: along a ruling, or beside it.
                 let is_along = self.constant_term(&rounded, x, d) == 0.0;
-                return is_along.then_some(Meets::Along);
+                return is_along.then_some(WallIntersection::Along);
             }
             if (roots.b < 0.0) != rises {
-                // Parallel to the wall it is inside of one nappe only: the other.
+                // Parallel to the wall, the line is inside of one nappe only: the other one.
                 return None;
             }
         }
-        Some(Meets::Inside(
+        Some(WallIntersection::Inside(
             roots.inside(rises, || self.constant_term(&rounded, x, d)),
         ))
     }
 
-    /// The roots and `h` of a line that is not plain; `None` if it does not reach the wall.
+    /// The roots and `h` of a line that is not plain; `None` if it misses the wall.
     #[inline(never)]
-    fn roots_of_hard_line<X: Way>(
+    fn roots_of_hard_line<X: Offset>(
         &self,
         rounded: &Rounded,
         x: X,
@@ -235,12 +233,12 @@ impl<A: Way> Taper<A> {
     }
 
     /// `C` of (2).
-    fn constant_term(&self, rounded: &Rounded, x: impl Way, d: DVec3) -> f64 {
+    fn constant_term(&self, rounded: &Rounded, x: impl Offset, d: DVec3) -> f64 {
         let c = rounded.good_constant_term();
         c.unwrap_or_else(|| self.exactly(Term::C, x, d, rounded.beta))
     }
 
-    fn exactly(&self, term: Term, x: impl Way, d: DVec3, beta: f64) -> f64 {
+    fn exactly(&self, term: Term, x: impl Offset, d: DVec3, beta: f64) -> f64 {
         let divisor = match term {
             Term::E => self.axis().length_squared(),
             Term::H => 1.0,
@@ -314,7 +312,7 @@ impl<N: Number> Measures<N> {
         self.radius0.times(&self.aa).plus(&self.delta.times(y))
     }
 
-    /// `β C`, for `m = a × x`: positive outside of both nappes.
+    /// `β C`, with `m = a × x`: positive outside of both nappes.
     pub fn outside(&self, a: &[N; 3], x: &[N; 3]) -> N {
         let (m, g) = (cross(a, x), self.g(&dot(x, a)));
         self.beta.times(&dot(&m, &m)).minus(&g.times(&g))
@@ -323,7 +321,7 @@ impl<N: Number> Measures<N> {
 
 struct Beta<'a, A>(&'a Taper<A>);
 
-impl<A: Way> Expression for Beta<'_, A> {
+impl<A: Offset> Expression for Beta<'_, A> {
     fn value<N: Number>(&self) -> N {
         self.0.measures(&self.0.a.exactly()).beta
     }
@@ -339,7 +337,7 @@ pub(in crate::solid) enum Term {
     H,
 }
 
-/// One of them.
+/// A term as an expression.
 pub(in crate::solid) struct Exactly<'a, A, X> {
     pub taper: &'a Taper<A>,
     pub x: X,
@@ -347,7 +345,7 @@ pub(in crate::solid) struct Exactly<'a, A, X> {
     pub term: Term,
 }
 
-impl<A: Way, X: Way> Expression for Exactly<'_, A, X> {
+impl<A: Offset, X: Offset> Expression for Exactly<'_, A, X> {
     fn value<N: Number>(&self) -> N {
         let x = self.x.exactly::<N>();
         self.taper.term(&x, &vector(self.d), self.term)

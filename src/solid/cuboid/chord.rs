@@ -7,57 +7,56 @@
 //! -h_i <= f_i·x + t f_i·d <= h_i                                           (1)
 //! ```
 //!
-//! so for `t` from one of `-(h_i + f_i·x) / f_i·d` and `(h_i - f_i·x) / f_i·d` to
-//! the other, the near and the far plane. The chord reaches from the greatest near
-//! `t` to the least far one. Where `f_i·d` is zero the axis either contains the whole
-//! line or none of it.
+//! so for `t` between `-(h_i + f_i·x) / f_i·d` and `(h_i - f_i·x) / f_i·d`, the near and the
+//! far plane in some order. The chord extends from the greatest near `t` to the least far one.
+//! If `f_i·d` is zero, the line is either inside or outside of the slab as a whole.
 //!
-//! Each numerator and denominator is a height over a plane, which `linear.rs`
-//! computes with the exact sign and so that a `t` is within [`MARGIN`] of itself. Two that differ by more are ordered by it. Where they do
-//! not, at edges and corners, and for a line within a face, the order of the planes
-//! is the sign of `N_i V_j - N_j V_i`, the difference of two quotients `N / V`
-//! without their division, from exact numbers. So the answer, hit or miss and which
-//! faces, is that of the exact numbers always.
+//! Each numerator and denominator is a height over a plane. `linear.rs` computes it with the
+//! exact sign, and such that a `t` is within [`MARGIN`] of itself. Two values of `t` that
+//! differ by more are in their order. For others, as at edges and corners, and for a line
+//! within a face, the order of the planes is the sign of `N_i V_j - N_j V_i`, the difference of
+//! two quotients `N / V` without their division, from exact numbers. So the result, hit or miss
+//! and which faces, is always that of the exact numbers.
 //!
-//! What both share: a point on several faces belongs to that of the first axis.
+//! In both cases a point on several faces belongs to that of the first axis.
 
 use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::Cuboid;
+use super::{Cuboid, FACES};
 use crate::solid::Part;
 use crate::solid::chord::{Chord, ChordEnd};
 use crate::solid::exact::{Expression, Number, dot, sign, vector};
 use crate::solid::linear::{self, MARGIN};
+use crate::solid::offset::Offset;
 use crate::solid::quick::{End, Quick, Range};
-use crate::solid::way::Way;
 
 /// One of the two planes of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Plane {
     axis: usize,
-    /// Whether it is the one at `+h`.
+    /// Whether it is the plane at `+h`.
     is_upper: bool,
-    /// Where the line meets it.
+    /// Where the line crosses it.
     t: f64,
 }
 
-/// How the line passes the planes of an axis.
+/// The position of the line relative to the two planes of an axis.
 #[derive(Clone, Copy, Debug)]
 enum Slab {
-    /// From the near to the far one.
+    /// It crosses both, the near one first.
     Crossed { near: Plane, far: Plane },
-    /// Along them, in between.
+    /// It runs between them, parallel.
     Along,
-    /// Within one of them.
+    /// It lies within one of them.
     Within(Part),
 }
 
 /// The chord of the line `center + x + t d`.
 #[inline]
-pub(super) fn chord(cuboid: &Cuboid, x: impl Way, d: DVec3) -> Option<Chord> {
-    // Zero times anything but a number is NaN.
+pub(super) fn chord(cuboid: &Cuboid, x: impl Offset, d: DVec3) -> Option<Chord> {
+    // Zero times infinity or NaN is NaN.
     if (x.rounded() + d).dot(DVec3::ZERO) != 0.0 {
         return None;
     }
@@ -134,9 +133,9 @@ fn are_apart(one: f64, other: f64) -> bool {
     (one - other).abs() > MARGIN * (one.abs() + other.abs())
 }
 
-/// `None` where the line is beside the slab.
+/// `None` if the line is outside of the slab.
 #[inline(always)]
-fn slab(cuboid: &Cuboid, axis: usize, x: impl Way, d: DVec3) -> Option<Slab> {
+fn slab(cuboid: &Cuboid, axis: usize, x: impl Offset, d: DVec3) -> Option<Slab> {
     let f = cuboid.axis(axis);
     let slope = linear::product(f, d);
     let [over_lower, under_upper] = linear::heights(f, x, cuboid.half_widths[axis]);
@@ -159,7 +158,7 @@ fn slab(cuboid: &Cuboid, axis: usize, x: impl Way, d: DVec3) -> Option<Slab> {
     })
 }
 
-/// Where a line meets the planes of an axis.
+/// The parameters at which a line crosses the planes of an axis.
 #[inline(always)]
 fn planes_at(slope: f64, [over_lower, under_upper]: [f64; 2]) -> [f64; 2] {
     [(0.0 - over_lower) / slope, under_upper / slope]
@@ -169,23 +168,17 @@ fn along(axis: usize, over_lower: f64, under_upper: f64) -> Option<Slab> {
     if over_lower < 0.0 || under_upper < 0.0 {
         None
     } else if over_lower == 0.0 {
-        Some(Slab::Within(PARTS[axis][0]))
+        Some(Slab::Within(FACES[axis][0]))
     } else if under_upper == 0.0 {
-        Some(Slab::Within(PARTS[axis][1]))
+        Some(Slab::Within(FACES[axis][1]))
     } else {
         Some(Slab::Along)
     }
 }
 
-const PARTS: [[Part; 2]; 3] = [
-    [Part::XMin, Part::XMax],
-    [Part::YMin, Part::YMax],
-    [Part::ZMin, Part::ZMax],
-];
-
 impl Plane {
     fn part(self) -> Part {
-        PARTS[self.axis][usize::from(self.is_upper)]
+        FACES[self.axis][usize::from(self.is_upper)]
     }
 }
 
@@ -197,10 +190,10 @@ fn end(t: f64, part: Part) -> ChordEnd {
     }
 }
 
-/// The same with every comparison from exact numbers.
+/// As [`chord`], with every comparison from exact numbers.
 #[cold]
 #[inline(never)]
-fn exact_chord<W: Way>(cuboid: Cuboid, x: W, d: DVec3, slabs: [Slab; 3]) -> Option<Chord> {
+fn exact_chord<W: Offset>(cuboid: Cuboid, x: W, d: DVec3, slabs: [Slab; 3]) -> Option<Chord> {
     let line = Line { cuboid, x, d };
     let crossed = || {
         slabs.iter().filter_map(|slab| match *slab {
@@ -208,7 +201,7 @@ fn exact_chord<W: Way>(cuboid: Cuboid, x: W, d: DVec3, slabs: [Slab; 3]) -> Opti
             Slab::Along | Slab::Within(_) => None,
         })
     };
-    // Of equals the first axis.
+    // The first axis wins ties.
     let enter = crossed().map(|(near, _)| near).reduce(|latest, near| {
         if line.compare(near, latest) == Ordering::Greater {
             near
@@ -228,7 +221,7 @@ fn exact_chord<W: Way>(cuboid: Cuboid, x: W, d: DVec3, slabs: [Slab; 3]) -> Opti
         return None;
     }
     let part_at = |plane: Plane| {
-        let holding = slabs.iter().find_map(|slab| match *slab {
+        let containing = slabs.iter().find_map(|slab| match *slab {
             Slab::Crossed { near, far } => [near, far]
                 .into_iter()
                 .find(|other| line.compare(*other, plane) == Ordering::Equal)
@@ -236,14 +229,14 @@ fn exact_chord<W: Way>(cuboid: Cuboid, x: W, d: DVec3, slabs: [Slab; 3]) -> Opti
             Slab::Along => None,
             Slab::Within(part) => Some(part),
         });
-        holding.unwrap_or(plane.part())
+        containing.unwrap_or(plane.part())
     };
     let lies_on = slabs.iter().find_map(|slab| match *slab {
         Slab::Within(part) => Some(part),
         Slab::Crossed { .. } | Slab::Along => None,
     });
-    // Told alike from either side: that of the first axis, or the middle where
-    // two that are next to each other come out in the wrong order.
+    // The same from either side: the `t` of the first axis, or the middle of two neighbouring
+    // values in the wrong order.
     let [t_enter, t_leave] = if order == Ordering::Equal {
         [if enter.axis < leave.axis {
             enter
@@ -269,8 +262,8 @@ struct Line<W> {
     d: DVec3,
 }
 
-impl<W: Way> Line<W> {
-    /// How the parameters of two planes compare that the line crosses.
+impl<W: Offset> Line<W> {
+    /// Compares the parameters at which the line crosses two planes.
     fn compare(&self, one: Plane, other: Plane) -> Ordering {
         if one == other {
             return Ordering::Equal;
@@ -296,7 +289,7 @@ struct Order<'a, W> {
     other: Plane,
 }
 
-impl<W: Way> Expression for Order<'_, W> {
+impl<W: Offset> Expression for Order<'_, W> {
     fn value<N: Number>(&self) -> N {
         let (x, d) = (self.line.x.exactly::<N>(), vector(self.line.d));
         let cuboid = &self.line.cuboid;

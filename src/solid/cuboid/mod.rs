@@ -1,7 +1,7 @@
-//! The cuboid as users state it.
+//! The cuboid as users define it.
 
 mod chord;
-mod passing;
+mod reject;
 
 use glam::DVec3;
 
@@ -11,16 +11,15 @@ use super::surface::FirstParameter;
 use super::{Chord, ConvexSolid, Cylinder, Location, Part, RayOrigin, SolidKind, SurfacePoint};
 use crate::math::{Bounds, Orientation, UNIT_ROUNDOFF, power_of_two};
 
-/// A box that may be turned: its center, half of its width along each of its own
-/// axes, and its orientation, all taken as exact numbers.
+/// A box in any orientation: its center, half of its width along each of its own axes, and its
+/// orientation, all taken as exact numbers.
 ///
-/// With `f` the columns of [`Orientation::world_from_object`], the solid is
-/// `{x : |f_i · (x - center)| <= half_widths_i}` and the surface its boundary, six
-/// faces named by their own axis and side. The columns of a turned cuboid are
-/// orthonormal to within roundings, and taken as they are.
+/// With `f` the columns of [`Orientation::world_from_object`], the solid is `{x : |f_i · (x -
+/// center)| <= half_widths_i}`. The surface is its boundary, six faces named by their own axis
+/// and side. The columns of a turned cuboid are orthonormal to within roundings, and are taken
+/// as they are.
 ///
-/// A point on an edge or a corner belongs to the face that is first of x, y, z,
-/// whichever way a ray passes.
+/// A point on an edge or a corner belongs to the face that is first of x, y, z, for every ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid {
     center: DVec3,
@@ -28,7 +27,7 @@ pub struct Cuboid {
     orientation: Orientation,
 }
 
-/// Why numbers are not a cuboid.
+/// Why numbers do not define a cuboid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CuboidError {
     /// A coordinate of the center is NaN, infinite or beyond [`Cylinder::GREATEST`].
@@ -37,7 +36,7 @@ pub enum CuboidError {
         /// The center as given.
         center: DVec3,
     },
-    /// A half width is not a number in [`Cylinder::LEAST`, `Cylinder::GREATEST`].
+    /// A half width is not in [`Cylinder::LEAST`, `Cylinder::GREATEST`].
     #[error(
         "the half width along {axis} is {half_width:?}: it must be a positive number between {:.1e} and {:.1e}",
         Cylinder::LEAST,
@@ -52,7 +51,7 @@ pub enum CuboidError {
 }
 
 impl Cuboid {
-    /// The cuboid around `center` that reaches `half_widths` along its own axes.
+    /// The cuboid around `center` with these half widths along its own axes.
     ///
     /// # Errors
     /// When a number is not finite or out of range.
@@ -72,7 +71,7 @@ impl Cuboid {
         Ok(Self::from_valid(center, half_widths, orientation))
     }
 
-    /// The cuboid of numbers that [`Cuboid::new`] accepted before.
+    /// The cuboid of numbers that [`Cuboid::new`] has accepted before.
     #[inline]
     pub(crate) fn from_valid(center: DVec3, half_widths: DVec3, orientation: Orientation) -> Self {
         Self {
@@ -94,7 +93,7 @@ impl Cuboid {
         self.half_widths
     }
 
-    /// Which way it is turned.
+    /// The orientation.
     #[must_use]
     pub fn orientation(&self) -> Orientation {
         self.orientation
@@ -110,10 +109,10 @@ impl Cuboid {
 impl ConvexSolid for Cuboid {
     const KIND: SolidKind = SolidKind::Cuboid;
 
-    /// A corner is `center + F⁻¹ y`, `F` the matrix of the rows `f_i` and `|y_i| =
-    /// h_i`. With `M` the transpose of `F`, `F⁻¹` is `M` but for the part by which it is
-    /// not orthonormal, at most 6 u of the length of y ([`Orientation`]); products
-    /// and sums add 4 u. Where the axes are the world's none of this is there.
+    /// A corner is `center + F⁻¹ y`, `F` the matrix of the rows `f_i` and `|y_i| = h_i`. With
+    /// `M` the transpose of `F`, `F⁻¹` is `M` except for its deviation from orthonormality, at
+    /// most 6 u of the length of y ([`Orientation`]); products and sums add 4 u. If the axes
+    /// are the world's, these errors are zero.
     fn bounds(&self) -> Bounds {
         let half_widths = self.half_widths;
         let reach = self.orientation.world_from_object().abs() * half_widths;
@@ -147,7 +146,7 @@ impl ConvexSolid for Cuboid {
     }
 
     fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
-        chord::chord(self, origin.way_from(self.center), direction)
+        chord::chord(self, origin.offset_from(self.center), direction)
     }
 
     #[inline(always)]
@@ -157,16 +156,16 @@ impl ConvexSolid for Cuboid {
 
     #[inline(always)]
     fn rejects(&self, from_anchor: DVec3, direction: DVec3) -> bool {
-        passing::rejects(self, from_anchor, direction)
+        reject::rejects(self, from_anchor, direction)
     }
 
-    /// `u` and `v` are the two coordinates of the face, in the order y z for a face
-    /// of x, z x for one of y and x y for one of z, from 0 at the least to 1.
+    /// `u` and `v` are the two coordinates of the face, from 0 at the least to 1: y and z for a
+    /// face of x, z and x for a face of y, x and y for a face of z.
     ///
-    /// With `y` the point in own coordinates, one of which is `±h` and the others
-    /// within `±h`, the true point of the face is `center + F⁻¹ y`. `M y` is off by 6 u
-    /// of the length of `y` for `M` (see [`Cuboid::bounds`]) and 6 u for its products
-    /// and sums, and the sum with the center by u of the point.
+    /// Let `y` be the point in own coordinates: one of them is `±h`, the others are within
+    /// `±h`. The true point of the face is `center + F⁻¹ y`. `M y` is off by 6 u of the length
+    /// of `y` for `M` (see [`Cuboid::bounds`]) and by 6 u for its products and sums, and the
+    /// sum with the center by u of the point.
     fn surface_point(&self, part: Part, from_anchor: DVec3) -> SurfacePoint {
         let (axis, is_upper) = face(part);
         let half_widths = self.half_widths;
@@ -209,14 +208,14 @@ impl ConvexSolid for Cuboid {
     }
 
     fn size(&self) -> f64 {
-        // The diagonal, and what `bounds` adds to it.
+        // The diagonal, and the growth of `bounds`.
         2.0 * self.half_widths.length() * (1.0 + 64.0 * UNIT_ROUNDOFF)
     }
 }
 
 impl Cuboid {
-    /// Whether a point is between the planes of an axis. Rounded numbers, which are
-    /// off by less than 6 u of their terms, decide where they do by 2^-48.
+    /// The location of a point relative to the planes of an axis. Rounded numbers are off by
+    /// less than 6 u of their terms; they decide beyond 2^-48 of them.
     fn locate_along(&self, axis: usize, point: DVec3) -> Location {
         let (terms, half_width) = (
             self.axis(axis) * (point - self.center),
@@ -244,7 +243,7 @@ impl Cuboid {
     }
 }
 
-/// `h - side f·(point - center)`: how far a point is within a plane.
+/// `h - side f·(point - center)`: the depth of a point below a plane.
 struct Height<'a> {
     cuboid: &'a Cuboid,
     axis: usize,
@@ -259,6 +258,13 @@ impl Expression for Height<'_> {
         N::of(self.cuboid.half_widths[self.axis]).minus(&dot(&f, &x))
     }
 }
+
+/// The lower and the upper face across each axis.
+pub(super) const FACES: [[Part; 2]; 3] = [
+    [Part::XMin, Part::XMax],
+    [Part::YMin, Part::YMax],
+    [Part::ZMin, Part::ZMax],
+];
 
 /// The axis of a face, and whether it is the upper one.
 fn face(part: Part) -> (usize, bool) {

@@ -1,4 +1,4 @@
-//! Numbers of any length: sums, differences and products are exact.
+//! Numbers of any length, with exact sums, differences and products.
 
 use std::cmp::Ordering;
 
@@ -19,13 +19,13 @@ impl Big {
     }
 }
 
-/// The quotient of two numbers, within some units of 2^-53 of it if it does not underflow.
+/// The quotient of two numbers, within some units of 2^-53 of itself if it does not underflow.
 pub(in crate::solid) fn ratio(dividend: &Big, divisor: &Big) -> f64 {
     let long = |x: &Big| x.0.clone().with_precision(128).value();
     (long(dividend) / long(divisor)).to_f64().value()
 }
 
-/// The unit vector of a direction that is not zero, within some units of 2^-53.
+/// The unit vector of a nonzero direction, within some units of 2^-53.
 pub(in crate::solid) fn unit(direction: &[Big; 3]) -> DVec3 {
     let is_less = |a: &Big, b: &Big| a.minus(b).sign() == Some(Ordering::Less);
     let zero = Big::of(0.0);

@@ -1,26 +1,25 @@
-//! Double-doubles that know how far off they may be.
+//! Double-doubles with an error bound.
 //!
-//! `value` is within `error` of the number meant. Sums of the double-double
-//! format are within `4 · 2^-106` of the sum of the sizes, products within
-//! `8 · 2^-106` of the product of the sizes. Both constants are doubled here,
-//! which covers the roundings of the bounds themselves. What is exact stays
-//! known to be: products of plain f64s, and differences that vanish.
+//! `value` is within `error` of the exact number. Sums of the double-double format are within
+//! `4 · 2^-106` of the sum of the sizes, products within `8 · 2^-106` of the product of the
+//! sizes. Both constants are doubled here, which covers the roundings of the bounds themselves.
+//! Exact results keep an error of zero: products of plain f64s, and differences that vanish.
 
 use std::cmp::Ordering;
 
 use super::Number;
 use crate::math::{DoubleDouble, power_of_two};
 
-/// Twice the relative error of a sum, of the sizes of its terms.
+/// Twice the error of a sum, relative to the sizes of its terms.
 const SUM_ERROR: f64 = power_of_two(-103);
 
 /// Twice the relative error of a product.
 const PRODUCT_ERROR: f64 = power_of_two(-102);
 
-/// A product below this in size could have lost low bits to underflow.
+/// A product below this size may have lost low bits to underflow.
 const LEAST_PRODUCT: f64 = power_of_two(-900);
 
-/// A double-double and a bound of its error.
+/// A double-double and its error bound.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounded {
     pub value: DoubleDouble,
@@ -103,8 +102,8 @@ impl Number for Bounded {
 
     fn sign(&self) -> Option<Ordering> {
         let high = self.value.high;
-        // The low word is below an ulp of the high one; half is generous. A
-        // product that overflowed is not a number and has no sign.
+        // The low word is below an ulp of the high one, so half of the high word is a safe
+        // bound. A product that overflowed is NaN and has no sign.
         if 0.5 * high.abs() > self.error {
             high.partial_cmp(&0.0)
         } else if high == 0.0 && self.error == 0.0 {
@@ -121,8 +120,8 @@ mod tests {
     use super::*;
     use crate::math::Random;
 
-    /// Random expressions in both number types: the big one is within the
-    /// bound of the bounded one.
+    /// Evaluates random expressions in both number types: the exact one is within the error
+    /// bound.
     #[test]
     fn bounds_hold_for_random_expressions() {
         let mut random = Random::new(77, 0);

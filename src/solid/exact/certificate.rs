@@ -1,8 +1,8 @@
-//! When the f64 solver is certainly right.
+//! The certificate that the f64 solver is right.
 //!
-//! The quantities of `triple_product` and bounds of how far they are off, with
-//! u = 2^-53, `A = |a|`, `X = |x|`, `K = |a| |d|`, `N = |n|`. `a` and `x` are rounded
-//! differences, relative error u each:
+//! The quantities of `triple_product` and their error bounds, with u = 2^-53, `A = |a|`,
+//! `X = |x|`, `K = |a| |d|`, `N = |n|`. `a` and `x` are rounded differences, with a relative
+//! error of u each:
 //!
 //! | quantity | bound | from |
 //! |---|---|---|
@@ -17,27 +17,26 @@
 //! | `x·a`, `d·a`, `a·a` | `5 u A X`, `4 u K`, `5 u A²` | products, sums, a and x |
 //!
 //! A quotient `p / q` with `E_q <= |q| / 4` is off by at most
-//! `4/3 (E_p + |p/q| E_q) / |q| + u |p/q|`. All bounds are taken once more for the
-//! roundings of the bounds themselves, by the factor [`MARGIN`].
+//! `4/3 (E_p + |p/q| E_q) / |q| + u |p/q|`. The factor [`MARGIN`] covers the roundings of the
+//! bounds themselves.
 //!
-//! The bounds are written for speed, as they are computed for every ray: for
-//! the lengths of `x` and `d` stand the sums of their components' sizes, which
-//! are at most √3 times as long and take no root.
-
-use glam::DVec3;
+//! The bounds are written for speed, as they are computed for every ray: the sums of the
+//! components' sizes replace the lengths of `x` and `d`. They are at most √3 times as long and
+//! take no root.
 
 use super::ExactHit;
 use super::decide::At;
 use crate::math::{Ray, UNIT_ROUNDOFF as U};
+use crate::solid::linear::sum_of_sizes;
 use crate::solid::slab::Slab;
 use crate::solid::triple_product::{self, Axis, Line, Quotient, Root, Roots, StatedAxis};
 use crate::solid::{Crossing, Cylinder, Part};
 
-/// Room for the roundings of the bounds, some 30 operations of positive
-/// numbers each: 1 + 2^-40 would do.
+/// Room for the roundings of the bounds, some 30 operations of positive numbers each: 1 + 2^-40
+/// would suffice.
 const MARGIN: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 
-/// A number and the bound of its error.
+/// A number and its error bound.
 #[derive(Clone, Copy)]
 struct Near {
     value: f64,
@@ -70,25 +69,24 @@ impl Near {
     }
 }
 
-/// Where a line is inside the wall and between the disks, with bounds.
+/// The intersections of a line with the wall and the disks' planes, with error bounds.
 struct Certifier<'a> {
     cylinder: &'a Cylinder,
     ray: &'a Ray,
     roots: Roots<f64, StatedAxis<f64>>,
     slab: Slab<f64>,
     nn: Near,
-    /// The bound of a sum `-(m·n) ∓ s`.
+    /// The error bound of a sum `-(m·n) ∓ s`.
     sum_error: f64,
-    /// The bound of the constant term.
+    /// The error bound of the constant term.
     constant_error: f64,
-    /// The bound of `x·a` and of the roundings of a height, `t` and the slope
-    /// apart.
+    /// The error bound of `x·a` and of the roundings of a height, apart from `t` and the slope.
     position_error: f64,
-    /// The bound of `d·a`.
+    /// The error bound of `d·a`.
     slope_error: f64,
 }
 
-/// Where a height is between the disks, in the ray's direction.
+/// The position of a height relative to the disks, in the ray's direction.
 #[derive(Clone, Copy, PartialEq)]
 enum Height {
     Before,
@@ -96,7 +94,7 @@ enum Height {
     Beyond,
 }
 
-/// The exact answer, if what the f64 solver computes certainly gives it.
+/// The exact result, if the numbers of the f64 solver prove it.
 #[inline(always)]
 pub(super) fn first(cylinder: &Cylinder, ray: &Ray) -> Option<Option<ExactHit>> {
     let (x, d) = (ray.origin - cylinder.p0(), ray.direction);
@@ -140,11 +138,6 @@ pub(super) fn first(cylinder: &Cylinder, ray: &Ray) -> Option<Option<ExactHit>> 
     .first()
 }
 
-#[inline(always)]
-fn sum_of_sizes(v: DVec3) -> f64 {
-    v.x.abs() + v.y.abs() + v.z.abs()
-}
-
 impl Certifier<'_> {
     /// The first end that is on the surface and in range.
     #[inline(always)]
@@ -180,7 +173,7 @@ impl Certifier<'_> {
             Height::Inside => (root, At::SecondRoot, Part::Side),
             Height::Beyond => self.disk(!self.is_forward())?,
         };
-        // The solver puts ends that a rounding swapped in order.
+        // The solver reorders ends that rounding has swapped.
         let t = Near {
             value: t.value.max(enter.value),
             error: t.error + (enter.value - t.value).max(0.0),
@@ -188,7 +181,7 @@ impl Certifier<'_> {
         self.hit(t, at, part, Crossing::Leave)
     }
 
-    /// Whether the line comes through the disk at `p0` first.
+    /// Whether the line passes the plane of the disk at `p0` first.
     #[inline(always)]
     fn is_forward(&self) -> bool {
         self.slab.slope > 0.0
@@ -218,8 +211,8 @@ impl Certifier<'_> {
         sum.over(self.nn)
     }
 
-    /// Where the line is at a root. A height outside of the slab is certain
-    /// only if the sign of `d·a` is: it says which disk is meant.
+    /// The position of the line at a root. A height outside of the slab is certain only if the
+    /// sign of `d·a` is: it selects the disk.
     #[inline(always)]
     fn height(&self, t: Near) -> Option<Height> {
         let Slab {
@@ -249,7 +242,7 @@ impl Certifier<'_> {
         (y.above(0.0) & y.below(height)).then_some(Height::Inside)
     }
 
-    /// Where the line meets the plane of the disk at `p0` or at `p1`.
+    /// The parameter at which the line intersects the plane of the disk at `p0` or at `p1`.
     #[inline]
     fn disk(&self, at_p0: bool) -> Option<(Near, At, Part)> {
         let (plane, at, part) = if at_p0 {
@@ -257,7 +250,7 @@ impl Certifier<'_> {
         } else {
             (self.slab.height, At::Plane1, Part::Cap1)
         };
-        let way = Near {
+        let distance = Near {
             value: plane - self.slab.position,
             error: self.position_error,
         };
@@ -265,10 +258,10 @@ impl Certifier<'_> {
             value: self.slab.slope,
             error: self.slope_error,
         };
-        Some((way.over(slope)?, at, part))
+        Some((distance.over(slope)?, at, part))
     }
 
-    /// The end as a hit, if the surface is there and it is in range.
+    /// The end as a hit, if the surface exists there and `t` is in range.
     #[inline(always)]
     fn hit(&self, t: Near, at: At, part: Part, crossing: Crossing) -> Option<Option<ExactHit>> {
         let caps = self.cylinder.caps();

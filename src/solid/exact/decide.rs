@@ -1,13 +1,13 @@
-//! Which point of the surface comes first, by signs alone.
+//! The first point of the surface, decided by signs alone.
 //!
-//! In the notation of `triple_product`, with `S = |a|² D`, the roots of the
-//! wall are `(-(m·n) ∓ √S) / |n|²`. Multiplied by `|n|² > 0`, all that is asked
-//! of them has the form `p + q √S`:
+//! In the notation of `triple_product`, with `S = |a|² D`, the roots of the wall are
+//! `(-(m·n) ∓ √S) / |n|²`. Multiplied by `|n|² > 0`, every comparison of them has the form
+//! `p + q √S`:
 //!
 //! - the axial position: `y |n|² = x·a |n|² - (m·n) d·a ∓ d·a √S`;
 //! - the range: `(t - t_min) |n|² = -(m·n) - t_min |n|² ∓ √S`.
 //!
-//! Disks are met at `-(x·a) / (d·a)` and `(a·a - x·a) / (d·a)`.
+//! The line intersects the planes of the disks at `-(x·a) / (d·a)` and `(a·a - x·a) / (d·a)`.
 
 use std::cmp::Ordering::{self, Equal, Greater, Less};
 
@@ -15,19 +15,19 @@ use glam::DVec3;
 
 use super::{Number, cross, difference, dot};
 use crate::math::Ray;
-use crate::solid::way::{Between, Way};
+use crate::solid::offset::{Between, Offset};
 use crate::solid::{Caps, Crossing, Cylinder, Part};
 
-/// How the parameter of the first hit is to be computed.
+/// The formula of the parameter of the first hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum At {
     /// The root of the wall with the minus sign.
     FirstRoot,
     /// The root with the plus sign.
     SecondRoot,
-    /// Where the line meets the plane of the disk at `p0`.
+    /// The intersection with the plane of the disk at `p0`.
     Plane0,
-    /// Where the line meets the plane of the disk at `p1`.
+    /// The intersection with the plane of the disk at `p1`.
     Plane1,
     /// The start of the range, for a line within the surface.
     Start,
@@ -55,7 +55,7 @@ pub(super) struct Terms<N> {
 }
 
 impl<N: Number> Terms<N> {
-    pub fn new(cylinder: &Cylinder, x: &impl Way, direction: DVec3) -> Self {
+    pub fn new(cylinder: &Cylinder, x: &impl Offset, direction: DVec3) -> Self {
         let a: [N; 3] = difference(cylinder.p1(), cylinder.p0());
         let x = x.exactly();
         let d = direction.to_array().map(N::of);
@@ -76,10 +76,10 @@ impl<N: Number> Terms<N> {
         }
     }
 
-    /// How the parameter of a point of the line compares with `limit`.
+    /// Compares the parameter of a point of the line with `limit`.
     ///
     /// # Panics
-    /// For the start of the range, which is a number already.
+    /// For the start of the range, which is not computed.
     pub fn compare(&self, at: At, limit: &N) -> Option<Ordering> {
         let height = match at {
             At::Start => panic!("the start of the range is not computed"),
@@ -120,8 +120,8 @@ impl<N: Number> Terms<N> {
     }
 }
 
-/// The decision in the numbers `N`: the first hit, or that there is none.
-/// `None` if the numbers are not certain enough.
+/// The decision in the numbers `N`: the first hit, or a miss. `None` if the numbers are not
+/// certain enough.
 pub(super) fn decide<N: Number>(cylinder: &Cylinder, ray: &Ray) -> Option<Option<Decision>> {
     let x = Between {
         from: cylinder.p0(),
@@ -139,7 +139,7 @@ pub(super) fn decide<N: Number>(cylinder: &Cylinder, ray: &Ray) -> Option<Option
     case.first(&ends)
 }
 
-/// A point where the line goes in or comes out.
+/// A point where the line enters or leaves.
 #[derive(Clone, Copy)]
 pub(super) struct End {
     pub at: At,
@@ -149,18 +149,18 @@ pub(super) struct End {
     pub touches: bool,
 }
 
-/// Both, and the part within which the line runs between them, if it does.
+/// Both ends, and the part that contains the line between them, if one does.
 pub(super) struct Ends {
     pub enter: End,
     pub leave: End,
     pub lies_on: Option<Part>,
 }
 
-/// A decision, or nothing; the outer `None` means uncertainty.
+/// A decision; `None` means uncertainty.
 pub(super) type Certain<T> = Option<T>;
 
 impl<N: Number> Terms<N> {
-    /// Where the line goes into the closed solid and comes out of it, if it does.
+    /// The points where the line enters and leaves the closed solid, if it intersects it.
     pub fn ends(&self) -> Certain<Option<Ends>> {
         match self.nn.sign()? {
             Equal => self.parallel_ends(),
@@ -231,8 +231,8 @@ impl<N: Number> Terms<N> {
         let p0 = ya.times(nn).minus(&mn.times(yd));
         let p1 = p0.minus(&aa.times(nn));
         let forward = yd.sign()? == Greater;
-        // How the point at a root lies to the first disk along the line (Less is
-        // outside of the solid) and to the last.
+        // The position of the point at a root relative to the first disk along the line (Less
+        // is outside of the solid) and to the last.
         let to_first = |root| {
             if forward {
                 self.at_root(&p0, yd, root)
@@ -254,8 +254,8 @@ impl<N: Number> Terms<N> {
         } else {
             (disk1, disk0)
         };
-        // A root outside of the disk it comes from is cut off by that disk's
-        // plane; one on the plane of either disk is on that one's rim.
+        // A root outside of the disk on its side is cut off by that disk's plane; a root on the
+        // plane of either disk is on its rim.
         let end = |root, outside: Ordering, (to_near, near), (to_far, far), touches| {
             let (near_plane, near_cap): (At, Part) = near;
             let (_, far_cap): (At, Part) = far;
@@ -308,7 +308,7 @@ struct Case<'a, N> {
 }
 
 impl<N: Number> Case<'_, N> {
-    /// How the parameter of an end compares with a limit of the range.
+    /// Compares the parameter of an end with a limit of the range.
     fn compare(&self, at: At, limit: f64) -> Certain<Ordering> {
         if limit.is_infinite() {
             return Some(if limit > 0.0 { Less } else { Greater });

@@ -1,9 +1,8 @@
-//! Values of polynomials that keep their bits where terms cancel, and the signs
-//! of such.
+//! Values and signs of polynomials that keep their bits if terms cancel.
 //!
-//! A solver that finds a difference small against its terms asks here for the
-//! same polynomial once more: in double-double with a running bound, and where
-//! those 106 bits do not settle it either, in numbers of any length.
+//! A solver uses this file for a difference that is small relative to its terms. It evaluates
+//! the same polynomial in double-double with a running error bound, and if those 106 bits do
+//! not decide, in numbers of any length.
 
 use std::cmp::Ordering;
 
@@ -12,23 +11,22 @@ use super::big::Big;
 use super::bounded::Bounded;
 use crate::math::power_of_two;
 
-/// A double-double is taken for the value if its bound is below this share of it.
+/// A double-double is accepted as the value if its error bound is below this share of it.
 ///
-/// It trades bits of the value for time: next to a surface, where rays are spawned, a
-/// constant term is some 2^-48 of its terms. At 2^-50 the 106 bits of a double-double
-/// nearly always do for it; at 2^-60 a quarter of such rays needed numbers of any
-/// length, which take ten times as long as all else.
+/// It trades bits of the value for time. Next to a surface, where rays are spawned, a constant
+/// term is about 2^-48 of its terms. At 2^-50 the 106 bits of a double-double are nearly always
+/// enough; at 2^-60 a quarter of such rays needed numbers of any length, which take ten times
+/// as long as everything else.
 const GOOD: f64 = power_of_two(-50);
 
-/// A polynomial in numbers that are taken as exact.
+/// A polynomial in exact numbers.
 pub(in crate::solid) trait Expression {
     /// Its value.
     fn value<N: Number>(&self) -> N;
 }
 
-/// The expression over a positive `divisor`, within ten units of 2^-53 of it if
-/// it does not underflow. It has the exact sign, and is zero only if the
-/// expression is.
+/// The expression over a positive `divisor`, within ten units of 2^-53 of itself if it does not
+/// underflow. It has the exact sign, and is zero only if the expression is.
 #[cold]
 pub(in crate::solid) fn quotient(expression: &impl Expression, divisor: f64) -> f64 {
     let bounded = expression.value::<Bounded>();
@@ -39,7 +37,7 @@ pub(in crate::solid) fn quotient(expression: &impl Expression, divisor: f64) -> 
         expression.value::<Big>().over(divisor)
     };
     if rounded == 0.0 {
-        // It is zero, or less than f64 has: then the sign is kept.
+        // Zero, or below the range of f64: then the sign is kept.
         return match sign(expression) {
             Ordering::Less => -f64::MIN_POSITIVE,
             Ordering::Equal => 0.0,
@@ -49,7 +47,7 @@ pub(in crate::solid) fn quotient(expression: &impl Expression, divisor: f64) -> 
     rounded
 }
 
-/// How the expression compares with zero.
+/// Compares the expression with zero.
 pub(in crate::solid) fn sign(expression: &impl Expression) -> Ordering {
     let bounded = expression.value::<Bounded>().sign();
     bounded.unwrap_or_else(|| {

@@ -1,21 +1,16 @@
-//! The exact solver: hit, part and order as exact arithmetic has them, for any
-//! f64 inputs.
+//! The exact solver: hit, part and order are those of exact arithmetic, for any f64 inputs.
 //!
-//! Everything that decides the answer is the sign of a polynomial in the inputs,
-//! or of `p + q √s` with such `p`, `q`, `s`. Three stages answer, each only
-//! where the one before is not certain:
+//! Every decision is the sign of a polynomial in the inputs, or of `p + q √s` with polynomials
+//! `p`, `q`, `s`. Three stages compute it; each runs only if the one before is not certain:
 //!
-//! 1. the triple-product solver in f64, with a certificate (`certificate`): if every
-//!    quantity that it compared clears the bound of its rounding, the answer
-//!    is certain;
-//! 2. the decisions of `decide` in double-double with a running error bound
-//!    (`bounded`), 106 bits, enough for all but true ties;
-//! 3. the same decisions in binary numbers of any length (`dashu`), which
-//!    settles ties.
+//! 1. the triple-product solver in f64 with a certificate (`certificate`): if every compared
+//!    quantity is beyond the bound of its rounding, the result is certain;
+//! 2. the decisions of `decide` in double-double with a running error bound (`bounded`): 106
+//!    bits, enough for all but true ties;
+//! 3. the same decisions in binary numbers of any length (`dashu`), which decide ties.
 //!
-//! The parameter `t` of the answer is a quotient of such numbers. As f64 from
-//! stage 1 it is within the certificate's bound; [`rounded_t`] rounds it
-//! correctly.
+//! The parameter `t` of the result is a quotient of such numbers. As an f64 from stage 1 it is
+//! within the certificate's bound; [`rounded_t`] rounds it correctly.
 
 mod big;
 mod bounded;
@@ -28,7 +23,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::way::Way;
+use super::offset::Offset;
 use super::{Chord, ChordEnd, Cylinder, Part};
 use crate::math::Ray;
 use crate::solid::Crossing;
@@ -38,7 +33,7 @@ use decide::{At, End, Terms};
 pub(super) use expression::{Expression, cross, difference, dot, quotient, sign, vector};
 pub use root::Target;
 
-/// The stage that settled an answer.
+/// The stage that decided a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Stage {
     /// f64, certified.
@@ -49,12 +44,12 @@ pub enum Stage {
     AnyLength,
 }
 
-/// The exact answer.
+/// An exact hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactHit {
     /// The ray's parameter, within `t_error` of the true one.
     pub t: f64,
-    /// The bound of the error of `t`.
+    /// The error bound of `t`.
     pub t_error: f64,
     /// The part of the surface.
     pub part: Part,
@@ -63,9 +58,9 @@ pub struct ExactHit {
     at: At,
 }
 
-/// A number type in which the decisions are made.
+/// A number type for the decisions.
 pub(super) trait Number: Clone {
-    /// A number as it is.
+    /// The number of an f64.
     fn of(x: f64) -> Self;
     /// `a - b`, exactly.
     fn difference(a: f64, b: f64) -> Self;
@@ -75,15 +70,15 @@ pub(super) trait Number: Clone {
     fn minus(&self, other: &Self) -> Self;
     /// The product.
     fn times(&self, other: &Self) -> Self;
-    /// How the number compares with zero, if that is certain.
+    /// The comparison with zero, if it is certain.
     fn sign(&self) -> Option<Ordering>;
 }
 
-/// The first point of the cylinder's surface in the ray's range, and the stage
-/// that settled it. `None` is a miss, as certain as a hit.
+/// The first point of the cylinder's surface in the ray's range, and the stage that decided it.
+/// `None` is a miss, as certain as a hit.
 ///
-/// The ray is valid ([`Ray::is_valid`]) and its direction's largest component
-/// is within 2^±100 in size, as for the triple-product solver.
+/// The ray is valid ([`Ray::is_valid`]) and the largest component of its direction is within
+/// 2^±100 in size, as for the triple-product solver.
 #[inline]
 #[must_use]
 pub fn first(cylinder: &Cylinder, ray: &Ray) -> (Option<ExactHit>, Stage) {
@@ -93,8 +88,7 @@ pub fn first(cylinder: &Cylinder, ray: &Ray) -> (Option<ExactHit>, Stage) {
     }
 }
 
-/// Takes copies, so that the caller need not have what it was given in memory
-/// for a case that is rare.
+/// Takes copies, so that the caller does not need its arguments in memory for this rare case.
 #[cold]
 fn first_uncertified(cylinder: Cylinder, ray: Ray) -> (Option<ExactHit>, Stage) {
     let (cylinder, ray) = (&cylinder, &ray);
@@ -119,13 +113,13 @@ fn first_uncertified(cylinder: Cylinder, ray: Ray) -> (Option<ExactHit>, Stage) 
     (hit, stage)
 }
 
-/// The interval in which the line `p0 + x + t direction` is inside the closed solid, or
-/// `None` where it is not: which parts its ends are on is exact, and its `t` are the
-/// nearest numbers. A non-finite argument is a miss, and so is a direction of zero.
+/// The interval in which the line `p0 + x + t direction` is inside the closed solid, or `None`
+/// if it misses. The parts of its ends are exact, and their `t` are the nearest numbers. A
+/// non-finite argument is a miss, and so is a direction of zero.
 ///
-/// It is for the rare line about which rounded numbers do not suffice: it takes some
-/// hundred times as long as the triple-product solver.
-pub(super) fn chord(cylinder: &Cylinder, x: &impl Way, direction: DVec3) -> Option<Chord> {
+/// It serves the rare lines that rounded numbers do not decide: it takes some hundred times as
+/// long as the triple-product solver.
+pub(super) fn chord(cylinder: &Cylinder, x: &impl Offset, direction: DVec3) -> Option<Chord> {
     if !(x.rounded().is_finite() && direction.is_finite()) || direction == DVec3::ZERO {
         return None;
     }
@@ -146,12 +140,12 @@ pub(super) fn chord(cylinder: &Cylinder, x: &impl Way, direction: DVec3) -> Opti
     })
 }
 
-/// The f32 or f64 nearest to the true parameter of a hit of this cylinder and
-/// ray; of two, the even one.
+/// The f32 or f64 nearest to the true parameter of a hit of this cylinder and ray; ties go to
+/// the even one.
 #[inline]
 #[must_use]
 pub fn rounded_t<S: Target>(cylinder: &Cylinder, ray: &Ray, hit: &ExactHit) -> S {
-    // Rounding keeps order, so what is between the two rounds to the same.
+    // Rounding is monotonic, so everything between the two rounds to the same.
     let nearest = S::from_f64(hit.t - hit.t_error);
     if nearest == S::from_f64(hit.t + hit.t_error) {
         return nearest;

@@ -1,12 +1,11 @@
 //! The parameter of a decided hit, correctly rounded.
 //!
-//! In double-double first: `√s` by one Newton step from the f64 root, the
-//! quotient by one correction, with the bound of what the terms and these steps
-//! are off (`2^-100` of the size covers the steps). If the sum `high + low` keeps
-//! its `high` with the bound added to `low` on either side, `high` is the nearest
-//! f64; to f32 it is rounded with the bound added on either side. Otherwise the quotient is approximated by long numbers, and the
-//! neighbouring midpoints are compared with the true parameter
-//! exactly.
+//! First in double-double: `√s` by one Newton step from the f64 root, the quotient by one
+//! correction, with a bound of the errors of the terms and of these steps (`2^-100` of the size
+//! covers the steps). If the sum `high + low` keeps its `high` with the bound added to `low` on
+//! either side, `high` is the nearest f64. To f32, the sum is rounded with the bound added on
+//! either side. Otherwise long numbers approximate the quotient, and the neighbouring midpoints
+//! are compared exactly with the true parameter.
 
 use std::cmp::Ordering;
 
@@ -17,20 +16,20 @@ use super::bounded::Bounded;
 use super::decide::{At, Terms};
 use super::{Cylinder, Number, Ray};
 use crate::math::{DoubleDouble, Real, UNIT_ROUNDOFF, power_of_two};
-use crate::solid::way::{Between, Way};
+use crate::solid::offset::{Between, Offset};
 
 /// The bound of a double-double root or quotient, relative to its size.
 const STEP_ERROR: f64 = power_of_two(-100);
 
-/// Bits of the approximation that is compared with midpoints; enough to be
-/// next to the right f64 whatever cancels in practice. The comparison, not
-/// this number, makes the result right.
+/// The bits of the approximation that is compared with midpoints: enough to be next to the
+/// right f64 in practice, whatever cancels. The comparison, not this number, makes the result
+/// right.
 const LONG: usize = 400;
 
-/// What a parameter can be rounded to: f32 or f64.
+/// A type that a parameter can be rounded to: f32 or f64.
 pub trait Target: Real {
-    /// The number next to `high + low` and to all that is within `error` of it,
-    /// if it is the same one.
+    /// The number nearest to `high + low`, if it is also nearest to everything within `error`
+    /// of that.
     fn nearest(t: DoubleDouble, error: f64) -> Option<Self>;
 
     /// The least number above.
@@ -66,9 +65,9 @@ impl Target for f64 {
 
 impl Target for f32 {
     fn nearest(t: DoubleDouble, error: f64) -> Option<Self> {
-        // Twice the way, for the roundings of these sums.
-        let way = 2.0 * (t.low.abs() + error) + t.high.abs() * UNIT_ROUNDOFF;
-        let (below, above) = ((t.high - way) as Self, (t.high + way) as Self);
+        // Doubled, for the roundings of these sums.
+        let off = 2.0 * (t.low.abs() + error) + t.high.abs() * UNIT_ROUNDOFF;
+        let (below, above) = ((t.high - off) as Self, (t.high + off) as Self);
         (below == above).then_some(below)
     }
 
@@ -85,8 +84,8 @@ impl Target for f32 {
     }
 }
 
-/// The number nearest to the parameter of a hit; of two, the even one. Takes
-/// copies for the sake of callers that rarely need it.
+/// The number nearest to the parameter of a hit; ties go to the even one. Takes copies, for
+/// callers that rarely need it.
 pub(super) fn rounded<S: Target>(cylinder: Cylinder, ray: Ray, at: At) -> S {
     if at == At::Start {
         return S::from_f64(ray.t_min);
@@ -98,21 +97,21 @@ pub(super) fn rounded<S: Target>(cylinder: Cylinder, ray: Ray, at: At) -> S {
     rounded_on_line(&cylinder, &x, ray.direction, at)
 }
 
-/// The same of a point other than the start of the range.
+/// As [`rounded`], for a point other than the start of the range.
 pub(super) fn rounded_on_line<S: Target>(
     cylinder: &Cylinder,
-    x: &impl Way,
+    x: &impl Offset,
     direction: DVec3,
     at: At,
 ) -> S {
     let terms = Terms::<Bounded>::new(cylinder, x, direction);
     let t: S = in_double_double(&terms, at)
         .unwrap_or_else(|| in_long_numbers(&Terms::new(cylinder, x, direction), at));
-    // A zero is positive, whichever difference it is of.
+    // Turns -0 into 0.
     t + S::ZERO
 }
 
-/// The numerator and denominator of the parameter, the root left to `root`.
+/// The numerator and denominator of the parameter; `root` computes the root.
 fn quotient<N: Number>(
     terms: &Terms<N>,
     at: At,
@@ -142,7 +141,7 @@ fn in_double_double<S: Target>(terms: &Terms<Bounded>, at: At) -> Option<S> {
     is_certain.then(|| S::nearest(t, error))?
 }
 
-/// The root of a number that is not negative, if it is known to be positive.
+/// The root of a nonnegative number, if it is known to be positive.
 fn bounded_root(s: &Bounded) -> Option<Bounded> {
     let high = s.value.high;
     if !(high > 4.0 * s.error) {
@@ -161,8 +160,7 @@ fn in_long_numbers<S: Target>(terms: &Terms<Big>, at: At) -> S {
     let root = |s: &Big| Some(Big(long(s).0.sqrt()));
     let (numerator, denominator) = quotient(terms, at, root).expect("the hit has a quotient");
     let mut t = S::from_f64((long(&numerator).0 / long(&denominator).0).to_f64().value());
-    // Step to the number whose midpoints with its neighbours enclose the
-    // parameter.
+    // Steps to the number whose midpoints with its neighbours enclose the parameter.
     loop {
         let beyond = |neighbour: S| {
             let half = Big::of(0.5);

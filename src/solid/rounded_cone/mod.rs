@@ -1,4 +1,4 @@
-//! The rounded cone as users state it.
+//! The rounded cone as users define it.
 
 mod quick;
 mod solver;
@@ -10,28 +10,27 @@ use super::cone::Ends;
 use super::cone::wall::{Fit, Measures, Taper};
 use super::cylinder::middle;
 use super::exact::{self, Expression, Number, difference, dot};
-use super::passing::Line;
+use super::offset::{Between, Offset};
 use super::quick::{Quick, Range};
-use super::way::{Between, Way};
+use super::reject::Line;
 use super::{
     Chord, ConeError, ConvexSolid, Location, Part, RayOrigin, SolidKind, SurfacePoint, ball,
 };
 use crate::math::Bounds;
 
-/// The surface of the convex hull of two balls: two centers and a radius each,
-/// all taken as exact numbers.
+/// The surface of the convex hull of two balls: two centers and a radius each, all taken as
+/// exact numbers.
 ///
-/// It is what a ball sweeps whose radius changes evenly on its way from `p0` to
-/// `p1`: two spheres and the cone that touches both, with no edge between them.
-/// Where one ball contains the other, it is that ball. A radius may be zero, and the
-/// centers may coincide.
+/// A ball sweeps this solid if its radius changes linearly from `p0` to `p1`: two spheres and
+/// the cone that touches both, with no edge between them. If one ball contains the other, the
+/// solid is that ball. A radius may be zero, and the centers may coincide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundedCone {
     ends: Ends,
 }
 
-/// Why numbers are not a rounded cone: one of them is out of the range that a
-/// [`Cone`](super::Cone)'s have, or both radii are zero.
+/// Why numbers do not define a rounded cone: one of them is out of the range of a
+/// [`Cone`](super::Cone)'s, or both radii are zero.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(transparent)]
 pub struct RoundedConeError(#[from] pub ConeError);
@@ -72,16 +71,17 @@ impl RoundedCone {
         self.ends.radius1
     }
 
-    /// The chord of a line as seen from both ends. Whether one ball contains the other is
-    /// decided by the rounded axis first, for the surface has a wall by that.
-    fn chord_of<A: Way>(
+    /// The chord of a line, with the origin relative to both ends. Whether one ball contains
+    /// the other is decided by the rounded axis first, since that decides whether the surface
+    /// has a wall.
+    fn chord_of<A: Offset>(
         &self,
         taper: &Taper<A>,
-        from_p0: impl Way,
-        from_p1: impl Way,
+        from_p0: impl Offset,
+        from_p1: impl Offset,
         direction: DVec3,
     ) -> Option<Chord> {
-        if self.is_passed([from_p0.rounded(), from_p1.rounded()], direction) {
+        if self.rejects_from_ends([from_p0.rounded(), from_p1.rounded()], direction) {
             return None;
         }
         if self.taper().is_some() && taper.beta() > 0.0 {
@@ -95,25 +95,26 @@ impl RoundedCone {
         }
     }
 
-    /// Whether a line as seen from both ends certainly misses. The way from the second may be
-    /// the difference of rounded ones: the hull is within the infinite wall, whose test
-    /// has bounds for it, or one ball contains it and is as large as the axis is long.
+    /// Whether a line certainly misses, with the origin relative to both ends. The offset from
+    /// the second end may be the difference of rounded ones: either the hull is within the
+    /// infinite wall, whose test has bounds for it, or one ball contains it, with a radius of
+    /// at least the length of the axis.
     #[inline(always)]
-    fn is_passed(&self, [from_p0, from_p1]: [DVec3; 2], direction: DVec3) -> bool {
+    fn rejects_from_ends(&self, [from_p0, from_p1]: [DVec3; 2], direction: DVec3) -> bool {
         let Ends {
             radius0, radius1, ..
         } = self.ends;
         let [from_p0, from_p1] = [from_p0, from_p1].map(|x| Line::new(x, direction));
-        from_p0.passes_ball(radius0)
-            & from_p1.passes_ball(radius1)
-            & from_p0.passes_wall(&self.ends.taper(Fit::Balls))
+        from_p0.misses_ball(radius0)
+            & from_p1.misses_ball(radius1)
+            & from_p0.misses_wall(&self.ends.taper(Fit::Balls))
     }
 }
 
 impl ConvexSolid for RoundedCone {
     const KIND: SolidKind = SolidKind::RoundedCone;
 
-    /// Lanes have the way from the second ball as a difference of rounded ones.
+    /// In lanes, the offset from the second ball is a difference of rounded offsets.
     const QUICK_IS_EXACT: bool = false;
 
     fn bounds(&self) -> Bounds {
@@ -153,14 +154,14 @@ impl ConvexSolid for RoundedCone {
 
     fn exact_chord(&self, origin: &RayOrigin, direction: DVec3) -> Option<Chord> {
         let taper = self.ends.exact_taper(Fit::Balls);
-        let [from_p0, from_p1] = [self.p0(), self.p1()].map(|end| origin.way_from(end));
+        let [from_p0, from_p1] = [self.p0(), self.p1()].map(|end| origin.offset_from(end));
         self.chord_of(&taper, from_p0, from_p1, direction)
     }
 
     #[inline(always)]
     fn rejects(&self, from_anchor: DVec3, direction: DVec3) -> bool {
         let from_p1 = from_anchor - self.ends.axis();
-        self.is_passed([from_anchor, from_p1], direction)
+        self.rejects_from_ends([from_anchor, from_p1], direction)
     }
 
     #[inline(always)]
@@ -188,9 +189,9 @@ impl ConvexSolid for RoundedCone {
             radius1,
         } = self.ends;
         let balls = ball::locate(p0, radius0, point).max(ball::locate(p1, radius1, point));
-        // The disks at the seams are inside of the balls but for their rims, so that
-        // the first need not be requested; and where one ball contains the other, no
-        // height is beyond it and not beyond the other.
+        // The disks at the seams are inside of the balls except for their rims, so the first
+        // need not be tested. If one ball contains the other, no height is beyond the one seam
+        // and not beyond the other.
         if balls == Location::Inside
             || !point.is_finite()
             || within(Limit::Seam0) != Location::Inside
@@ -204,8 +205,8 @@ impl ConvexSolid for RoundedCone {
         }
     }
 
-    /// A seam is on the surface of its sphere and of the wall. Neither ball contains the
-    /// other.
+    /// A seam is on the surface of its sphere and on that of the wall. Neither ball contains
+    /// the other.
     fn is_on(&self, part: Part, point: DVec3) -> bool {
         let beyond = |limit| {
             let solid = self;

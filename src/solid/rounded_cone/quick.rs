@@ -1,28 +1,28 @@
-//! A rounded cone and a line without exact numbers or branches, for
+//! The intersection of a line and a rounded cone without exact numbers or branches, for
 //! [`quick`](crate::solid::quick).
 //!
-//! A root of the wall that is not between the seams is cut off by the ball on its side:
-//! inside of the infinite wall the line comes from there to the part between the seams through
-//! that ball alone. So one ball is enough for each end. The solver looks for the first entry
-//! into either ball, which is the same if the rounded parameters are in the exact
-//! order. A point of the one sphere beyond its seam is outside of the other ball: with `p`
-//! counted from the center of the one, of radius r, and heights `p·a <= -r Δ`,
+//! A root of the wall that is not between the seams is cut off by the ball on its side: from
+//! there, inside of the infinite wall, the line reaches the part between the seams through that
+//! ball alone. So one ball is enough for each end. The solver takes the first entry into either
+//! ball, which is the same one if the rounded parameters are in the exact order. A point of the
+//! one sphere beyond its seam is outside of the other ball: with `p` relative to the center of
+//! the one, of radius r, and heights `p·a <= -r Δ`,
 //!
 //! ```text
 //! |p - a|² - r'² >= β                                                      (1)
 //! ```
 //!
-//! so that the way from there to the other ball is at least `β / (|a| + r + r')`. Either parameter
-//! is within 2^-36 `(|x| + |a| + R) / |d|` of itself, R the greater radius, by (3) of
-//! `ball.rs` or the solver's own rule. With `Z = |a|² + R²`, `(|a| + 2 R)² <= 8 Z` and `(|x| + |a| + R)²
-//! <= 3 (|x|² + Z)`, they are in order where
+//! so the distance from there to the other ball is at least `β / (|a| + r + r')`. Either
+//! parameter is within 2^-36 `(|x| + |a| + R) / |d|` of itself, R the greater radius, by (3) of
+//! `ball.rs` or the solver's own rule. With `Z = |a|² + R²`, `(|a| + 2 R)² <= 8 Z` and
+//! `(|x| + |a| + R)² <= 3 (|x|² + Z)`, they are in order if
 //!
 //! ```text
 //! 2^-60 (|x|² + Z) Z < β²                                                  (2)
 //! ```
 //!
-//! since `8 · 3 · 2^-70` is less than that; which leaves out only solids from afar. Where one
-//! ball contains the other `β` is not good and the line is open.
+//! since `8 · 3 · 2^-70` is less than that. This excludes only solids from afar. If one ball
+//! contains the other, `β` is not good and the line is open.
 
 use glam::DVec3;
 
@@ -41,11 +41,11 @@ pub(super) fn first(solid: &RoundedCone, x: DVec3, d: DVec3, range: &Range) -> Q
     let (enter, leave) = (wall.side(&wall.enter), wall.side(&wall.leave));
     let (of_enter, of_leave) = (ball(&taper, x, d, &enter), ball(&taper, x, d, &leave));
     let is_settled = |side: &Side, ball: &QuickBall| side.is_between() | ball.is_plain;
-    let is_met = |side: &Side, ball: &QuickBall| side.is_between() | ball.is_met;
+    let is_hit = |side: &Side, ball: &QuickBall| side.is_between() | ball.is_hit;
     let end = |root: End, side: &Side, of_ball: End| root.or(of_ball, side.is_between());
     let first = end(wall.enter, &enter, of_enter.ends[0]);
     let last = end(wall.leave, &leave, of_leave.ends[1]);
-    let is_inside = is_met(&enter, &of_enter) & is_met(&leave, &of_leave);
+    let is_inside = is_hit(&enter, &of_enter) & is_hit(&leave, &of_leave);
     let is_open = wall.is_open
         | !(enter.is_certain & leave.is_certain)
         | !(is_settled(&enter, &of_enter) & is_settled(&leave, &of_leave))
@@ -54,8 +54,8 @@ pub(super) fn first(solid: &RoundedCone, x: DVec3, d: DVec3, range: &Range) -> Q
     Quick::of_chord(is_open, is_inside, [first, last], range)
 }
 
-/// The ball on a side, that at `p1` if the side is beyond the second seam. A function, for
-/// closures are not inlined always.
+/// The ball on a side: that at `p1` if the side is beyond the second seam. A function, because
+/// closures are not always inlined.
 #[inline(always)]
 fn ball(taper: &Taper, x: DVec3, d: DVec3, side: &Side) -> QuickBall {
     let (center, radius) = if side.is_beyond {
@@ -66,7 +66,7 @@ fn ball(taper: &Taper, x: DVec3, d: DVec3, side: &Side) -> QuickBall {
     QuickBall::new(x - center, d, radius, taper.a.length())
 }
 
-/// (2).
+/// Whether the parameters of the balls are in order, by (2).
 #[inline(always)]
 fn is_near(taper: &Taper, x: DVec3) -> bool {
     let (beta, _) = taper.rounded_beta();

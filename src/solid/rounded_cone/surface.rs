@@ -1,33 +1,30 @@
 //! The point, normal and parameters of a hit on a rounded cone, with error bounds.
 //!
-//! The hull is what a ball sweeps whose center goes from `p0` to `p1` and whose
-//! radius changes evenly, and the point nearest to `o + t d` is one of the sphere
-//! around some center `p0 + v a`: for the spheres at the ends v is 0 or 1. On the wall
-//! the normal is `n = (outward √β - axis Δ) / |a|` with `β = |a|² - Δ²`, and going
-//! back along it from a point at height `y = x·a` and distance `ρ` from the axis one
-//! meets the axis at
+//! A ball sweeps the hull if its center moves from `p0` to `p1` and its radius changes
+//! linearly. The point nearest to `o + t d` is one of the sphere around some center `p0 + v a`;
+//! for the spheres at the ends v is 0 or 1. On the wall the normal is
+//! `n = (outward √β - axis Δ) / |a|` with `β = |a|² - Δ²`. Going back along it from a point at
+//! height `y = x·a` and distance `ρ` from the axis, one reaches the axis at
 //!
 //! ```text
 //! v = (y + ρ Δ |a| / √β) / |a|²,   q = p0 + v a + (r0 + v Δ) n
 //! ```
 //!
-//! Error (u = 2^-53, R the greater radius): as with the cylinder, the center is off
-//! by `2 u |a|` and the sums round by `u (|q| + |a| + R)`. `r0 + v Δ` rounds by 3 u
-//! R; `n` is unit to 8 u. `outward` is off the perpendicular by 6 u, and `√β / |a|`
-//! is off by up to `u |a| / √β` of 1, since `a` is rounded: both turn `n` by an angle
-//! δ, which moves q along the sphere that the hull contains, so off the surface by δ² R/2
-//! at most. If `√β < √u |a|`, the turn is below 2 √u, otherwise below `√u`. So
-//! δ² / 2 is below 4 u. Together `u (|q| + 4 |a| + 16 R)`; 5 and 20 are counted. On a
-//! sphere it is `u (|q| + 6 R)`.
+//! Error (u = 2^-53, R the greater radius): as for the cylinder, the center is off by `2 u |a|`
+//! and the sums round by `u (|q| + |a| + R)`. `r0 + v Δ` rounds by 3 u R; `n` is unit to 8 u.
+//! `outward` is off the perpendicular by 6 u, and `√β / |a|` is off by up to `u |a| / √β`,
+//! since `a` is rounded: both turn `n` by an angle δ, which moves q along the sphere that the
+//! hull contains, so off the surface by at most δ² R/2. If `√β < √u |a|`, the turn is below 2
+//! √u, otherwise below `√u`. So δ² / 2 is below 4 u. The sum is `u (|q| + 4 |a| + 16 R)`; 5 and
+//! 20 are counted. On a sphere the error is `u (|q| + 6 R)`.
 //!
-//! **Centers next to each other.** The square of an `a` below 2^-484 loses bits to
-//! underflow, below 2^-537 all of them. Radii that differ do so by 2^-202 at least,
-//! the spacing of the numbers at `Cylinder::LEAST`. So an `a` below [`SHORT`] has a
-//! wall only if the radii are the same, and the hull is then one ball but for
-//! `|a|`, which is less than 2^-249 R: the hit is taken on the ball. Its angle and its
-//! height are those of `a` and `x` times [`LONGER`], which is exact: the multiple of
-//! `a` is below 2^201 and, but for zero, at least 2^-474, with a square that is a
-//! normal number.
+//! **Centers next to each other.** The square of an `a` below 2^-484 loses bits to underflow,
+//! and below 2^-537 all of them. Radii that differ do so by at least 2^-202, the spacing of the
+//! numbers at `Cylinder::LEAST`. So an `a` below [`SHORT`] has a wall only if the radii are
+//! equal. The hull is then one ball up to `|a|`, which is less than 2^-249 R, and the hit is
+//! computed on the ball. Its angle and its height are those of `a` and `x` times [`LONGER`],
+//! which is exact: the multiple of `a` is below 2^201 and, unless zero, at least 2^-474, with a
+//! square that is a normal number.
 
 use glam::DVec3;
 
@@ -36,16 +33,16 @@ use crate::math::{UNIT_ROUNDOFF, power_of_two};
 use crate::solid::surface::Around;
 use crate::solid::{Part, SurfacePoint};
 
-/// What every coordinate of a short `a` is below; any number between 2^-484 and
-/// 2^-203 would do.
+/// The bound of every coordinate of a short `a`; any number between 2^-484 and 2^-203 would
+/// serve.
 const SHORT: f64 = power_of_two(-400);
 
-/// What a short `a` is multiplied by.
+/// The factor for a short `a`.
 const LONGER: f64 = power_of_two(600);
 
-/// The point of `part` nearest to `p0 + from_p0`. `v` is where the center of the
-/// ball is that touches the surface there, from `p0` to `p1`; `u` is a cylinder's. If
-/// the centers coincide, the axis is taken along z.
+/// The point of `part` nearest to `p0 + from_p0`. `v` is the position, from `p0` to `p1`, of
+/// the center of the ball that touches the surface there; `u` is as for a cylinder. If the
+/// centers coincide, the axis is along z.
 pub(super) fn surface_point(solid: &RoundedCone, part: Part, from_p0: DVec3) -> SurfacePoint {
     let (r0, r1) = (solid.ends.radius0, solid.ends.radius1);
     let a = solid.ends.axis();
@@ -60,7 +57,7 @@ pub(super) fn surface_point(solid: &RoundedCone, part: Part, from_p0: DVec3) -> 
     let around = Around::new(axis, from_p0);
     let sphere = |center: DVec3, radius: f64, from_center: DVec3, v| {
         let distance = from_center.length();
-        // The center has no nearest point; any will do.
+        // The center has no nearest point; any point serves.
         let normal = if distance > 0.0 {
             from_center / distance
         } else {
@@ -106,7 +103,7 @@ mod tests {
     use super::*;
     use crate::math::Random;
 
-    /// The angle counts from the direction of the centers alone, however near they are.
+    /// The angle depends on the direction of the centers alone, however near they are.
     #[test]
     fn centers_next_to_each_other_have_the_angles_and_heights_of_distant_ones() {
         for index in 0..1000 {

@@ -1,7 +1,7 @@
-//! The mesh of a cuboid, which is exact but for roundings.
+//! The mesh of a cuboid, which is exact up to roundings.
 //!
-//! A corner is computed as the points of the surface are, and its error is theirs
-//! ([`Cuboid`]'s `surface_point`).
+//! A corner is computed like a point of the surface, with the same error ([`Cuboid`]'s
+//! `surface_point`).
 
 use glam::DVec3;
 
@@ -15,7 +15,7 @@ impl Tessellated for Cuboid {
     }
 }
 
-/// The corners. Bit i of a corner's number says on which side of axis i it is.
+/// The corners. Bit i of a corner's number is its side of axis i.
 pub(super) fn vertices(cuboid: &Cuboid) -> Vec<DVec3> {
     let corner = |number: u32| {
         let side = |bit: u32| if number >> bit & 1 == 0 { -1.0 } else { 1.0 };
@@ -30,7 +30,7 @@ pub(super) fn triangles() -> Vec<[u32; 3]> {
     let mut triangles = Vec::with_capacity(12);
     for axis in 0..3 {
         let [face, next, last] = [axis, (axis + 1) % 3, (axis + 2) % 3].map(|axis| 1_u32 << axis);
-        // Seen against the axis, its two others go round counter-clockwise.
+        // Seen against the axis, the two other axes are counter-clockwise.
         let upper = [face, face + next, face + next + last, face + last];
         let lower = [0, last, next + last, next];
         for [a, b, c, d] in [upper, lower] {
@@ -40,7 +40,7 @@ pub(super) fn triangles() -> Vec<[u32; 3]> {
     triangles
 }
 
-/// By how much a corner may be off the true one.
+/// The error bound of a corner.
 pub(super) fn corner_error(cuboid: &Cuboid) -> f64 {
     let reach = cuboid.half_widths().element_sum();
     UNIT_ROUNDOFF * (cuboid.center().length() + 18.0 * reach)

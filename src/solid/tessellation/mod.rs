@@ -1,36 +1,33 @@
 //! Triangle meshes of solids, with a proven deviation.
 //!
-//! All solids but the cuboid are turned about an axis: the mesh of one is that of its
-//! *profile*, a polyline of heights along the axis and distances from it, turned with N
-//! sides (`profile`). `profiles` has the polylines of the kinds. Two steps, so two
-//! deviations, which add up:
+//! All solids except the cuboid are solids of revolution. The mesh of one is its *profile*, a
+//! polyline of heights along the axis and distances from it, turned with N sides (`profile`).
+//! `profiles` has the polylines of the kinds. There are two steps, whose deviations add up:
 //!
-//! 1. **The polyline.** The *inscribed* one has its corners on the meridian of the
-//!    solid; the segments of the *circumscribed* one touch it from without. Walls and
-//!    disks are straight, and theirs is exact. On an arc of radius r with steps of δ
-//!    the corners of the inscribed one are at r, and its chords within
-//!    `r (1 - cos(δ/2))` of the arc; the corners of the circumscribed one are at
-//!    `r / cos(δ/2)`, `r (1/cos(δ/2) - 1)` beyond it.
-//! 2. **The turn.** Where the polyline is ρ from the axis, the inscribed mesh has its
-//!    corners at ρ. Between two of them it is nearer to the axis, by at most the
-//!    sagitta `ρ (1 - cos(π/N))`, in the middle. The circumscribed one has its corners
-//!    at `ρ / cos(π/N)`, farther by `ρ (1/cos(π/N) - 1)`, and its sides touch the
-//!    turned polyline along their middles.
+//! 1. **The polyline.** The *inscribed* one has its corners on the meridian of the solid; the
+//!    segments of the *circumscribed* one touch it from outside. Walls and disks are straight,
+//!    and their polylines exact. On an arc of radius r with steps of δ the corners of the
+//!    inscribed one are at r, and its chords within `r (1 - cos(δ/2))` of the arc; the corners
+//!    of the circumscribed one are at `r / cos(δ/2)`, `r (1/cos(δ/2) - 1)` beyond it.
+//! 2. **The turn.** Where the polyline is at ρ from the axis, the inscribed mesh has its
+//!    corners at ρ. Between two of them it is nearer to the axis, by at most the sagitta
+//!    `ρ (1 - cos(π/N))`, in the middle. The circumscribed mesh has its corners at
+//!    `ρ / cos(π/N)`, farther by `ρ (1/cos(π/N) - 1)`, and its sides touch the turned polyline
+//!    along their middles.
 //!
-//! A side between two corners of the polyline is a trapezoid, hence flat. The plane of
-//! a circumscribed one contains a segment that touches the meridian and is square to
-//! the meridian's plane: it touches the solid, which is convex, so that the mesh
-//! contains the solid. The inscribed one is the hull of points of the solid, and in it.
-//! Both but for roundings, and but for disks that are not there.
+//! A side between two corners of the polyline is a trapezoid, hence flat. The plane of a
+//! circumscribed one contains a segment that touches the meridian and is perpendicular to the
+//! meridian's plane. So it touches the convex solid, and the mesh contains the solid. The
+//! inscribed mesh is the hull of points of the solid, and inside it. Both are true up to
+//! roundings, and up to absent disks.
 //!
-//! For convex bodies, one of which contains the other, how far a point of the outer can
-//! be from the inner is how far any point of either surface can be from the other
-//! surface; without its disks, a wall and its mesh are that far apart at each height.
-//! So [`deviation_of`], the sum of both steps, is by how much a mesh may be off the
-//! surface and the surface off the mesh. A triangle of corners that are moved by
-//! roundings is nowhere farther from where it was than they are: [`corner_error_of`]
-//! bounds that. Rounding the corners to f32 moves them by at most √3/2 ulp of their
-//! largest coordinate more.
+//! If a convex body contains another, the greatest distance of a point of the outer from the
+//! inner is the greatest distance between the surfaces; without disks, a wall and its mesh are
+//! that far apart at each height. So [`deviation_of`], the sum of both steps, bounds the
+//! distance of the mesh from the surface and of the surface from the mesh. If roundings move
+//! the corners of a triangle, none of its points moves farther than they do:
+//! [`corner_error_of`] bounds that. Rounding the corners to f32 moves them by at most √3/2 ulp
+//! of their largest coordinate more.
 
 mod cuboid;
 mod prism;
@@ -45,20 +42,19 @@ use super::{AnySolid, Cuboid};
 use crate::with_solid;
 use profile::Profile;
 
-/// Fewest sides of a prism, and of any mesh that is turned about an axis.
+/// The fewest sides of a prism, and of any other turned mesh.
 pub const LEAST_SEGMENTS: u32 = 3;
 
-/// Most sides of a prism, and of any mesh that is turned about an axis: its sagitta is
-/// 3e-7 radii, a few f32 ulps, and its triangles take some 400 kB; those of a ball
-/// take 400 MB.
+/// The most sides of a prism, and of any other turned mesh. The sagitta is then 3e-7 radii, a
+/// few f32 ulps. A prism's triangles take some 400 kB; those of a ball take 400 MB.
 pub const GREATEST_SEGMENTS: u32 = 4096;
 
-/// On which side of the surface a mesh stays.
+/// The side of the surface on which a mesh lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Fit {
     /// Its corners are on the surface, the rest within the solid.
     Inscribed,
-    /// Its sides touch the surface from without.
+    /// Its sides touch the surface from outside.
     Circumscribed,
 }
 
@@ -73,7 +69,7 @@ impl Fit {
     }
 }
 
-/// Triangles with shared corners, outward side counter-clockwise.
+/// Triangles with shared corners, counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     /// The corners.
@@ -96,29 +92,28 @@ impl Mesh {
     }
 }
 
-/// `cos(π/N)`: the radius of the circle that the sides of a regular polygon touch, in
-/// radii of the one that its corners are on.
+/// `cos(π/N)`: the inradius of a regular polygon, in circumradii.
 #[must_use]
 pub fn inner_factor(segments: u32) -> f64 {
     libm::cos(std::f64::consts::PI / f64::from(segments))
 }
 
-/// What a solid's mesh is made from.
+/// The source of a solid's mesh.
 enum Outline {
     Turned(Profile),
     Cuboid(Cuboid),
 }
 
-/// A kind of solid that has meshes.
+/// A kind of solid with meshes.
 trait Tessellated {
-    /// What its mesh of `segments` sides is made from.
+    /// The source of its mesh of `segments` sides.
     fn outline(&self, segments: u32, fit: Fit) -> Outline;
 }
 
-/// As [`Tessellated::outline`], of a solid of any kind.
+/// As [`Tessellated::outline`], for a solid of any kind.
 ///
 /// # Panics
-/// When there are fewer than 3 segments.
+/// When `segments` is less than 3.
 fn outline(solid: &AnySolid, segments: u32, fit: Fit) -> Outline {
     assert!(
         segments >= LEAST_SEGMENTS,
@@ -127,16 +122,16 @@ fn outline(solid: &AnySolid, segments: u32, fit: Fit) -> Outline {
     with_solid!(solid, solid => solid.outline(segments, fit))
 }
 
-/// The mesh of a solid with `segments` sides around its axis, in the solid's own
-/// space. It is closed where the solid is, and has the disks that the solid has; a disk
-/// is a polygon seen counter-clockwise from where the normal points. Balls and
-/// rounded ends have as many steps along the meridian as keep them no longer than those
-/// around. A cuboid is itself, whatever the number of segments and the fit.
+/// The mesh of a solid with `segments` sides around its axis, in the solid's own space. It is
+/// closed if the solid is, and has the disks that the solid has; a disk is a polygon that is
+/// counter-clockwise seen from where the normal points. Balls and rounded ends have just enough
+/// steps along the meridian that these are no longer than those around. The mesh of a cuboid is
+/// the cuboid, for any number of segments and either fit.
 ///
-/// The two fits have the same triangles of corners at the same angles.
+/// The two fits have the same triangles, and corners at the same angles.
 ///
 /// # Panics
-/// When there are fewer than 3 segments.
+/// When `segments` is less than 3.
 #[must_use]
 pub fn mesh_of(solid: &AnySolid, segments: u32, fit: Fit) -> Mesh {
     match outline(solid, segments, fit) {
@@ -151,10 +146,10 @@ pub fn mesh_of(solid: &AnySolid, segments: u32, fit: Fit) -> Mesh {
     }
 }
 
-/// The triangles of [`mesh_of`] alone, which both fits have in common.
+/// The triangles of [`mesh_of`] alone, which both fits share.
 ///
 /// # Panics
-/// When there are fewer than 3 segments.
+/// When `segments` is less than 3.
 #[must_use]
 pub fn triangles_of(solid: &AnySolid, segments: u32) -> Vec<[u32; 3]> {
     match outline(solid, segments, Fit::Inscribed) {
@@ -163,10 +158,10 @@ pub fn triangles_of(solid: &AnySolid, segments: u32) -> Vec<[u32; 3]> {
     }
 }
 
-/// How many vertices and triangles [`mesh_of`] has.
+/// The numbers of vertices and triangles of [`mesh_of`].
 ///
 /// # Panics
-/// When there are fewer than 3 segments.
+/// When `segments` is less than 3.
 #[must_use]
 pub fn mesh_size_of(solid: &AnySolid, segments: u32) -> (u64, u64) {
     match outline(solid, segments, Fit::Inscribed) {
@@ -175,13 +170,13 @@ pub fn mesh_size_of(solid: &AnySolid, segments: u32) -> (u64, u64) {
     }
 }
 
-/// By how much a mesh with the corners that are meant may be off the surface, and
-/// the surface off the mesh, in the solid's units: see the head of this file. 0 for a
-/// cuboid. It is off by no more than 8 u of the solid's radius itself (u = 2^-53),
-/// which [`corner_error_of`] has room for.
+/// The greatest deviation of a mesh with exact corners from the surface, and of the surface
+/// from the mesh, in the solid's units; see the head of this file. 0 for a cuboid. Its own
+/// error is at most 8 u of the solid's radius (u = 2^-53), for which [`corner_error_of`] has
+/// room.
 ///
 /// # Panics
-/// When there are fewer than 3 segments.
+/// When `segments` is less than 3.
 #[must_use]
 pub fn deviation_of(solid: &AnySolid, segments: u32, fit: Fit) -> f64 {
     match outline(solid, segments, fit) {
@@ -190,12 +185,12 @@ pub fn deviation_of(solid: &AnySolid, segments: u32, fit: Fit) -> f64 {
     }
 }
 
-/// By how much roundings may move a corner of a mesh of either fit, in the solid's
-/// units: at most 230 u of its size (60 u with many segments) and 8 u of how far it is
-/// from the origin, u = 2^-53.
+/// The bound of the roundings of a corner of a mesh of either fit, in the solid's units: at
+/// most 230 u of its size (60 u with many segments) and 8 u of its distance from the origin,
+/// u = 2^-53.
 ///
 /// # Panics
-/// When there are fewer than 3 segments.
+/// When `segments` is less than 3.
 #[must_use]
 pub fn corner_error_of(solid: &AnySolid, segments: u32) -> f64 {
     match outline(solid, segments, Fit::Circumscribed) {
@@ -204,11 +199,11 @@ pub fn corner_error_of(solid: &AnySolid, segments: u32) -> f64 {
     }
 }
 
-/// At least how far any corner of a mesh of either fit is from the origin, but for
+/// An upper bound of the distance of any corner of a mesh of either fit from the origin, up to
 /// roundings.
 ///
 /// # Panics
-/// When there are fewer than 3 segments.
+/// When `segments` is less than 3.
 #[must_use]
 pub fn reach_of(solid: &AnySolid, segments: u32) -> f64 {
     match outline(solid, segments, Fit::Circumscribed) {

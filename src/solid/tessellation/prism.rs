@@ -1,28 +1,28 @@
-//! The prisms of cylinders by their own names, as benchmarks and checks use them.
+//! Prisms of cylinders, for benchmarks and checks.
 
 use super::profile::turned_size;
 use super::{Fit, Mesh, inner_factor, mesh_of};
 use crate::solid::{Caps, Cylinder};
 
-/// By how much the inscribed prism may fall short of the cylinder's wall, which is
-/// [`deviation_of`](super::deviation_of) it.
+/// The distance by which the inscribed prism falls short of the cylinder's wall: its
+/// [`deviation_of`](super::deviation_of).
 #[must_use]
 pub fn sagitta(cylinder: &Cylinder, segments: u32) -> f64 {
     cylinder.radius() * (1.0 - inner_factor(segments))
 }
 
-/// The prism with `segments` sides whose corners lie on the rims, which is
-/// [`mesh_of`] a cylinder. It has the disks that the cylinder has.
+/// The prism with `segments` sides whose corners lie on the rims: the [`mesh_of`] a cylinder.
+/// It has the disks that the cylinder has.
 ///
 /// # Panics
-/// When there are fewer than 3 segments.
+/// When `segments` is less than 3.
 #[must_use]
 pub fn inscribed_prism(cylinder: &Cylinder, segments: u32) -> Mesh {
     mesh_of(&(*cylinder).into(), segments, Fit::Inscribed)
 }
 
-/// How many vertices and triangles the prism of a cylinder has: they depend on its
-/// disks alone.
+/// The numbers of vertices and triangles of a cylinder's prism, which depend on its disks
+/// alone.
 #[must_use]
 pub fn prism_size(caps: Caps, segments: u32) -> (u64, u64) {
     let disks = u64::from(caps.at_p0()) + u64::from(caps.at_p1());

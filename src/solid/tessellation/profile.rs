@@ -1,15 +1,14 @@
 //! A polyline turned about an axis, as triangles.
 //!
-//! The polyline has a *ring* for each corner off the axis and may begin and end in a
-//! *pole*, a corner on it. A ring becomes N corners at multiples of `2π/N`, two rings a
-//! band of trapezoids, and a pole with the ring next to it a fan of triangles. A flat
-//! disk is the fan of a pole in its middle.
+//! The polyline has a *ring* for each corner off the axis, and may begin and end in a *pole*, a
+//! corner on it. A ring becomes N corners at multiples of `2π/N`, two rings become a band of
+//! trapezoids, and a pole with the ring next to it a fan of triangles. A flat disk is the fan
+//! of a pole at its center.
 //!
 //! **Roundings** (u = 2^-53; R is the radius of the corners). A corner is
-//! `p + (e cos φ + f sin φ) R`, p the middle of the ring:
+//! `p + (e cos φ + f sin φ) R`, p the center of the ring:
 //!
-//! - `φ = 2π k / N` has three roundings, together `19 u` of an angle, and turns
-//!   the corner by that;
+//! - `φ = 2π k / N` has three roundings, together an angle of `19 u`, which turns the corner;
 //! - the axis is off by `5 u` (difference, length, quotient); `e`, a difference
 //!   no shorter than √(2/3), is off by `14 u` from a unit vector across the
 //!   true axis, and `f = axis × e` by `22 u`;
@@ -18,8 +17,8 @@
 //! - R itself is within `6 u`: π/N, the cosine (relative, as π/N <= π/3) and the
 //!   quotient; and the sum with p rounds by `u (|p| + R)`.
 //!
-//! Together `u (72 R + |p|)`; [`Profile::corner_error`] counts 80 and 2, and what the
-//! polyline itself is off by, `/ cos(π/N)` as R is.
+//! The sum is `u (72 R + |p|)`. [`Profile::corner_error`] counts 80 and 2, and the error of the
+//! polyline itself over `cos(π/N)`, as R is.
 
 use glam::DVec3;
 
@@ -30,13 +29,13 @@ use crate::solid::surface::angle_frame;
 /// A corner of the polyline off the axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ring {
-    /// Where its height is on the axis.
+    /// Its center, on the axis.
     pub center: DVec3,
     /// Its distance from the axis, positive.
     pub radius: f64,
 }
 
-/// A polyline that turned about an axis is a solid, or its wall.
+/// A polyline that, turned about an axis, is a solid or its wall.
 #[derive(Clone, Debug)]
 pub(super) struct Profile {
     /// Unit vector.
@@ -47,14 +46,14 @@ pub(super) struct Profile {
     pub start: Option<DVec3>,
     /// The pole after the last ring.
     pub end: Option<DVec3>,
-    /// By how much the polyline may be off the meridian.
+    /// The greatest distance of the polyline from the meridian.
     pub deviation: f64,
-    /// By how much roundings may move its corners.
+    /// The bound of the roundings of its corners.
     pub error: f64,
 }
 
 impl Profile {
-    /// Rings stand meridian by meridian, then come the poles.
+    /// The vertices: those of the rings by meridian, then the poles.
     pub fn vertices(&self, segments: u32, fit: Fit) -> Vec<DVec3> {
         let factor = inner_factor(segments);
         let (reference, across) = angle_frame(self.axis);
@@ -98,13 +97,13 @@ impl Profile {
         triangles
     }
 
-    /// How many vertices and triangles there are.
+    /// The numbers of vertices and triangles.
     pub fn size(&self, segments: u32) -> (u64, u64) {
         let poles = u64::from(self.start.is_some()) + u64::from(self.end.is_some());
         turned_size(self.rings.len() as u64, poles, segments)
     }
 
-    /// By how much what is turned with N sides may be off what is turned about.
+    /// The deviation of the polyline turned with N sides from the solid of revolution.
     pub fn deviation(&self, segments: u32, fit: Fit) -> f64 {
         let factor = inner_factor(segments);
         let of_turn = match fit {
@@ -114,14 +113,14 @@ impl Profile {
         self.deviation + self.widest() * of_turn
     }
 
-    /// By how much a corner, as computed, may be off the one that is meant.
+    /// The error bound of a computed corner.
     pub fn corner_error(&self, segments: u32) -> f64 {
         let factor = inner_factor(segments);
         let farthest = self.greatest(|ring| ring.center.length());
         UNIT_ROUNDOFF * (80.0 * (self.widest() / factor) + 2.0 * farthest) + self.error / factor
     }
 
-    /// How far from the origin a corner may be.
+    /// An upper bound of the distance of a corner from the origin.
     pub fn reach(&self, segments: u32) -> f64 {
         let factor = inner_factor(segments);
         let of_poles = [self.start, self.end].map(|pole| pole.map_or(0.0, DVec3::length));
@@ -139,7 +138,7 @@ impl Profile {
     }
 }
 
-/// How many vertices and triangles this many rings and poles come to.
+/// The numbers of vertices and triangles of these rings and poles.
 pub(super) fn turned_size(rings: u64, poles: u64, segments: u32) -> (u64, u64) {
     let segments = u64::from(segments);
     (

@@ -1,43 +1,42 @@
-//! The profiles of the kinds of solids: see the head of this folder.
+//! The profiles of the kinds of solids; see the head of this folder.
 //!
-//! **Straight ones.** Cylinder, cone and disk: the ends are as stated, exact. A radius
-//! of zero is a pole, the apex.
+//! **Straight profiles.** Cylinder, cone and disk have exact ends, as stated. A radius of zero
+//! is a pole, the apex.
 //!
-//! **An arc** of radius r about c goes from a pole, where it is square to the axis,
-//! through an angle θ. With steps of δ its corners are at δ, 2δ, ... from the pole: on
-//! the arc, or at `r / cos(δ/2)`, where they and the pole are the corners of a polyline
-//! that touches the arc at δ/2, 3δ/2, .... A ball is one with `θ = π` from pole to
-//! pole, of 2 m + 1 such steps; both its halves are arcs of m rings, and the step
-//! between them goes through the equator: `δ = π / (2 m + 1)`.
+//! **An arc** of radius r about c goes from a pole, where it is perpendicular to the axis,
+//! through an angle θ. With steps of δ its corners are at δ, 2δ, ... from the pole: on the arc,
+//! or at `r / cos(δ/2)`, where they and the pole are the corners of a polyline that touches the
+//! arc at δ/2, 3δ/2, .... A ball is an arc with `θ = π` from pole to pole, of 2 m + 1 such
+//! steps. Each of its halves is an arc of m rings, and the step between them crosses the
+//! equator: `δ = π / (2 m + 1)`.
 //!
-//! **A rounded cone** has an arc of each ball, up to the circle in which the wall
-//! touches it, at the angle θ with `cos θ = ±Δ / |a|`, `sin θ = √β / |a|` (Δ the
-//! difference of the radii, `β = |a|² - Δ²`). Of m rings, the last of the inscribed
-//! one is that circle, `δ = θ / m`. The circumscribed one touches the arc there for
-//! the last time, half a step beyond its last ring, `δ = θ / (m + 1/2)`: then the last
-//! corners of both arcs are on the line of the wall, and the segment between them
-//! touches both balls. A radius of zero is a pole on that line. Where one ball contains the
-//! other, it is that ball.
+//! **A rounded cone** has an arc of each ball, up to the circle in which the wall touches it,
+//! at the angle θ with `cos θ = ±Δ / |a|`, `sin θ = √β / |a|` (Δ the difference of the radii,
+//! `β = |a|² - Δ²`). Of m rings, the last of the inscribed polyline is that circle,
+//! `δ = θ / m`. The circumscribed polyline touches the arc there for the last time, half a step
+//! beyond its last ring, `δ = θ / (m + 1/2)`: then the last corners of both arcs are on the
+//! line of the wall, and the segment between them touches both balls. A radius of zero is a
+//! pole on that line. If one ball contains the other, the solid is that ball.
 //!
 //! m is the least number with `θ / m <= 2π/N`, so that δ <= 2π/3.
 //!
-//! **Roundings** (u = 2^-53; ρ = r / cos(δ/2), R the greatest of them). θ as computed is
-//! what is meant. A corner at k δ is off by 2 u of at most π; `ρ` by 4 u, as
-//! `δ/2 tan(δ/2) < 2`; sine, cosine and the products by 4 u; the axis by 6 u; and the
-//! sum with c rounds by `u (|c| + ρ)`: together `u (22 ρ + |c|)`. θ itself is off by
+//! **Roundings** (u = 2^-53; ρ = r / cos(δ/2), R the greatest of them). The computed θ is taken
+//! as exact. A corner at k δ is off by 2 u of at most π; `ρ` by 4 u, as `δ/2 tan(δ/2) < 2`;
+//! sine, cosine and the products by 4 u; the axis by 6 u; and the sum with c rounds by
+//! `u (|c| + ρ)`: together `u (22 ρ + |c|)`. θ itself is off by
 //!
-//! - ten u, of the arctangent and its arguments, as the axis as rounded is;
-//! - what rounding `a` leaves in β: at most `√u`, or 2 √u where β is below `u |a|²`
+//! - ten u, for the arctangent and its arguments, with the rounded axis;
+//! - the effect of rounding `a` on β: at most `√u`, or 2 √u if β is below `u |a|²`
 //!   (`rounded_cone/surface.rs`).
 //!
-//! By an angle ε off, an inscribed polyline still has its corners on the arcs, and
-//! falls short of the wall by `r (1 - cos ε) <= 4 u r` more. The directions in which a
-//! circumscribed one should touch both balls then tell them apart, by
-//! `|a·n + Δ| <= 14 u |a|`: ten of the angle, the others of `a`, Δ and terms of second
-//! order. By that one of the arcs' last corners is below the line of the wall, whose
-//! direction turns by that over its length, at least `r tan(δ/2)`, which
-//! moves the points where it touches the balls, `r sin(δ/2)` from its corners, by no
-//! more. Together `u (26 R + |c| + 14 |a|)`; 32, 2 and 16 are counted.
+//! With an angle off by ε, an inscribed polyline still has its corners on the arcs, and falls
+//! short of the wall by `r (1 - cos ε) <= 4 u r` more. The two directions in which a
+//! circumscribed one should touch both balls then differ by `|a·n + Δ| <= 14 u |a|`: ten for
+//! the angle, the others for `a`, Δ and terms of second order. By that, one of the arcs' last
+//! corners is below the line of the wall. The direction of the wall turns by that over its
+//! length, at least `r tan(δ/2)`, which moves the points where it touches the balls,
+//! `r sin(δ/2)` from its corners, by no more. The sum is `u (26 R + |c| + 14 |a|)`; 32, 2 and
+//! 16 are counted.
 
 use glam::DVec3;
 
@@ -75,7 +74,7 @@ impl Tessellated for Cone {
     }
 }
 
-/// A disk, whose rim is the beginning and whose middle is the end.
+/// A disk, from its rim to its center.
 impl Tessellated for Disk {
     fn outline(&self, _: u32, _: Fit) -> Outline {
         let (center, radius) = (self.center(), self.radius());
@@ -135,7 +134,7 @@ fn of_rounded_cone(cone: &RoundedCone, segments: u32, fit: Fit) -> Profile {
     of_arcs(axis, arcs, 16.0 * UNIT_ROUNDOFF * taper.a.length())
 }
 
-/// How many rings an arc has.
+/// The number of rings of an arc.
 fn rings_of(angle: f64, segments: u32) -> u32 {
     let steps = angle * f64::from(segments) / std::f64::consts::TAU;
     (steps.ceil() as u32).max(1)
@@ -150,7 +149,7 @@ struct Arc {
 }
 
 impl Arc {
-    /// This many rings, a step from one to the next.
+    /// An arc of this number of rings, one step apart.
     fn new(
         center: DVec3,
         radius: f64,
@@ -181,8 +180,8 @@ impl Arc {
     }
 }
 
-/// The polyline of two arcs from the pole of the first to that of the second. By as
-/// much as `of_wall` roundings move the wall.
+/// The polyline of two arcs from the pole of the first to that of the second. `of_wall` bounds
+/// the roundings of the wall.
 fn of_arcs(axis: DVec3, [first, second]: [Arc; 2], of_wall: f64) -> Profile {
     Profile {
         axis,

@@ -1,10 +1,10 @@
-//! Many rays at a time.
+//! Batches of rays.
 //!
-//! Coherent rays are traced sixteen together, as a packet: Embree walks its tree
-//! once for all of them, and the solver takes eight to a row. Others enter the root
-//! together, in the same rows, but are then traced one by one, for a packet visits
-//! whatever any of its rays has to. Rays that start at many places are first put in an
-//! order in which neighbours have most in common. Answers depend on none of this.
+//! Coherent rays are traced in packets of sixteen: Embree walks its tree once for all of them,
+//! and the solver computes rows of eight. Other rays enter the root together, in the same rows,
+//! but are then traced one by one, because a packet visits everything that any of its rays
+//! visits. Rays with many different origins are first sorted so that neighbours have most in
+//! common. Results depend on none of this.
 
 mod normalized;
 mod order;
@@ -20,22 +20,21 @@ use normalized::NormalizedRays;
 use order::{Group, order, split};
 use packet_heuristic::PacketHeuristic;
 
-/// Rays are alike if the cosine between each direction and the first one is at
-/// least this, which is an angle of 8 degrees: a pixel's neighbours in most
-/// pictures, or all rays to a sun.
+/// Rays are coherent if the cosine between each direction and the first one is at least this,
+/// an angle of 8 degrees: a pixel's neighbours in most pictures, or all rays to a sun.
 const LEAST_COSINE: f64 = 0.99;
 
-/// Fewer rays than this are traced one by one, and enter one by one.
+/// Fewer rays than this are traced one by one, and enter the root one by one.
 const LEAST_RAYS: usize = 4;
 
-/// A description of this many bytes, which has about as many in Embree's tree, is
-/// thought to stay in the caches of a core, of which recent ones have 1 to 2 MB.
+/// A description up to this number of bytes, with a tree of about the same size, is assumed to
+/// stay in the caches of a core; those of recent ones have 1 to 2 MB.
 const GREATEST_CACHED: usize = 1 << 21;
 
 impl Tracer {
-    /// The first hits of many rays, in their order, as [`Tracer::first_hit`]
-    /// finds them. The more rays there are the more have something in common;
-    /// rays of one point that are neighbours in the slice are traced together.
+    /// The first hits of many rays, in their order, as by [`Tracer::first_hit`]. More rays have
+    /// more in common; rays from one point that are neighbours in the slice are traced
+    /// together.
     pub fn first_hits(&self, rays: &[Ray], hits: &mut Vec<Option<FirstHit>>) {
         hits.clear();
         hits.reserve(rays.len());
@@ -49,13 +48,12 @@ impl Tracer {
         });
     }
 
-    /// The hits of many rays, in their order, as [`Tracer::closest`] finds
-    /// them.
+    /// The hits of many rays, in their order, as by [`Tracer::closest`].
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut Vec<Option<Hit>>) {
         self.resolve_batch(rays, hits, |ray, first| self.hit(ray, first));
     }
 
-    /// As [`Tracer::closest_batch`], with only those fields worked out that are in `fields`.
+    /// As [`Tracer::closest_batch`], with only the given fields computed.
     pub fn closest_batch_with(
         &self,
         rays: &[Ray],
@@ -65,7 +63,7 @@ impl Tracer {
         self.resolve_batch(rays, hits, |ray, first| self.hit_with(ray, first, fields));
     }
 
-    /// The hits of many rays, worked out by `hit`.
+    /// The hits of many rays, computed by `hit`.
     fn resolve_batch<T>(
         &self,
         rays: &[Ray],
@@ -79,8 +77,7 @@ impl Tracer {
         hits.extend(pairs.map(|(ray, first)| Some(hit(ray, &first?))));
     }
 
-    /// Whether each of many rays meets any surface, in their order, as
-    /// [`Tracer::occluded`] says.
+    /// Whether each of many rays hits any surface, in their order, as by [`Tracer::occluded`].
     pub fn occluded_batch(&self, rays: &[Ray], blocked: &mut Vec<bool>) {
         blocked.clear();
         blocked.reserve(rays.len());
@@ -92,8 +89,8 @@ impl Tracer {
         });
     }
 
-    /// Adds the answer of each ray to `answers`: of usual rays by `together`, of few or
-    /// others by `alone`, which also says how often Embree called back.
+    /// Adds the result of each ray to `answers`: by `together`, or by `alone` for few rays and
+    /// for rays that are not valid. `alone` also returns the number of callbacks.
     fn answer_all<T: Default>(
         &self,
         rays: &[Ray],
@@ -165,13 +162,13 @@ impl Tracer {
         positions
     }
 
-    /// Whether all that rays visit stays in a core's own caches, however rays come.
+    /// Whether everything that rays visit stays in a core's caches, in any order of rays.
     fn fits_caches(&self) -> bool {
         self.counted.described_bytes <= GREATEST_CACHED
     }
 
-    /// Whether the rays should be a packet. Those of a group that is alike are within twice
-    /// the angle of each other.
+    /// Whether the rays should be a packet. Rays of a coherent group are within twice the angle
+    /// of each other.
     fn are_packet(
         &self,
         rays: &[Ray],
@@ -182,9 +179,9 @@ impl Tracer {
     }
 }
 
-/// Whether all rays go about the same way. Where they start does not matter as
-/// much: it is near together for rays of a picture, and where it is not the
-/// directions still say that the boxes they meet are met in the same order.
+/// Whether all rays have similar directions. Their origins matter less: those of a picture's
+/// rays are near each other, and rays from elsewhere with the same directions still intersect
+/// boxes in the same order.
 fn are_alike(rays: &[Ray]) -> bool {
     let first = rays[0].direction;
     rays.iter().all(|ray| {

@@ -1,4 +1,4 @@
-//! The rays of a packet as they are traced.
+//! The normalized rays of a packet.
 
 use crate::embree::{GREATEST_PACKET, Instructions, RaySet};
 use crate::math::{LANES, Lanes, Ray};
@@ -7,17 +7,17 @@ use crate::tracer::decisions::Decisions;
 use crate::tracer::frame::{LocalRay, PacketRays, ROWS};
 use crate::tracer::query::Packet;
 
-/// Rays of a packet with directions of usual length.
+/// The rays of a packet, with normalized directions.
 pub(super) struct NormalizedRays {
     pub all: RaySet,
     pub packet: Packet,
     pub local: PacketRays,
-    /// What turns the `t` of each ray back.
+    /// The factor from the `t` of each ray to the caller's.
     pub factors: [f64; GREATEST_PACKET],
 }
 
 impl NormalizedRays {
-    /// No rays yet, to be computed with these instructions.
+    /// An empty packet, to be computed with these instructions.
     pub fn new(instructions: Instructions, decisions: Decisions) -> Self {
         Self {
             all: RaySet::EMPTY,
@@ -27,13 +27,13 @@ impl NormalizedRays {
         }
     }
 
-    /// Replaces the rays, which Embree gets together or one by one; false if one is a miss
-    /// wherever the solids are.
+    /// Replaces the rays. They are traced as a packet if `is_together`, otherwise one by one.
+    /// Returns false if a ray is not valid, that is a miss in any scene.
     pub fn fill(&mut self, tracer: &Tracer, rays: &[Ray], is_together: bool) -> bool {
         let (mut t_min, mut t_max) = ([Lanes::splat(0.0); ROWS], [Lanes::splat(0.0); ROWS]);
         for (number, ray) in rays.iter().enumerate() {
             let (row, lane) = (number / LANES, number % LANES);
-            let Some((ray, factor)) = tracer.in_use(ray) else {
+            let Some((ray, factor)) = tracer.normalized(ray) else {
                 return false;
             };
             self.local.set(row, lane, &LocalRay::new(&ray));

@@ -1,44 +1,40 @@
-//! An order in which rays come to what their neighbours have just left in the
-//! caches.
+//! An order in which rays visit what their neighbours have just left in the caches.
 //!
-//! Rays that start near each other and go about the same way visit the same
-//! nodes and solids. Where all of a group go the same way, as to a sun, those
-//! belong together whose lines are near each other: they are ordered along a
-//! Morton curve in the plane across. Others are ordered along a Morton curve of
-//! their origins, and in each cell by the octant of their direction. There are
-//! about as many cells as rays, and rays of a cell stay in the order they are in.
+//! Rays that start near each other with similar directions visit the same nodes and solids. If
+//! all rays of a group have similar directions, as to a sun, rays with nearby lines belong
+//! together: they are sorted along a Morton curve in the plane across the direction. Others are
+//! sorted along a Morton curve of their origins, and in each cell by the octant of their
+//! direction. The number of cells is about that of rays, and rays of a cell keep their order.
 
 use glam::DVec3;
 
 use super::are_alike;
 use crate::math::{Ray, morton_code_2, morton_code_3};
 
-/// Fewer rays than this are traced as they are: they are few enough to share
-/// what is in the caches however they come.
+/// Fewer rays than this keep their order: they share the caches in any order.
 const LEAST_RAYS: usize = 64;
 
-/// The most rays that are ordered together. More gain less and less, and are
-/// farther apart in the caller's memory.
+/// The most rays that are sorted together. More gain less and less, and are farther apart in
+/// the caller's memory.
 const GREATEST_GROUP: usize = 1 << 15;
 
-/// The most rays that are ordered together if all go the same way: they need
-/// no more than that for packets to be full of neighbours, and this many fit the
-/// nearest caches.
+/// The most rays with similar directions that are sorted together: enough for packets full of
+/// neighbours, and few enough for the nearest caches.
 const GREATEST_ALIKE: usize = 1 << 10;
 
-/// The bits of a coordinate across a direction. It trades a pass of sorting for
-/// cells that distinguish the rays of neighbouring pixels in a whole picture.
+/// The bits of a coordinate across a direction. It trades a pass of sorting for cells that
+/// distinguish the rays of neighbouring pixels in a whole picture.
 const BITS_ACROSS: u32 = 12;
 
-/// Rays that are ordered together.
+/// Rays that are sorted together.
 #[derive(Clone, Copy)]
 pub(super) struct Group<'a> {
     pub rays: &'a [Ray],
-    /// Whether all go about the same way as the first.
+    /// Whether the rays are coherent: all directions are similar to the first.
     pub is_alike: bool,
 }
 
-/// The first rays and the rest: those that are best ordered together.
+/// Splits off the first rays, those that are best sorted together.
 pub(super) fn split(rays: &[Ray]) -> (Group<'_>, &[Ray]) {
     let (alike, after) = rays.split_at(rays.len().min(GREATEST_ALIKE));
     if are_alike(alike) {
@@ -56,9 +52,8 @@ pub(super) fn split(rays: &[Ray]) -> (Group<'_>, &[Ray]) {
     (group, after)
 }
 
-/// The numbers of the rays in the order in which they are traced; `None` if they
-/// are best as they are. Where the scene fits the caches, only those that go the
-/// same way are ordered, of which packets are made.
+/// The numbers of the rays in the order in which they are traced; `None` to keep the given
+/// order. If the scene fits the caches, only coherent rays are sorted, for packets.
 pub(super) fn order(group: Group, fits_caches: bool) -> Option<Vec<u32>> {
     let rays = group.rays;
     if rays.len() < LEAST_RAYS {
@@ -70,7 +65,7 @@ pub(super) fn order(group: Group, fits_caches: bool) -> Option<Vec<u32>> {
         upper = upper.max(ray.origin);
     }
     let extent = (upper - lower).max_element();
-    // Rays of one point come as neighbours of a picture do.
+    // Rays from one point are usually neighbours in a picture.
     if !(extent > 0.0 && extent.is_finite()) {
         return None;
     }
@@ -110,8 +105,8 @@ impl Plane {
         }
     }
 
-    /// The number of a point's cell along the curve. A point of a cube of a side
-    /// of `extent` is seen within `√3 extent` of its corner.
+    /// The number of a point's cell along the curve. Seen along the direction, a point of a
+    /// cube with sides of `extent` is within `√3 extent` of its corner.
     fn key(&self, point: DVec3) -> u32 {
         const REACH: f64 = 1.75;
         let per_cell = f64::from(1_u32 << BITS_ACROSS) / (2.0 * REACH * self.extent);
@@ -124,13 +119,13 @@ impl Plane {
     }
 }
 
-/// The number of a cell, of which there are `2^bits`; NaN is in the first.
+/// The number of one of `2^bits` cells; NaN is in the first.
 fn cell_number(x: f64, bits: u32) -> u32 {
     (x as u32).min((1 << bits) - 1)
 }
 
-/// The positions of the keys, in the order of the keys, equal ones as they are:
-/// sorted by one byte after the other, which is a few operations a key.
+/// The positions of the keys, sorted stably by key: a radix sort by bytes, which takes a few
+/// operations per key.
 fn sorted_by(keys: &[u32], key_bits: u32) -> Vec<u32> {
     let mut sorted: Vec<u32> = (0..keys.len() as u32).collect();
     let mut before = sorted.clone();
@@ -167,7 +162,7 @@ mod tests {
         (0..count).map(ray).collect()
     }
 
-    /// The order of the rays, if they are one group.
+    /// The order of the rays as one group.
     fn order_of(rays: &[Ray], fits_caches: bool) -> Option<Vec<u32>> {
         let is_alike = are_alike(rays);
         order(Group { rays, is_alike }, fits_caches)

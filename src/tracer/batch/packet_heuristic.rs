@@ -1,25 +1,19 @@
-//! Whether packets pay.
+//! Decides whether packets pay.
 
 use super::normalized::NormalizedRays;
 
-/// A packet's callback takes about as long as this many of a single ray: it solves
-/// two rows of eight lanes, and Embree moves sixteen lanes about. Measured
-/// on sticks and trees; `docs/performance.md`.
-const PACKET_CALLBACK: u32 = 1;
-
-/// After a packet that did not pay, this many times as many rays are traced one by
-/// one before the next is tried.
+/// After a packet that did not pay, the rays of this number of packets are traced one by one.
 const PAUSE: u32 = 7;
 
-/// Whether packets paid so far. Rays may go the same way and still have little
-/// in common: where what is between them is small, each meets other things. The
-/// callbacks tell, of the last packet and of the single rays.
+/// Whether packets paid so far. Rays may be coherent and still have little in common: if the
+/// solids between them are small, each ray visits others. The heuristic compares the callbacks
+/// of the last packet with those of single rays.
 #[derive(Debug, Default)]
 pub(super) struct PacketHeuristic {
-    /// Callbacks of single rays, and how many rays.
+    /// The callbacks of single rays, and the number of these rays.
     callbacks: u32,
     rays: u32,
-    /// How many packets are not to be tried.
+    /// The remaining number of packets to skip, plus one.
     pause: u32,
 }
 
@@ -31,7 +25,7 @@ impl PacketHeuristic {
 
     /// Counts `rays` that were traced one by one.
     pub fn traced_alone(&mut self, rays: usize, callbacks: u32) {
-        // The newest count for more: what was long ago was elsewhere.
+        // Halves old counts, so that new ones weigh more: old rays were elsewhere.
         if self.rays >= 256 {
             (self.callbacks, self.rays) = (self.callbacks / 2, self.rays / 2);
         }
@@ -49,8 +43,8 @@ impl PacketHeuristic {
 
     fn traced_packet(&mut self, normalized: &NormalizedRays) {
         let rays = normalized.all.len() as u64;
-        let cost = u64::from(PACKET_CALLBACK) * u64::from(normalized.packet.callbacks);
-        // Until single rays were traced, four callbacks each are supposed.
+        let cost = u64::from(normalized.packet.callbacks);
+        // Assumes four callbacks per ray until single rays were traced.
         let (callbacks, of_rays) = match self.rays {
             0 => (4, 1),
             of_rays => (u64::from(self.callbacks), u64::from(of_rays)),

@@ -1,4 +1,4 @@
-//! The cell that numbers of eight bits are in, and rays as seen from it.
+//! The cell of eight-bit coordinates, and rays relative to it.
 
 use glam::DVec3;
 
@@ -6,24 +6,24 @@ use crate::embree::{Box32, Ray32};
 use crate::math::{Bounds, LANES};
 use crate::tracer::frame::Frame;
 
-/// Corners are multiples of this many to a unit of the frame, which is finer than the least
-/// cell and leaves 16 bits for numbers up to 4 in size.
+/// Corners are multiples of a unit of the frame over this number. That is finer than the least
+/// cell, and leaves 16 bits for numbers up to 4 in size.
 const GRID: f32 = (1 << 13) as f32;
 
-/// The units of a cell that its solids' boxes may fill, of the 255 that eight bits
-/// count to. A half axis along the whole cell then has room to be rounded up.
+/// The units of a cell that its solids' boxes may fill, of the 255 that eight bits represent. A
+/// half axis along the whole cell can then be rounded up.
 const FILLED: f64 = 250.0;
 
-/// The most units that the slack of the frame may be. The ray's nearest point is off by up
-/// to 36 v O, twice the slack, which is then below 64 units; and a smaller unit would gain
-/// nothing where all is uncertain by the slack.
+/// The greatest slack of the frame, in units. The ray's nearest point is off by up to 36 v O,
+/// twice the slack, which is then below 64 units. A smaller unit would gain nothing, as
+/// everything is uncertain by the slack.
 const MOST_SLACK: f64 = 32.0;
 
-/// The middle of a cell.
+/// The middle of a cell, along each axis.
 const MIDDLE: f32 = 127.5;
 
-/// The longest way along a ray that counts, in units. A point of the cell is within 221 of
-/// its middle, and the ray's nearest point is computed to within 64.
+/// The greatest distance along a ray that matters, in units. A point of the cell is within 221
+/// of its middle, and the ray's nearest point is computed to within 64.
 pub(super) const LONGEST: f32 = 320.0;
 
 /// A cube of the frame, with a corner at a multiple of 1/[`GRID`], and sides of 255 units of
@@ -32,14 +32,15 @@ pub(super) const LONGEST: f32 = 320.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cell {
     corner: [i16; 3],
-    /// How many units are one of the frame; see [`Cell::units`].
+    /// The code of the number of units in a unit of the frame; see [`Cell::units`].
     scale: u8,
-    /// Radii are multiples of one over two to this, in units.
+    /// Radii are multiples of two to the negative of this, in units.
     exponent: u8,
 }
 
 /// A ray in the units of a cell: its points are `origin + T direction`, for T from `start` to
-/// `end`. The direction has the length 1, and the origin is nearest to the middle.
+/// `end`. The direction has the length 1, and the origin is the line's point nearest to the
+/// middle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NearRay {
     pub origin: [f32; 3],
@@ -49,7 +50,7 @@ pub(crate) struct NearRay {
 }
 
 impl Cell {
-    /// The least cell that contains boxes of a group's space, grown as the frame says.
+    /// The least cell that contains boxes of a group's space, grown as in the frame.
     pub fn around(boxes: impl Iterator<Item = Bounds>, frame: &Frame) -> Self {
         let grown = boxes.map(|bounds| frame.grown_box(&bounds));
         let bounds = grown.fold(Box32::EMPTY, |sum, one| sum.union(&one));
@@ -71,7 +72,7 @@ impl Cell {
         }
     }
 
-    /// How many units are one of the frame.
+    /// The number of units in a unit of the frame.
     #[inline(always)]
     pub fn units(&self) -> f32 {
         units(self.scale)
@@ -83,8 +84,8 @@ impl Cell {
         (frame.place(point) - corner) * f64::from(self.units())
     }
 
-    /// Radii in units of the cell, rounded up to eight bits each: as fine as the greatest
-    /// allows. In tests only with a share of the step that they are rounded up by.
+    /// Radii in units of the cell, rounded up to eight bits each, as fine as the greatest
+    /// allows. Tests pass a `share` of the rounding step.
     pub fn keep_radii(&mut self, radii: [f64; LANES], share: f64) -> [u8; LANES] {
         let greatest = radii.iter().copied().fold(0.0, f64::max);
         let fits = |exponent: &u8| greatest * f64::from(1_u32 << exponent) <= 255.0;
@@ -93,7 +94,7 @@ impl Cell {
         radii.map(|radius| (radius * steps - (1.0 - share)).ceil() as u8)
     }
 
-    /// A radius that is kept.
+    /// A stored radius, in units.
     #[inline(always)]
     pub fn radius(&self, kept: u8) -> f32 {
         f32::from(kept) * f32::from_bits((127 - u32::from(self.exponent)) << 23)
@@ -105,7 +106,7 @@ impl Cell {
         self.corner.map(|x| f32::from(x) * (1.0 / GRID))
     }
 
-    /// The ray as seen from the cell.
+    /// The ray relative to the cell.
     #[inline(always)]
     pub fn near(&self, ray: &Ray32) -> NearRay {
         let (units, corner) = (self.units(), self.corner());
@@ -137,7 +138,7 @@ impl Cell {
 }
 
 /// 2^5 to nearly 2^21 in sixteenths of octaves, with five significant bits: products with it
-/// are rounded, it itself is not.
+/// are rounded, the number itself is exact.
 #[inline(always)]
 fn units(scale: u8) -> f32 {
     f32::from_bits((132 << 23) + (u32::from(scale) << 19))
@@ -154,7 +155,7 @@ pub(super) fn less(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// `f32::max` likewise.
+/// `f32::max` where neither is NaN, in one instruction.
 #[inline(always)]
 pub(super) fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }

@@ -1,51 +1,52 @@
-//! The filter of cylinders, and of solids that a cylinder contains well: the [`Sheath`] of
+//! The filter of cylinders, and of solids with a tight bounding cylinder: the [`Sheath`] of
 //! each.
 //!
-//! The copy of a cylinder is one about the points `c ± b` with a radius `r`, in units of the
-//! cell. `c` and `b` have components of eight bits, and `r` is a multiple of a power of two.
+//! The copy of a cylinder has the ends `c ± b` and the radius `r`, in units of the cell. `c`
+//! and `b` have components of eight bits, and `r` is a multiple of a power of two.
 //!
-//! # What is added
+//! # Margins
 //!
-//! Let the cylinder, in units, have the ends `p0`, `p1` and the radius ρ, let `s` be the slack and
-//! σ the sine between its axis and `b`. A point within `s` of it is a point `a` of the
-//! axis, and at most ρ across the axis and `s` from there. So it is within
+//! Let the cylinder, in units, have the ends `p0`, `p1` and the radius ρ, let `s` be the slack
+//! and σ the sine of the angle between its axis and `b`. A point within `s` of it is a point
+//! `a` of the axis, plus at most ρ across the axis and `s` from there. So it is within
 //!
 //! ```text
 //! r0 = off + ρ + s,        off = max over the ends of |(p - c) × b| / |b|            (1)
 //! h0 = max over the ends of |(p - c)·b| / |b| + ρ σ + s                             (2)
 //! ```
 //!
-//! of the line `c + y b`, and of the plane through `c` across it: both are greatest at an end.
-//! What a cylinder contains is within the same bounds. `b` is made long enough that
-//! `|b| >= h0`. It may be longer than the cylinder: a short
-//! thick one gets a longer `b`, whose direction is more exact, so that ρ σ is less.
+//! of the line `c + y b`, and of the plane through `c` across it: both distances are greatest
+//! at an end. Anything in the cylinder is within the same bounds. `b` is made long enough that
+//! `|b| >= h0`. It may be longer than the cylinder: a short thick one gets a longer `b`, whose
+//! direction is more exact, so that ρ σ is less.
 //!
 //! # The test
 //!
-//! For the line `x + T d` from `c`, with `n = b × d`, `w = x·n`, `B = |b|`, the roots of the distance
-//! from the axis, and its place along the axis, are
+//! For the line `x + T d` relative to `c`, with `n = b × d`, `w = x·n`, `B = |b|`, the roots of
+//! the distance from the axis, and the position along the axis, are
 //!
 //! ```text
 //! T |n|² = t ± B √D,   D = r² |n|² - w²,   t = (x·b)(d·b) - (x·d) B²               (3)
 //! y B = x·b + T d·b                                                                 (4)
 //! ```
 //!
-//! The part of the line inside the wall, that between the ends and that which is the ray are
-//! intervals. Three intervals of a line have a point in common if every two have (Helly), so
+//! The part of the line inside the wall, the part between the ends and the ray are intervals.
+//! Three intervals of a line have a common point if every two have (Helly), so the test is
 //!
 //! ```text
 //! D >= 0
 //! t + B √D >= start |n|²,   t - B √D <= end |n|²                     wall and ray   (5)
 //! |(x·b) |n|² + t (d·b)| <= B² |n|² + |d·b| B √D                     wall and ends  (6)
-//! the range of y B from start to end meets [-B², B²]                  ray and ends  (7)
+//! the range of y B from start to end intersects [-B², B²]             ray and ends  (7)
 //! ```
 //!
-//! and nothing is divided. A lane whose `b` is zero passes.
+//! without a division. A lane whose `b` is zero passes.
 //!
 //! # Roundings
 //!
-//! Products and sums of f32 have a relative error of v = 2^-24. Every length is below `Y` = 512, `start` and `end` are below it too, `b` and `B²` are exact, `|d|` is 1. Where a
-//! term is rounded several times the bounds are added:
+//! Products and sums of f32 have a relative error of v = 2^-24. Every length is below `Y` =
+//! 512, and so are `start` and `end`; `b` and `B²` are exact, `|d|` is 1. For terms with
+//! several roundings the bounds are added:
 //!
 //! ```text
 //! x: v Y    n: 3 v B    w: 7 v Y B    |n|²: 9 v B²    x·b, (x·d) B: 4 v Y B    d·b: 3 v B
@@ -53,22 +54,24 @@
 //! right of (6): 15 v Y B³    (4): 8 v Y B
 //! ```
 //!
-//! From `|w| <= r0 |n|` follows with the computed `w` and `n` that `|w| <= r0 |n| + 10 v Y B`, and
-//! squared, as `(p + q)² <= (1 + ε) p² + (1 + 1/ε) q²` with ε = 2^-7 and 2 (10 v Y B)² more for `D`:
+//! `|w| <= r0 |n|` implies `|w| <= r0 |n| + 10 v Y B` for the computed `w` and `n`, and
+//! squared, as `(p + q)² <= (1 + ε) p² + (1 + 1/ε) q²` with ε = 2^-7 and 2 (10 v Y B)² more for
+//! `D`:
 //!
 //! ```text
 //! D <= (1 + 2^-7) r0² |n|² - w² + 131 (10 v Y)² B²,   131 (10 v Y)² = 2^-16.3       (8)
 //! ```
 //!
-//! So the kept `r` is at least `r0 (1 + 2^-7)`, whose square has 2^-7 to spare for the roundings of (8)
-//! itself, and `D` gets [`MARGIN`]² B² with a margin of 2^-7: twice the root of 2^-16.3. The
-//! computed `D` is then not below that of a cylinder of radius r0.
-//! (5) is wrong by up to (15 + 10 + 3 + 2) v Y B² = 2^-10 B², and gets `MARGIN` B². (6) is wrong by up to
-//! 50 v Y B³ = 2^-9.3 B³ and gets 2^-10 (B² + 1) B², which is at least 2^-9 B³. (7) is wrong
-//! by up to 2^-12 B and gets `MARGIN` B². They move a surface by less than a unit.
+//! So the stored `r` is at least `r0 (1 + 2^-7)`, whose square has 2^-7 to spare for the
+//! roundings of (8) itself, and `D` gets [`MARGIN`]² B² with a margin of 2^-7: twice the root
+//! of 2^-16.3. The computed `D` is then not below that of a cylinder of radius r0. The sides of
+//! (5) are off by up to (15 + 10 + 3 + 2) v Y B² = 2^-10 B², and (5) gets `MARGIN` B². Those of
+//! (6) are off by up to 50 v Y B³ = 2^-9.3 B³, and (6) gets 2^-10 (B² + 1) B², which is at
+//! least 2^-9 B³. Those of (7) are off by up to 2^-12 B, and (7) gets `MARGIN` B². These
+//! margins move a surface by less than a unit.
 //!
-//! A ray that means others up to 256 away passes the axis within r0 and their
-//! distance. `Y` is 768 for it: 131 (10 v Y)² = 2^-15.1 is still below the square of the margin.
+//! A ray that represents others up to 256 away passes the axis within r0 plus their distance.
+//! `Y` is 768 for it: 131 (10 v Y)² = 2^-15.1 is still below the square of the margin.
 
 use glam::DVec3;
 
@@ -77,17 +80,17 @@ use super::{Cell, Filter, FilterOf, NearRay, Sheath, Sheathed};
 use crate::math::LANES;
 use crate::tracer::frame::Frame;
 
-/// What the tests have to spare for their roundings, as the head of this file derives: it
-/// makes a wall thicker by less than 1 % of its radius or of a unit.
+/// The margin of the tests for their roundings, as derived at the head of this file: it makes a
+/// wall thicker by less than 1 % of its radius or of a unit.
 const MARGIN: f32 = 1.0 / (1 << 7) as f32;
 
-/// What (6) has to spare: it makes a cylinder longer by 1/1024.
+/// The margin of (6): it makes a cylinder longer by 1/1024.
 const END_MARGIN: f32 = 1.0 / (1 << 10) as f32;
 
-/// The kept radius over r0 of (1).
+/// The stored radius over r0 of (1).
 const THICKER: f64 = 1.0 + 1.0 / (1 << 7) as f64;
 
-/// The roundings of f64 in what is kept are far below this share of it.
+/// A factor that covers the f64 roundings of the stored numbers.
 const OUTWARD: f64 = 1.0 + 1.0 / (1_u64 << 40) as f64;
 
 /// A block's cylinders, or the sheaths of its solids.
@@ -99,7 +102,7 @@ pub(crate) struct CylinderFilter {
     c: [[u8; LANES]; 3],
     /// Half axes.
     b: [[i8; LANES]; 3],
-    /// Radii, `2^exponent` to a unit; 0 where there is no cylinder.
+    /// Radii, `2^exponent` to a unit; 0 for an empty lane.
     r: [u8; LANES],
 }
 
@@ -161,7 +164,7 @@ impl CylinderFilter {
     }
 }
 
-/// What is worked out of a line and a lane; see the head of this file.
+/// The terms of a line and a lane; see the head of this file.
 struct Lane {
     x: [f32; 3],
     b: [f32; 3],
@@ -178,7 +181,7 @@ impl Filter for CylinderFilter {
     }
 
     #[inline(always)]
-    fn may_pass(&self, lane: usize, ray: &NearRay, apart: f32) -> bool {
+    fn may_hit_near(&self, lane: usize, ray: &NearRay, apart: f32) -> bool {
         let Lane {
             discriminant,
             is_there,
@@ -188,7 +191,7 @@ impl Filter for CylinderFilter {
     }
 
     #[inline(always)]
-    fn may_meet(&self, lane: usize, ray: &NearRay) -> bool {
+    fn may_hit(&self, lane: usize, ray: &NearRay) -> bool {
         let Lane {
             x,
             b,
@@ -223,7 +226,7 @@ struct InCell {
     axis: DVec3,
     radius: f64,
     slack: f64,
-    /// How much of (1) and (2) is added: all but in a test.
+    /// The share of the margins (1) and (2) that is added; 1 except in tests.
     share: f64,
 }
 
@@ -281,7 +284,7 @@ impl InCell {
         across(self.ends[0]).max(across(self.ends[1]))
     }
 
-    /// The radius to keep, r0 of (1) and what roundings need.
+    /// The radius to store: r0 of (1) with its margin for roundings.
     fn thick(&self, off: f64) -> f64 {
         let added = (off + self.radius + self.slack) * THICKER * OUTWARD - self.radius;
         self.radius + self.share * added

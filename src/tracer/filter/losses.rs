@@ -1,4 +1,4 @@
-//! What filters lose, for tests that draw solids and rays.
+//! The losses of filters, for tests with random solids and rays.
 
 use super::{FilterOf, survivors};
 use crate::for_each_solid;
@@ -7,20 +7,21 @@ use crate::solid::AnySolid;
 use crate::tracer::frame::{Frame, LocalRay};
 use crate::tracer::kinds::TracedKind;
 
-/// What rays find of a block, solved in f64, and what its filter leaves of that.
+/// The hits of rays with the solids of a block, solved in f64, compared with the block's
+/// filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FilterLosses {
     /// Pairs of a ray and a solid that it hits.
     pub hits: u64,
-    /// Those that do not survive; always 0 with the whole margins.
+    /// Hits that do not survive the filter; always 0 with the full margins.
     pub lost: u64,
     /// Pairs that survive without a hit.
     pub spare: u64,
 }
 
 impl FilterLosses {
-    /// Puts rays to the filter of up to eight solids of one kind, of a prototype that fills
-    /// the box `whole`. The filter is made with a share of the margins that it needs.
+    /// Tests rays with the filter of up to eight solids of one kind, in a prototype that fills
+    /// the box `whole`. The filter has a share of the required margins.
     ///
     /// # Panics
     /// If there are more solids, or of several kinds.
@@ -58,11 +59,11 @@ impl FilterLosses {
             for (lane, one) in solids.iter().enumerate() {
                 let from_anchor = local.origin_from(one.anchor());
                 let (direction, shift) = (local.direction, local.shift);
-                let met = one.first(from_anchor, direction, shift, t_min, t_max);
+                let hit = one.first(from_anchor, direction, shift, t_min, t_max);
                 let survives = survivors >> lane & 1 == 1;
-                losses.hits += u64::from(met.is_some());
-                losses.lost += u64::from(met.is_some() && !survives);
-                losses.spare += u64::from(met.is_none() && survives);
+                losses.hits += u64::from(hit.is_some());
+                losses.lost += u64::from(hit.is_some() && !survives);
+                losses.spare += u64::from(hit.is_none() && survives);
             }
         }
         losses

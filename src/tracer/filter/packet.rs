@@ -1,36 +1,36 @@
-//! The rays of a packet at a block.
+//! The rays of a packet against a block.
 //!
-//! Rays that go together have most solids of a block in common that they miss. So the first
-//! means all, about as thick as they are apart, and only what that may pass through is put
-//! to each of them.
+//! Coherent rays mostly miss the same solids of a block. So the first ray represents all, with
+//! their distance as its thickness, and only the solids that it may hit are tested against each
+//! ray.
 //!
-//! With `o` and `d` the first one's, a point of another ray `o' + T d'` is off from that of the
-//! first at the same T by at most `|o' - o| + |T| |d' - d|`, component by component, and `|T|` is at
-//! most [`LONGEST`]. So what the other meets the first passes within that distance. Its
-//! roundings, a few 2^-24 of it, are within the 1 % that is added.
+//! Let `o` and `d` be those of the first ray. A point of another ray `o' + T d'` is off from
+//! that of the first at the same T by at most `|o' - o| + |T| |d' - d|`, component by
+//! component, and `|T|` is at most [`LONGEST`]. So the first ray passes everything that the
+//! other hits within that distance. Its roundings, a few 2^-24 of it, are within the added 1 %.
 
 use super::cell::{LONGEST, greater};
 use super::{Cell, Filter, NearRay};
 use crate::embree::{GREATEST_PACKET, RaySet, Rays32};
 use crate::math::{LANES, LaneMask};
 
-/// The most that rays may be apart for the first to stand for all, in units of the cell: as
-/// wide as the cell. It is then within 512 + 256 of what the others meet, for which filters
-/// have to have margins too.
+/// The greatest distance of rays from the first that represents them, in units of the cell: as
+/// wide as the cell. The first ray is then within 512 + 256 of what the others hit, for which
+/// filters need margins too.
 pub(super) const MOST_APART: f32 = 256.0;
 
-/// What the distance is multiplied by: 1 % and the roundings.
+/// The factor of the distance: 1 % and the roundings.
 const APART: f32 = 1.0 + 1.0 / (1 << 6) as f32;
 
 /// Rays of a packet near a cell, in rows.
 pub(crate) struct NearPacket {
     rows: [NearRow; ROWS],
     wanted: RaySet,
-    /// One of them, and how far from it the others are at most; `None` if that is too far.
+    /// One of them, and the greatest distance of the others from it; `None` if that is too far.
     bundle: Option<(NearRay, f32)>,
 }
 
-/// Rows of lanes that hold a packet.
+/// The number of rows of lanes in a packet.
 const ROWS: usize = GREATEST_PACKET / LANES;
 
 /// Eight rays near a cell.
@@ -79,7 +79,7 @@ impl NearRow {
 }
 
 impl NearPacket {
-    /// Those of a packet's rays that are `wanted`.
+    /// The `wanted` rays of a packet.
     #[inline(always)]
     pub fn new(cell: &Cell, rays: &Rays32, wanted: RaySet) -> Self {
         let mut rows = [NearRow::NOWHERE; ROWS];
@@ -98,20 +98,20 @@ impl NearPacket {
         }
     }
 
-    /// The lanes whose solids some of the rays may meet, as bits.
+    /// The lanes whose solids some of the rays may hit, as bits.
     #[inline(always)]
     pub fn lanes(&self, filter: &impl Filter) -> u8 {
         let Some((ray, apart)) = self.bundle else {
             return u8::MAX;
         };
-        let mut may_pass = LaneMask::splat(false);
+        let mut may_hit_near = LaneMask::splat(false);
         for lane in 0..LANES {
-            may_pass.0[lane] = filter.may_pass(lane, &ray, apart);
+            may_hit_near.0[lane] = filter.may_hit_near(lane, &ray, apart);
         }
-        may_pass.bits()
+        may_hit_near.bits()
     }
 
-    /// The rays that may meet the solid of a lane.
+    /// The rays that may hit the solid of a lane.
     #[inline(always)]
     pub fn survivors(&self, filter: &impl Filter, lane: usize) -> RaySet {
         let mut bits = 0;
@@ -120,17 +120,17 @@ impl NearPacket {
                 continue;
             }
             let rays = &self.rows[row];
-            let mut may_meet = LaneMask::splat(false);
+            let mut may_hit = LaneMask::splat(false);
             for ray in 0..LANES {
-                may_meet.0[ray] = filter.may_meet(lane, &rays.ray(ray));
+                may_hit.0[ray] = filter.may_hit(lane, &rays.ray(ray));
             }
-            bits |= u16::from(may_meet.bits()) << (row * LANES);
+            bits |= u16::from(may_hit.bits()) << (row * LANES);
         }
         RaySet::from_bits(bits) & self.wanted
     }
 }
 
-/// The first of the wanted rays, and how far from it the others are.
+/// The first of the wanted rays, and the greatest distance of the others from it.
 #[inline(always)]
 fn bundle(rows: &[NearRow; ROWS], wanted: RaySet) -> Option<(NearRay, f32)> {
     let number = wanted.into_iter().next()?;
@@ -144,7 +144,7 @@ fn bundle(rows: &[NearRow; ROWS], wanted: RaySet) -> Option<(NearRay, f32)> {
             *greatest = greater(*greatest, apart);
         }
     }
-    // In halves, for a row has no greatest of its own in the processor.
+    // In halves, since processors have no instruction for the maximum of a row.
     for half in [4, 2, 1] {
         for lane in 0..half {
             greatest[lane] = greater(greatest[lane], greatest[lane + half]);
@@ -157,7 +157,7 @@ fn bundle(rows: &[NearRow; ROWS], wanted: RaySet) -> Option<(NearRay, f32)> {
     Some((first, square.sqrt() * APART))
 }
 
-/// The square of the most that two rays are apart.
+/// The square of the greatest distance between two rays.
 #[inline(always)]
 fn square_apart(one: &NearRay, other: &NearRay) -> f32 {
     let mut square = 0.0;

@@ -1,8 +1,8 @@
 //! The filter of spheres.
 //!
-//! The copy of a sphere is one about `c` with a radius `r`, in units of the cell. `c` is a
-//! multiple of 1/256 in each component, for a cache line has room for that; `r` is a
-//! multiple of a power of two.
+//! The copy of a sphere has the center `c` and the radius `r`, in units of the cell. `c` is a
+//! multiple of 1/256 in each component, which fills the cache line; `r` is a multiple of a
+//! power of two.
 //!
 //! A point within the slack `s` of a sphere with the radius ρ is within
 //!
@@ -10,25 +10,25 @@
 //! r0 = off + ρ + s,        off = |center - c|                                        (1)
 //! ```
 //!
-//! of `c`. For the ray `x + T d` from `c`, with |d| = 1, the distance is least at
-//! `T = -x·d`, moved into the range: the test is
+//! of `c`. For the ray `x + T d` relative to `c`, with |d| = 1, the distance is least at
+//! `T = -x·d`, clamped to the range: the test is
 //!
 //! ```text
 //! |x + T d|² <= r²,        T = min(max(-x·d, start), end)                            (2)
 //! ```
 //!
-//! A ray that means others passes `c` within `r` and their distance.
+//! A ray that represents others passes `c` within `r` plus their distance.
 //!
 //! # Roundings
 //!
-//! Products and sums of f32 have a relative error of v = 2^-24; every length is below
-//! `Y` = 768, that to a ray which means others 256 away, and those of `d` are 1 to within 4 v. `x` is rounded by v Y, √3 times in
-//! all. The computed `T` is off by up to 10 v Y from where the distance is least: 2 for `x` and
-//! `d`, 4 for the product, 4 for the length of `d`. The point `x + T d` is then rounded twice a
-//! component, 4 v Y. The least distance is that of a point that is moved by no more than
-//! 2 v Y + 10 v Y + 4 v Y, below [`ROUNDED`], a 1024th of a unit. The squares and their sums have
-//! three roundings, and the radius's one: 2 v of the lengths, of which `r` gets 2^-20.
-//! Where the range is empty either answer is right.
+//! Products and sums of f32 have a relative error of v = 2^-24. Every length is below `Y` =
+//! 768, the distance of a ray that represents others 256 away, and that of `d` is 1 to within 4
+//! v. `x` is rounded by v Y, √3 times in all. The computed `T` is off by up to 10 v Y from
+//! where the distance is least: 2 for `x` and `d`, 4 for the product, 4 for the length of `d`.
+//! The point `x + T d` is then rounded twice per component, 4 v Y. The least distance is that
+//! of a point that is moved by no more than 2 v Y + 10 v Y + 4 v Y, below [`ROUNDED`], a 1024th
+//! of a unit. The squares and their sums have three roundings, and that of the radius one: 2 v
+//! of the lengths, for which `r` gets 2^-20. If the range is empty, either result is right.
 
 use super::cell::{LONGEST, dot, greater, less};
 use super::{Cell, Filter, FilterOf, NearRay};
@@ -36,13 +36,13 @@ use crate::math::LANES;
 use crate::solid::{ConvexSolid, Sphere};
 use crate::tracer::frame::Frame;
 
-/// Steps of centers in a unit: 255 units then fill 16 bits.
+/// Steps of centers per unit: 255 units then fill 16 bits.
 const STEPS: f64 = 256.0;
 
-/// What (2) may be off by, in units.
+/// The error bound of (2), in units.
 const ROUNDED: f64 = 1.0 / 1024.0;
 
-/// The kept radius over what has to be in it.
+/// The stored radius over the required one.
 const OUTWARD: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 
 /// A block's spheres.
@@ -52,7 +52,7 @@ pub(crate) struct SphereFilter {
     cell: Cell,
     /// Centers, 256 to a unit.
     c: [[u16; LANES]; 3],
-    /// Radii; 0 where there is no sphere.
+    /// Radii; 0 for an empty lane.
     r: [u8; LANES],
 }
 
@@ -85,7 +85,7 @@ impl FilterOf<Sphere> for SphereFilter {
 }
 
 impl SphereFilter {
-    /// (2), with a range of its own and a radius greater by `apart`.
+    /// The test (2), with the given range and a radius greater by `apart`.
     #[inline(always)]
     fn is_near(&self, lane: usize, ray: &NearRay, [start, end]: [f32; 2], apart: f32) -> bool {
         const STEP: f32 = (1.0 / STEPS) as f32;
@@ -109,12 +109,12 @@ impl Filter for SphereFilter {
     }
 
     #[inline(always)]
-    fn may_pass(&self, lane: usize, ray: &NearRay, apart: f32) -> bool {
+    fn may_hit_near(&self, lane: usize, ray: &NearRay, apart: f32) -> bool {
         self.is_near(lane, ray, [-LONGEST, LONGEST], apart)
     }
 
     #[inline(always)]
-    fn may_meet(&self, lane: usize, ray: &NearRay) -> bool {
+    fn may_hit(&self, lane: usize, ray: &NearRay) -> bool {
         self.is_near(lane, ray, [ray.start, ray.end], 0.0)
     }
 }

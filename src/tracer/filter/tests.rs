@@ -1,4 +1,4 @@
-//! Packets, and how tight copies are; `tests/solids/filters.rs` looks for lost hits.
+//! Packets, and the tightness of copies; `tests/solids/filters.rs` searches for lost hits.
 
 use std::array::from_fn;
 
@@ -27,7 +27,7 @@ fn sticks(random: &mut Random) -> Vec<Cylinder> {
     (0..LANES).map(stick).collect()
 }
 
-/// A ray to about a point, from about a side.
+/// A ray to near a point, from near a side.
 fn ray_near(random: &mut Random, (target, side): (DVec3, DVec3), apart: f64) -> Ray {
     let target = target + within(random, apart);
     let direction = side + within(random, apart);
@@ -47,8 +47,8 @@ fn most_near_cylinders_that_are_missed_do_not_survive() {
         let sticks = sticks(&mut random);
         let rays: Vec<Ray> = (0..20)
             .map(|_| {
-                let way = (within(&mut random, 1.0), random.direction());
-                ray_near(&mut random, way, 0.0)
+                let target = (within(&mut random, 1.0), random.direction());
+                ray_near(&mut random, target, 0.0)
             })
             .collect();
         let solids: Vec<AnySolid> = sticks.iter().map(|&stick| stick.into()).collect();
@@ -57,12 +57,12 @@ fn most_near_cylinders_that_are_missed_do_not_survive() {
         spare += losses.spare;
         pairs += (rays.len() * sticks.len()) as u64 - losses.hits;
     }
-    // A unit is a fifth of the radius, and about one is added at each side. A line through
-    // the cube meets a stick's middle plane within that with a probability of some 1 %.
+    // A unit is a fifth of the radius, and about one is added at each side. A line through the
+    // cube crosses a stick's middle plane within that with a probability of some 1 %.
     assert!(spare * 50 < pairs, "{spare} of {pairs} misses survive");
 }
 
-/// Balls as thick as a quarter of a stick is long, within the same cube.
+/// Balls with a radius of a quarter of a stick's length, within the same cube.
 fn balls(random: &mut Random) -> Vec<Sphere> {
     let ball = |_| Sphere::new(within(random, 1.0), 0.25).expect("a ball");
     (0..LANES).map(ball).collect()
@@ -89,10 +89,10 @@ fn assert_packets_keep<S: TracedKind>(solids: impl Fn(&mut Random) -> Vec<S>) {
             direction: [[1.0; GREATEST_PACKET]; 3],
             t_far: [0.0; GREATEST_PACKET],
         };
-        let way = (within(&mut random, 1.0), random.direction());
+        let target = (within(&mut random, 1.0), random.direction());
         let apart = random.log_uniform(1e-6, 0.5);
         for number in 0..GREATEST_PACKET {
-            let ray = LocalRay::new(&ray_near(&mut random, way, apart));
+            let ray = LocalRay::new(&ray_near(&mut random, target, apart));
             let (_, ray32) = frame.enter(&ray, 0.0, f64::INFINITY).expect("it enters");
             for axis in 0..3 {
                 rays.origin[axis][number] = ray32.origin[axis];

@@ -1,17 +1,15 @@
-//! Where f64 meets Embree's f32: a prototype's own frame, and rays in it.
+//! From f64 to Embree's f32: a prototype's own frame, and rays in it.
 //!
-//! Each prototype's Embree scene lives in the frame `(p - center) · 2^k` in
-//! which its bounding sphere has a radius R in [1, 2). The f32 ray that
-//! searches for candidates starts where the f64 ray enters that sphere (or at
-//! the start of its range, if that is inside), so that every number Embree
-//! sees is below 4 in size, wherever the ray comes from and however long its
-//! direction is. `docs/derivations.md`, section 4, proves that boxes grown by
-//! [`BOX_GROWTH`] R are then never missed by Embree's slab test.
+//! Each prototype's Embree scene uses the frame `(p - center) · 2^k` in which its bounding
+//! sphere has a radius R in [1, 2). The f32 ray that searches for candidates starts where the
+//! f64 ray enters that sphere (or at the start of its range, if that is inside). So every
+//! number that Embree receives is below 4 in size, for any origin and any length of the
+//! direction. `docs/derivations.md`, section 4, proves that Embree's slab test then never
+//! misses boxes grown by [`BOX_GROWTH`] R.
 //!
-//! A ray that starts farther than [`FAR`] away is moved in double-double to
-//! its point nearest to the center and then handed on relative to the center:
-//! the solvers and placements work near the solids, and the distance costs
-//! only what f64 cannot hold of `t`.
+//! A ray that starts farther than [`FAR`] away is moved in double-double to its point nearest
+//! to the center, and then stored relative to the center: solvers and placements compute near
+//! the solids, and the distance costs only the precision that f64 lacks for `t`.
 
 mod packet;
 mod rays;
@@ -26,16 +24,15 @@ pub(crate) use rays::{Level, LocalRay, Window};
 use crate::embree::{Box32, Ray32};
 use crate::math::{Bounds, DoubleDouble, UNIT_ROUNDOFF, f32_above, f32_below, power_of_two_below};
 
-/// By how much boxes are grown on every side, in radii of the bounding sphere, where the
-/// prototype is in no instance of Embree's. The proof needs 18 · 2^-24 of it for single rays and 22 · 2^-24 for packets; the
-/// next power of two is 2^-19.
+/// The growth of boxes on every side, in radii of the bounding sphere, if the prototype is in
+/// no instance of Embree's. The proof needs 18 · 2^-24 of it for single rays and 22 · 2^-24 for
+/// packets; the next power of two is 2^-19.
 pub(crate) const BOX_GROWTH: f64 = 1.0 / (1 << 19) as f64;
 
-/// Rays that start more than this many units of the frame (one to two such
-/// make a radius) from the center are moved nearer before anything is solved.
-/// Below it, an error of a few 2^-53 of the distance is under 2^-34 R, far
-/// inside the growth of the boxes; above it the double-double step, about as
-/// dear as one solve, is paid once a prototype.
+/// Rays that start more than this number of units of the frame from the center (one to two
+/// units make a radius) are moved nearer before anything is solved. Below it, an error of a few
+/// 2^-53 of the distance is under 2^-34 R, far inside the growth of the boxes. Above it, the
+/// double-double step, which takes about as long as one solve, runs once per prototype.
 pub(crate) const FAR: f64 = (1 << 16) as f64;
 
 /// The frame of a prototype's Embree scene.
@@ -46,7 +43,7 @@ pub(crate) struct Frame {
     scale: f64,
     /// R, the radius of the bounding sphere in the frame, rounded up.
     radius: f64,
-    /// By how much boxes are grown on every side, in the frame.
+    /// The growth of boxes on every side, in the frame.
     growth: f64,
     /// The prototype's box in the frame, grown.
     lower: DVec3,
@@ -85,7 +82,7 @@ impl Frame {
         self.center
     }
 
-    /// Units of the frame in one unit of the prototype's space.
+    /// The number of units of the frame in a unit of the prototype's space.
     pub fn scale(&self) -> f64 {
         self.scale
     }
@@ -95,20 +92,17 @@ impl Frame {
         (point - self.center) * self.scale
     }
 
-    /// The radius of the bounding sphere in the frame, from 1 to 2.
+    /// The radius of the bounding sphere in the frame, in [1, 2].
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// By how much boxes are grown on every side, in the frame. It covers what Embree's
-    /// ray may be off from the solver's on its way through the sphere, in instances too, and
-    /// the roundings of f32 beside: `tracer::filter` derives how much.
+    /// The growth of boxes on every side, in the frame.
     pub fn slack(&self) -> f64 {
         self.growth
     }
 
-    /// The f32 box for a box of the prototype's space, grown and rounded
-    /// outward.
+    /// The f32 box for a box of the prototype's space, grown and rounded outward.
     pub fn grown_box(&self, bounds: &Bounds) -> Box32 {
         let grow = self.slack();
         let lower = (bounds.lower - self.center) * self.scale - grow;
@@ -125,8 +119,8 @@ impl Frame {
         is_far(ray.origin_from(self.center) * self.scale)
     }
 
-    /// The ray as the solvers of this prototype get it. A ray that comes to a
-    /// prototype has not been moved in it: its base is zero.
+    /// The ray for the solvers of this prototype, moved nearer if it is far. A ray that arrives
+    /// at a prototype has not been moved in it: its base is zero.
     #[inline]
     pub fn approach(&self, ray: &LocalRay) -> LocalRay {
         if self.is_far(ray) {
@@ -136,7 +130,7 @@ impl Frame {
         }
     }
 
-    /// That ray, and its point nearest to the center.
+    /// The ray for the solvers, and its point nearest to the center.
     fn approached(&self, ray: &LocalRay) -> (LocalRay, Passing) {
         debug_assert_eq!(ray.base, DVec3::ZERO, "the ray was moved before");
         let passing = self.passing(ray);
@@ -162,22 +156,22 @@ impl Frame {
         }
     }
 
-    /// Whether a ray that starts far away certainly misses the sphere, which spares the
-    /// double-double step. The place is off by less than 2^-48 of the way there: two
-    /// products and sums in each of three components, and as much for the ray's
-    /// parameter. Written so that NaN is not certain.
+    /// Whether a ray that starts far away certainly misses the sphere, which avoids the
+    /// double-double step. The place is off by less than 2^-48 of the distance: two products
+    /// and sums in each of three components, and as much for the ray's parameter. Written so
+    /// that NaN is not certain.
     #[cold]
     fn is_missed_from_afar(&self, passing: &Passing) -> bool {
         const ROUNDING: f64 = 1.0 / (1_u64 << 48) as f64;
         let sphere = self.radius * (1.0 + 4.0 * BOX_GROWTH);
         let place = passing.place.length_squared();
-        let way = passing.nearest * passing.nearest / passing.inverse_square + place;
+        let squared_distance = passing.nearest * passing.nearest / passing.inverse_square + place;
         // (a + b)² <= 2 (a² + b²)
-        place > 2.0 * (sphere * sphere + ROUNDING * ROUNDING * way)
+        place > 2.0 * (sphere * sphere + ROUNDING * ROUNDING * squared_distance)
     }
 
-    /// As [`Frame::approach`], in double-double. The first guess of the nearest
-    /// point is off by a few ulps of the distance, which a second step mends.
+    /// As [`Frame::approach`], in double-double. The first guess of the nearest point is off by
+    /// a few ulps of the distance, which a second step corrects.
     #[cold]
     fn approach_from_afar(&self, ray: &LocalRay, guess: f64) -> (LocalRay, Passing) {
         let direction = ray.direction * self.scale;
@@ -207,8 +201,8 @@ impl Frame {
         (moved, passing)
     }
 
-    /// Enters the prototype: the ray for its solvers and the f32 ray for its
-    /// Embree scene, or `None` where nothing in `[t_min, t_max]` can be hit.
+    /// Enters the prototype: returns the ray for its solvers and the f32 ray for its Embree
+    /// scene, or `None` if nothing in `[t_min, t_max]` can be hit.
     pub fn enter(&self, ray: &LocalRay, t_min: f64, t_max: f64) -> Option<(Level, Ray32)> {
         if let Some(entry) = self.entry_from_inside(ray, t_min, t_max) {
             return entry.of(ray);
@@ -236,9 +230,9 @@ impl Frame {
         self.entry(&ray, &passing, t_min, t_max).of(&ray)
     }
 
-    /// Where a ray enters that starts within the sphere, as most rays from
-    /// surfaces do: right there. It needs no root, and the end of the sphere does
-    /// not matter. `None` where the ray starts elsewhere or is far away.
+    /// The entry of a ray that starts within the sphere, as most rays from surfaces do. It
+    /// needs no root, and the end of the sphere does not matter. `None` if the ray starts
+    /// elsewhere or is far away.
     #[inline(always)]
     fn entry_from_inside(&self, ray: &LocalRay, t_min: f64, t_max: f64) -> Option<Entry> {
         let origin = ray.origin_from(self.center) * self.scale;
@@ -251,14 +245,14 @@ impl Frame {
         };
         window.start = window.past_nearest(t_min, -1.0);
         let start = origin + direction * window.start;
-        // Written so that NaN is elsewhere.
+        // Written so that NaN counts as elsewhere.
         let is_inside = start.length_squared() <= self.radius * self.radius && !is_far(origin);
         let end = window.past_nearest(t_max, 1.0);
         is_inside.then(|| self.entry_at(start, direction, window, end))
     }
 
-    /// Where a ray enters, if it does. There is no branch in it: rows of lanes
-    /// go through it together.
+    /// The entry of a ray, if it enters. There is no branch in it, so that rows of lanes are
+    /// computed together.
     #[inline(always)]
     fn entry(&self, ray: &LocalRay, passing: &Passing, t_min: f64, t_max: f64) -> Entry {
         let direction = ray.direction * self.scale;
@@ -287,7 +281,8 @@ impl Frame {
     fn entry_at(&self, start: DVec3, direction: DVec3, window: Window, end: f64) -> Entry {
         // A power of two has an exact inverse.
         let direction = direction * (1.0 / window.rate);
-        let meets_box = self.meets_box(start, direction, (end - window.start) * window.rate);
+        let intersects_box =
+            self.intersects_box(start, direction, (end - window.start) * window.rate);
         Entry {
             window,
             ray32: Ray32 {
@@ -296,12 +291,12 @@ impl Frame {
                 t_near: 0.0,
                 t_far: window.length_to(end),
             },
-            is_inside: (window.start <= end) & meets_box,
+            is_inside: (window.start <= end) & intersects_box,
         }
     }
 
-    /// Enters the prototype wherever the ray passes, for a query that does not
-    /// ask Embree: the window is the whole line.
+    /// Enters the prototype for any ray, for a query without Embree: the window is the whole
+    /// line.
     pub fn enter_unseen(&self, ray: &LocalRay) -> Level {
         let (ray, passing) = self.approached(ray);
         let window = Window {
@@ -313,15 +308,16 @@ impl Frame {
         Level { ray, window }
     }
 
-    /// Whether the stretch of the ray meets the prototype's grown box, which Embree does not
-    /// test where a scene has few primitives. The growth dwarfs the roundings here.
+    /// Whether the segment of the ray intersects the prototype's grown box, which Embree does
+    /// not test if a scene has few primitives. The growth is far greater than the roundings
+    /// here.
     #[inline(always)]
-    fn meets_box(&self, start: DVec3, direction: DVec3, length: f64) -> bool {
+    fn intersects_box(&self, start: DVec3, direction: DVec3, length: f64) -> bool {
         let inverse = direction.recip();
         let at_lower = (self.lower - start) * inverse;
         let at_upper = (self.upper - start) * inverse;
-        // 0 · inf = NaN means a ray in a face of the grown box: nothing is
-        // there to be hit, so either answer will do.
+        // 0 · inf = NaN means a ray in a face of the grown box, where nothing can be hit, so
+        // either result is right.
         let enter = at_lower.min(at_upper);
         let leave = at_lower.max(at_upper);
         let enter = enter.x.max(enter.y).max(enter.z).max(0.0);
@@ -336,45 +332,46 @@ fn is_far(origin: DVec3) -> bool {
     !(origin.abs().max_element() <= FAR)
 }
 
-/// What added to a number below 2 in size and taken off again leaves a multiple of 2^-30.
+/// Adding this to a number below 2 in size, and subtracting it again, rounds the number to a
+/// multiple of 2^-30.
 const ROUNDER: f64 = 1.5 * (1 << 22) as f64;
 
-/// A component of a direction for Embree, which takes one of at most 1e-18 in size for
-/// +1e-18, whatever its sign. For coherent packets it picks rays of like directions by
-/// the signs of their components, and then relies on the signs of the inverses: so one ray
-/// with -1e-19 beside one with -1e-17 makes the packet miss boxes. Multiples of 2^-30 are
-/// zero, which has one sign, or large enough. It moves a ray by less than 2^-29 on its way of at
-/// most 4 through the sphere, a 32nd of what rounding to f32 does.
+/// A component of a direction for Embree, rounded to a multiple of 2^-30. Embree replaces
+/// components of at most 1e-18 in size by +1e-18, whatever their sign. For coherent packets it
+/// groups rays by the signs of their components, and then relies on the signs of the inverses:
+/// so one ray with -1e-19 beside one with -1e-17 makes the packet miss boxes. Multiples of
+/// 2^-30 are zero, which has one sign, or large enough. The rounding moves a ray by less than
+/// 2^-29 over its length of at most 4 through the sphere, a 32nd of what rounding to f32 does.
 #[inline(always)]
 fn in_steps(component: f64) -> f32 {
     ((component + ROUNDER) - ROUNDER) as f32
 }
 
-/// How a ray passes the middle of a prototype.
+/// The point of a ray nearest to the center of a prototype.
 #[derive(Clone, Copy, Debug)]
 struct Passing {
     /// One over the square of the direction's length in the frame.
     inverse_square: f64,
-    /// The ray's parameter at the point nearest to the center, or within some
-    /// roundings of it: what counts is where `place` is.
+    /// The ray's parameter at that point, within some roundings: only the consistency with
+    /// `place` matters.
     nearest: f64,
-    /// That point, in the frame.
+    /// The point, in the frame.
     place: DVec3,
     /// Whether the ray starts so far away that it has to be moved nearer.
     is_far: bool,
 }
 
-/// Where a ray enters a prototype.
+/// The entry of a ray into a prototype.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     window: Window,
     ray32: Ray32,
-    /// Whether anything can be hit; the rest has no meaning where not.
+    /// Whether anything can be hit; if not, the rest has no meaning.
     is_inside: bool,
 }
 
 impl Entry {
-    /// That of a ray in the prototype's own space, if it is inside.
+    /// The entry of a ray in the prototype's own space, if it is inside.
     #[inline(always)]
     fn of(&self, ray: &LocalRay) -> Option<(Level, Ray32)> {
         let level = Level {

@@ -1,18 +1,16 @@
-//! Packets of rays on their way through prototypes: the steps of single rays,
-//! in rows of lanes.
+//! Packets of rays in prototypes: the steps of single rays, in rows of lanes.
 //!
-//! The loops are over functions that have no branch in them, and the compiler
-//! makes vector instructions of them: those of the instruction set for which
-//! they are [run](crate::embree::Instructions::run).
+//! The loops call functions without a branch, and the compiler vectorizes them for the
+//! instruction set for which they are [run](crate::embree::Instructions::run).
 
 use super::{Entry, Frame, Level, LocalRay, Window};
 use crate::embree::{GREATEST_PACKET, Kernel, Ray32, RaySet, Rays32};
 use crate::math::{ChildFromParent, LANES, LaneVectors, Lanes};
 
-/// Rows of lanes that hold a packet.
+/// The number of rows of lanes in a packet.
 pub(crate) const ROWS: usize = GREATEST_PACKET / LANES;
 
-/// Something for every ray of a packet, in rows of lanes.
+/// Values for every ray of a packet, in rows of lanes.
 pub(crate) type Rows<T> = [T; ROWS];
 
 /// The rays of a packet in a prototype's own space; see [`LocalRay`].
@@ -32,9 +30,9 @@ struct Windows {
     rate: Rows<Lanes>,
 }
 
-/// A packet on its way through one prototype.
+/// A packet in one prototype.
 pub(crate) struct PacketLevel {
-    /// The rays as the prototype's solvers get them.
+    /// The rays for the prototype's solvers.
     pub rays: PacketRays,
     windows: Windows,
 }
@@ -43,7 +41,7 @@ pub(crate) struct PacketLevel {
 pub(crate) struct PacketEntry {
     /// The rays for its Embree scene.
     pub rays32: Rays32,
-    /// Those that are inside.
+    /// The rays that are inside.
     pub entered: RaySet,
 }
 
@@ -55,7 +53,7 @@ const ORIGINS: Rows<LaneVectors> = [LaneVectors {
 }; ROWS];
 
 impl PacketRays {
-    /// Sixteen times no ray.
+    /// No rays.
     pub const NOWHERE: Self = Self {
         origin: ORIGINS,
         direction: ORIGINS,
@@ -63,7 +61,7 @@ impl PacketRays {
         shift: ZEROS,
     };
 
-    /// One of them.
+    /// One of the rays.
     #[inline(always)]
     pub fn ray(&self, row: usize, lane: usize) -> LocalRay {
         LocalRay {
@@ -86,7 +84,7 @@ impl PacketRays {
 /// [`LocalRay::in_child`] of a packet.
 pub(crate) struct IntoChild<'a> {
     pub rays: &'a PacketRays,
-    pub way: &'a ChildFromParent,
+    pub child_from_parent: &'a ChildFromParent,
     /// The rays in the child.
     pub in_child: &'a mut PacketRays,
 }
@@ -98,18 +96,18 @@ impl Kernel for IntoChild<'_> {
     fn run(self) {
         for row in 0..ROWS {
             for lane in 0..LANES {
-                let ray = self.rays.ray(row, lane).in_child(self.way);
+                let ray = self.rays.ray(row, lane).in_child(self.child_from_parent);
                 self.in_child.set(row, lane, &ray);
             }
         }
     }
 }
 
-/// The rays of a packet as the solvers of a prototype in an instance get them: into the
-/// child, and nearer to it where they are far away.
+/// Maps the rays of a packet into the child of an instance, for its solvers, and moves far rays
+/// nearer.
 pub(crate) struct IntoInstance<'a> {
     pub rays: &'a PacketRays,
-    pub way: &'a ChildFromParent,
+    pub child_from_parent: &'a ChildFromParent,
     pub frame: &'a Frame,
     /// The rays in the child.
     pub in_child: &'a mut PacketRays,
@@ -120,11 +118,15 @@ impl Kernel for IntoInstance<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { rays, way, .. } = self;
+        let Self {
+            rays,
+            child_from_parent,
+            ..
+        } = self;
         let in_child = self.in_child;
         IntoChild {
             rays,
-            way,
+            child_from_parent,
             in_child,
         }
         .run();
@@ -145,9 +147,9 @@ impl Kernel for IntoInstance<'_> {
 /// [`Frame::enter`] of a packet.
 pub(crate) struct Enter<'a> {
     pub frame: &'a Frame,
-    /// The rays in the prototype's own space. Those that are far away are moved nearer.
+    /// The rays in the prototype's own space. Far rays are moved nearer.
     pub level: &'a mut PacketLevel,
-    /// Those that are to enter.
+    /// The rays that are to enter.
     pub wanted: RaySet,
     pub t_min: &'a Rows<Lanes>,
     pub t_max: &'a Rows<Lanes>,
@@ -168,7 +170,7 @@ impl Kernel for Enter<'_> {
         };
         let (mut inside, mut far) = ([false; GREATEST_PACKET], [false; GREATEST_PACKET]);
         for row in 0..ROWS {
-            // Numbers of a row's own: what the loop reads it does not write.
+            // A copy of the row: the loop reads nothing that it writes.
             let rays = &self.level.rays;
             let rays = RowOfRays {
                 origin: rays.origin[row],
@@ -201,7 +203,7 @@ impl Kernel for Enter<'_> {
     }
 }
 
-/// Eight rays and what is computed of them.
+/// Eight rays with their ranges.
 struct RowOfRays {
     origin: LaneVectors,
     direction: LaneVectors,
@@ -223,7 +225,7 @@ impl RowOfRays {
     }
 }
 
-/// Where eight rays enter.
+/// The entries of eight rays.
 struct RowOfEntries {
     nearest: Lanes,
     start: Lanes,
@@ -263,7 +265,7 @@ impl RowOfEntries {
 }
 
 impl Enter<'_> {
-    /// Enters with rays that have to be moved nearer before.
+    /// Enters with rays that have to be moved nearer first.
     #[cold]
     #[inline(never)]
     fn enter_from_afar(&mut self, far: RaySet, entry: &mut PacketEntry) {
@@ -327,7 +329,7 @@ impl Windows {
 }
 
 impl PacketLevel {
-    /// Sixteen times no ray.
+    /// No rays.
     pub const NOWHERE: Self = Self {
         rays: PacketRays::NOWHERE,
         windows: Windows {
@@ -350,7 +352,7 @@ impl PacketLevel {
         }
     }
 
-    /// A ray on its way alone.
+    /// A single ray of the packet.
     pub fn of_ray(&self, ray: usize) -> Level {
         Level {
             ray: self.rays.ray(ray / LANES, ray % LANES),

@@ -1,4 +1,4 @@
-//! Rays on their way through prototypes.
+//! Rays in prototypes.
 
 use glam::DVec3;
 
@@ -7,8 +7,7 @@ use crate::solid::RayOrigin;
 
 /// A ray in a prototype's own space.
 ///
-/// Its points are `base + origin + (t - shift) * direction` for the `t` of the
-/// ray that was requested.
+/// Its points are `base + origin + (t - shift) * direction` for the `t` of the query's ray.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LocalRay {
     pub origin: DVec3,
@@ -28,13 +27,13 @@ impl LocalRay {
         }
     }
 
-    /// The ray's origin as seen from a point of the prototype's space.
+    /// The ray's origin relative to a point of the prototype's space.
     #[inline(always)]
     pub fn origin_from(&self, point: DVec3) -> DVec3 {
         self.origin - (point - self.base)
     }
 
-    /// The ray's origin, as exactly as it is known.
+    /// The ray's exact origin.
     pub fn start(&self) -> RayOrigin {
         RayOrigin {
             base: self.base,
@@ -45,31 +44,31 @@ impl LocalRay {
     /// The ray in the space of a placed prototype. The direction keeps its
     /// length, so that `t` keeps its meaning.
     #[inline(always)]
-    pub fn in_child(&self, way: &ChildFromParent) -> Self {
+    pub fn in_child(&self, child_from_parent: &ChildFromParent) -> Self {
         Self {
-            origin: way.vector(self.origin_from(way.translation())),
-            direction: way.vector(self.direction),
+            origin: child_from_parent.vector(self.origin_from(child_from_parent.translation())),
+            direction: child_from_parent.vector(self.direction),
             base: DVec3::ZERO,
             shift: self.shift,
         }
     }
 }
 
-/// How the `t` of a query becomes the `t_far` of the f32 ray in the frame.
+/// The map from the `t` of a query to the `t_far` of the f32 ray in the frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Window {
     /// The query's `t` at the point nearest to the center is `shift + nearest`.
     pub(super) shift: f64,
     pub(super) nearest: f64,
-    /// Where the f32 ray starts, counted from the nearest point.
+    /// The start of the f32 ray, relative to the nearest point.
     pub(super) start: f64,
-    /// Units of the f32 ray's parameter in one unit of `t`.
+    /// The number of units of the f32 ray's parameter in a unit of `t`.
     pub(super) rate: f64,
 }
 
 impl Window {
-    /// `t` counted from the nearest point, moved by `outward` times the
-    /// rounding of the differences.
+    /// `t` relative to the nearest point, moved by `outward` times the rounding of the
+    /// differences.
     #[inline(always)]
     pub(super) fn past_nearest(&self, t: f64, outward: f64) -> f64 {
         let slack = 4.0 * UNIT_ROUNDOFF * (t.abs() + self.shift.abs() + self.nearest.abs());
@@ -87,9 +86,9 @@ impl Window {
         self.length_to(self.past_nearest(t, 1.0))
     }
 
-    /// The length of the f32 ray up to `end`, counted from the nearest point.
-    /// The 2^-30 covers the roundings, which are below 2^-48 in the frame;
-    /// the factor for that to f32, which takes at most 2^-24 off.
+    /// The length of the f32 ray up to `end`, relative to the nearest point. The 2^-30 covers
+    /// the roundings, which are below 2^-48 in the frame; the factor covers rounding to f32,
+    /// which subtracts at most 2^-24.
     #[inline(always)]
     pub(super) fn length_to(&self, end: f64) -> f32 {
         const OUTWARD: f64 = 1.0 + 1.0 / (1 << 23) as f64;
@@ -97,7 +96,7 @@ impl Window {
     }
 }
 
-/// A ray on its way through one prototype.
+/// A ray in one prototype.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Level {
     pub ray: LocalRay,

@@ -1,5 +1,6 @@
-//! A cuboid is in the cylinder about one of its axes, which throws 26 % more shadow for a cube; a
-//! box along the axes of the cell has twice as much for one that is turned, a ball 57 %.
+//! A cuboid is represented by the cylinder about one of its axes. Its shadow is 26 % larger
+//! than that of a cube. An axis-aligned box in the cell has twice the shadow of a turned cube,
+//! a ball 57 % more.
 
 use super::TracedKind;
 use crate::math::UNIT_ROUNDOFF;
@@ -11,10 +12,10 @@ impl TracedKind for Cuboid {
 }
 
 impl Sheathed for Cuboid {
-    /// Of the cylinders about its axes the one with the least area.
+    /// The cylinder of least area about one of its axes.
     fn sheath(&self) -> Sheath {
         let half_widths = self.half_widths();
-        // As its bounds: its axes are orthonormal to within roundings.
+        // As in its bounds: its axes are orthonormal to within roundings.
         let off = 16.0 * UNIT_ROUNDOFF * half_widths.element_sum();
         let about = |axis: usize| {
             let height = half_widths[axis] + off;

@@ -1,5 +1,5 @@
-//! The fast path of cylinders: their records without the way through the description, and
-//! callbacks that are compiled for their ends.
+//! The fast path of cylinders: direct access to their records, and callbacks that are compiled
+//! for their caps.
 
 use std::borrow::Borrow;
 use std::marker::PhantomData;
@@ -31,19 +31,19 @@ impl Sheathed for Cylinder {
     }
 }
 
-/// What is known of the ends of all cylinders of a prototype.
+/// The caps of all cylinders of a prototype, if known.
 trait Ends: Send + Sync + 'static {
-    /// The caps, if all have the same.
+    /// The caps, if they are all the same.
     const CAPS: Option<Caps>;
 }
 
-/// All are tubes.
+/// All cylinders are tubes.
 struct Open;
 
-/// All have both disks.
+/// All cylinders have both disks.
 struct Capped;
 
-/// Each as it is.
+/// The caps differ.
 struct Mixed;
 
 impl Ends for Open {
@@ -58,17 +58,16 @@ impl Ends for Mixed {
     const CAPS: Option<Caps> = None;
 }
 
-/// The caps that all cylinders of a list have.
+/// The caps of all cylinders of a list, if they are the same.
 fn common_caps(list: &CylinderList) -> Option<Caps> {
     let mut caps = list.iter().map(|record| record.cylinder().caps());
     let first = caps.next()?;
     caps.all(|caps| caps == first).then_some(first)
 }
 
-/// The records of cylinders whose ends are known to be `E`.
+/// The records of cylinders with the caps `E`.
 struct CylinderRecords<E> {
-    /// A callback gets to a record from here, not through scene, prototype and list, each of
-    /// which it would wait for.
+    /// Direct access for callbacks, without the latency of scene, prototype and list.
     records: SharedRecords,
     ends: PhantomData<E>,
 }
@@ -112,7 +111,7 @@ impl<E: Ends> Records for CylinderRecords<E> {
     }
 
     #[inline(always)]
-    fn meets(&self, prototype_ref: &PrototypeRef, record: u32, query: &Query) -> bool {
-        query.meets::<Cylinder>(self.solid(prototype_ref, record).borrow())
+    fn intersects(&self, prototype_ref: &PrototypeRef, record: u32, query: &Query) -> bool {
+        query.intersects::<Cylinder>(self.solid(prototype_ref, record).borrow())
     }
 }

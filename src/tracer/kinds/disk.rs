@@ -1,5 +1,5 @@
-//! A disk is a cylinder of no length. Its half axis is long enough to say the normal to within
-//! what the radius gains by that: 25 % more shadow in a thicket.
+//! A disk is represented by a cylinder of no length. Its half axis is long enough to represent
+//! the normal to within the growth of the radius: 25 % more shadow in a thicket.
 
 use super::TracedKind;
 use crate::solid::Disk;

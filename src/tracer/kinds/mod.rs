@@ -1,4 +1,4 @@
-//! What is special about a kind of solid in the tracer, one file a kind.
+//! The specifics of each kind of solid in the tracer, one file per kind.
 
 mod cone;
 mod cuboid;

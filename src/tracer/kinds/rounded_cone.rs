@@ -1,5 +1,6 @@
-//! A rounded cone is in the cylinder of its greater radius, which throws 17 % more shadow where
-//! radii vary by a factor of three, twice as much where one of them is zero.
+//! A rounded cone is represented by the cylinder of its greater radius. Its shadow is 17 %
+//! larger than the solid's if radii vary by a factor of three, and twice as large if one of
+//! them is zero.
 
 use super::TracedKind;
 use crate::solid::RoundedCone;

@@ -1,5 +1,4 @@
-//! How many callbacks outliers cost the rays that go elsewhere, and which solids count as
-//! outliers.
+//! The callbacks that outliers cost other rays, and which solids count as outliers.
 
 use std::sync::Arc;
 
@@ -70,8 +69,8 @@ fn placing(translations: &[DVec3]) -> Prototype {
 
 const COUNT: u32 = 3_000;
 
-/// Each outlier costs a ray at most one callback at each level of placements, where the ray
-/// comes to its box.
+/// Each outlier costs a ray at most one callback at each level of placements, at which the ray
+/// enters its box.
 fn assert_few_more(name: &str, with: f64, without: f64) {
     assert!(
         with <= without + 2.0,
@@ -157,8 +156,7 @@ fn outliers_are_named_with_their_distance_and_size() {
         panic!("{found:?}");
     };
     assert_eq!(number, COUNT + 7);
-    // The twigs fill a cube of 4 m, whose half diagonal is 3.46 m, but for some
-    // millimetres more or less.
+    // The twigs fill a cube of 4 m, whose half diagonal is 3.46 m, to within some millimetres.
     assert!((distance / (1e7 / 3.46) - 1.0).abs() < 0.03, "{distance}");
     assert!((size / (3_f64.sqrt() / 3.46) - 1.0).abs() < 0.03, "{size}");
 

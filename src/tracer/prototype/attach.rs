@@ -1,5 +1,4 @@
-//! Attaches the solids of a group to its Embree scene: a user geometry for
-//! each kind that it contains.
+//! Attaches the solids of a group to its Embree scene: one user geometry per kind.
 
 use super::blocks::{Blocked, block_bytes};
 use super::group_solids::{GroupSolids, InPrototype, Records, Single};
@@ -13,11 +12,11 @@ use crate::tracer::options::Layout;
 use crate::tracer::query::Query;
 use crate::with_solid_kind;
 
-/// Where solids are attached, and how.
+/// The scene that solids are attached to, and its options.
 pub(crate) struct Attaching<'a> {
     pub prototype_ref: &'a PrototypeRef,
     pub layout: Layout,
-    /// The most threads that make blocks.
+    /// The greatest number of threads that make blocks.
     pub threads: usize,
     pub builder: &'a mut SceneBuilder<Query>,
 }
@@ -25,8 +24,8 @@ pub(crate) struct Attaching<'a> {
 impl Attaching<'_> {
     /// Attaches all solids of a group.
     ///
-    /// Set operations are a primitive each: what a few bytes can say of one is its box, which
-    /// Embree tests as well.
+    /// Set operations are a primitive each: a few bytes of a copy could represent only the box,
+    /// which Embree tests as well.
     pub fn attach_all(&mut self, members: &Members) -> Result<(), embree::Error> {
         for (kind, numbers) in members.solids() {
             with_solid_kind!(kind, S => S::attach(numbers, self))?;

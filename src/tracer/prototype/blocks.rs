@@ -1,24 +1,23 @@
-//! Solids as Embree's primitives, eight each.
+//! Blocks of eight solids as Embree's primitives.
 //!
-//! A block is of solids that are near each other. Its [`Filter`] says which of them Embree's
-//! ray may meet; only these are solved, from their records, as where each is a primitive of
-//! its own. Embree's tree has an eighth of the leaves, which saves memory and time to
-//! build, and a ray pays once for a leaf that it reaches, not for each solid there.
+//! A block contains solids that are near each other. Its [`Filter`] selects those that Embree's
+//! ray may hit. Only these are solved, from their records, as if each were a primitive of its
+//! own. Embree's tree has an eighth of the leaves, which saves memory and build time, and a ray
+//! pays once for a leaf that it reaches instead of for each solid there.
 
 use super::clusters::{Item, cluster};
 use super::group_solids::{GroupSolids, Records};
 use crate::embree::{Box32, GREATEST_PACKET, Ray32, RaySet, Rays32, Reached, UserGeometry};
 use crate::math::LANES;
-use crate::tracer::counters;
 use crate::tracer::filter::{FILTER_BYTES, Filter, NearPacket, survivors};
 use crate::tracer::kinds::TracedKind;
 use crate::tracer::query::{Packet, Query};
 
-/// The most rays of a packet that are put to all solids of a block one by one; more are put
-/// together to one solid after another.
+/// The greatest number of rays of a packet that are tested one by one against all solids of a
+/// block. More rays are tested together against one solid after another.
 const FEW_RAYS: usize = 2;
 
-/// The memory that the blocks of `solids` take.
+/// The memory of the blocks of `solids`.
 pub(crate) fn block_bytes(solids: u64) -> u64 {
     let records = solids.saturating_mul(size_of::<u32>() as u64);
     let blocks = solids.div_ceil(LANES as u64);
@@ -33,7 +32,7 @@ type FilterOf<R> = <<R as Records>::Solid as TracedKind>::Filter;
 pub(super) struct Blocked<R: Records<Solid: TracedKind>> {
     solids: GroupSolids<R>,
     filters: Vec<FilterOf<R>>,
-    /// The records in the order of blocks, [`LANES`] for each but the last.
+    /// The records in the order of blocks, [`LANES`] for each except the last.
     records: Vec<u32>,
 }
 
@@ -65,7 +64,7 @@ impl<R: Records<Solid: TracedKind>> Blocked<R> {
         &self.records[first..end]
     }
 
-    /// The records of a block's solids that a ray may meet, which begin to come nearer.
+    /// The records of a block's solids that a ray may hit. Prefetches them.
     #[inline(always)]
     fn near(&self, primitive: u32, ray: &Ray32) -> Near<'_> {
         let near = Near {
@@ -76,7 +75,7 @@ impl<R: Records<Solid: TracedKind>> Blocked<R> {
         near
     }
 
-    /// The rays of a packet that may meet each solid of a block.
+    /// For each solid of a block, the rays of a packet that may hit it.
     #[inline(always)]
     fn near_packet(&self, primitive: u32, rays: RaySet, rays32: &Rays32) -> [RaySet; LANES] {
         let filter = &self.filters[primitive as usize];
@@ -101,7 +100,7 @@ impl<R: Records<Solid: TracedKind>> Blocked<R> {
     }
 }
 
-/// Fewer filters than this are made on one thread, which takes less than a millisecond.
+/// Fewer filters than this are computed on one thread, which takes less than a millisecond.
 const LEAST_FOR_THREADS: usize = 1 << 11;
 
 /// The filters of records in the order of blocks.
@@ -137,7 +136,7 @@ fn filters<R: Records<Solid: TracedKind>>(
 #[derive(Clone)]
 struct Near<'a> {
     records: &'a [u32],
-    /// The lanes that are left, as bits.
+    /// The remaining lanes, as bits.
     lanes: u8,
 }
 
@@ -171,8 +170,7 @@ impl<R: Records<Solid: TracedKind>> UserGeometry for Blocked<R> {
 
     #[inline(always)]
     fn intersect(&self, at: Reached, ray: &Ray32, query: &mut Query) -> Option<f32> {
-        counters::called_back();
-        query.callbacks += 1;
+        query.called_back();
         let near = self.near(at.primitive, ray);
         if near.lanes == 0 {
             return None;
@@ -187,15 +185,14 @@ impl<R: Records<Solid: TracedKind>> UserGeometry for Blocked<R> {
 
     #[inline(always)]
     fn occluded(&self, at: Reached, ray: &Ray32, query: &mut Query) -> bool {
-        counters::called_back();
-        query.callbacks += 1;
+        query.called_back();
         let near = self.near(at.primitive, ray);
         if near.lanes == 0 {
             return false;
         }
         query.reach(at.instance, self.solids.prototype_ref());
         for record in near {
-            if self.solids.meets(record, query) {
+            if self.solids.intersects(record, query) {
                 return true;
             }
         }
@@ -211,8 +208,7 @@ impl<R: Records<Solid: TracedKind>> UserGeometry for Blocked<R> {
         t_far: &mut [f32; GREATEST_PACKET],
         packet: &mut Packet,
     ) -> RaySet {
-        counters::called_back();
-        packet.callbacks += 1;
+        packet.called_back();
         let near = self.near_packet(at.primitive, rays, rays32);
         if near.iter().all(|rays| rays.is_empty()) {
             return RaySet::EMPTY;
@@ -235,8 +231,7 @@ impl<R: Records<Solid: TracedKind>> UserGeometry for Blocked<R> {
         rays32: &Rays32,
         packet: &mut Packet,
     ) -> RaySet {
-        counters::called_back();
-        packet.callbacks += 1;
+        packet.called_back();
         let near = self.near_packet(at.primitive, rays, rays32);
         if near.iter().all(|rays| rays.is_empty()) {
             return RaySet::EMPTY;
@@ -246,7 +241,7 @@ impl<R: Records<Solid: TracedKind>> UserGeometry for Blocked<R> {
         for (&record, near) in self.records(at.primitive).iter().zip(near) {
             let near = near - blocked;
             if !near.is_empty() {
-                blocked = blocked | self.solids.meets_packet(record, near, packet);
+                blocked = blocked | self.solids.intersects_packet(record, near, packet);
             }
         }
         blocked

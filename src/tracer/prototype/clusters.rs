@@ -1,28 +1,26 @@
-//! An order of boxes in which every run of this many is near together.
+//! An order of boxes whose runs of a given length are compact.
 //!
-//! A block of cylinders is one primitive to Embree, so a ray that meets the
-//! block's box pays for all of them: what counts is the boxes' surface. The
-//! boxes are split in two again and again, each time where the surface area
-//! heuristic is least,
+//! A block is one primitive to Embree, and a ray that intersects the block's box is tested
+//! against all of its solids: the surface of the boxes determines the cost. The boxes are split
+//! in two recursively, each time where the surface area heuristic is least,
 //!
 //! ```text
 //! cost = area(left) · blocks(left) + area(right) · blocks(right)
 //! ```
 //!
-//! among the borders of [`BINS`] bins of the middles along each axis (Wald, "On
-//! fast construction of SAH-based bounding volume hierarchies", 2007). The
-//! split is then moved to the next multiple of the block's size, so that blocks
-//! are full: memory is what they are for. Only the last one of all may hold
-//! less.
+//! among the borders of [`BINS`] bins of the centers along each axis (Wald, "On fast
+//! construction of SAH-based bounding volume hierarchies", 2007). The split is then moved to
+//! the next multiple of the block's size, so that blocks are full, since they are to save
+//! memory. Only the last block may contain fewer.
 
 use crate::embree::Box32;
 
-/// Bins along an axis. More find better splits and take longer; beyond 16 the
-/// rays gain nothing that can be measured.
+/// Bins along an axis. More bins find better splits and take longer; beyond 16 the gain is not
+/// measurable.
 const BINS: usize = 16;
 
-/// Fewer boxes than this are split on one thread: starting another takes about
-/// as long as ordering them.
+/// Fewer boxes than this are split on one thread: starting another takes about as long as
+/// sorting them.
 const LEAST_FOR_THREADS: usize = 1 << 14;
 
 /// A box and its number.
@@ -33,7 +31,7 @@ pub(super) struct Item {
 }
 
 impl Item {
-    /// Twice the middle along an axis.
+    /// Twice the center along an axis.
     #[inline]
     fn middle(&self, axis: usize) -> f32 {
         self.bounds.lower[axis] + self.bounds.upper[axis]
@@ -53,8 +51,8 @@ pub(super) fn cluster(items: &mut [Item], size: usize, threads: usize) {
     });
     let (left, right) = items.split_at_mut(split.left);
     if threads > 1 && left.len() + right.len() >= LEAST_FOR_THREADS {
-        // Not on a pool of rayon's: a worker that builds a prototype on the way
-        // would take up other work there, which may wait for this very build.
+        // Not on a rayon pool: a worker that builds a prototype during a query would take up
+        // other work there, which may wait for this same build.
         std::thread::scope(|scope| {
             scope.spawn(|| cluster(left, size, threads / 2));
             cluster(right, size, threads - threads / 2);
@@ -65,14 +63,14 @@ pub(super) fn cluster(items: &mut [Item], size: usize, threads: usize) {
     }
 }
 
-/// Where to split: along which axis, and after how many.
+/// A split: the axis, and the number of items on the left.
 #[derive(Clone, Copy, Debug)]
 struct Split {
     axis: usize,
     left: usize,
 }
 
-/// The boxes whose middles are in a bin.
+/// The boxes whose centers are in a bin.
 #[derive(Clone, Copy)]
 struct Bin {
     bounds: Box32,
@@ -97,8 +95,7 @@ impl Bin {
     }
 }
 
-/// The best split of more items than one block contains; with nothing to choose
-/// by, in the middle.
+/// The best split of more items than one block contains; in the middle if all splits are equal.
 fn split(items: &[Item], size: usize) -> Split {
     let mut best = (f32::INFINITY, 0, items.len() / 2);
     for axis in 0..3 {
@@ -118,7 +115,7 @@ fn split(items: &[Item], size: usize) -> Split {
             bin.bounds = bin.bounds.union(&item.bounds);
             bin.count += 1;
         }
-        // What is right of each border, from the right; then the costs from the left.
+        // The union to the right of each border, from the right; then the costs from the left.
         let mut right = [EMPTY; BINS];
         for border in (1..BINS).rev() {
             let further = right.get(border + 1).copied().unwrap_or(EMPTY);
@@ -194,7 +191,7 @@ mod tests {
             assert!(numbers.into_iter().eq(0..count), "{count} items");
             if count >= 1_000 {
                 let (before, after) = (area_of_blocks(&given, 8), area_of_blocks(&ordered, 8));
-                // Random eighths of the cube against cells of 8/count of it.
+                // Random boxes in the cube, compared with cells of 8/count of its volume.
                 let side = libm::cbrtf(8.0 / count as f32);
                 let cell = 3.0 * side * side;
                 let ideal = cell * (count as f32 / 8.0);

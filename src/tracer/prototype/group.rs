@@ -1,10 +1,8 @@
-//! A group: solids and placements of a prototype that have a frame and an Embree
-//! scene in common.
+//! A group: solids and placements of a prototype that share a frame and an Embree scene.
 //!
-//! A group has a user geometry for each kind of solid in it, and for its
-//! placements. Its frame is known from the start. Its Embree scene is built when
-//! it is first needed, which may be when a first ray gets there: threads that need
-//! it then build it together, and others continue.
+//! A group has a user geometry for each kind of solid in it, and for its placements. Its frame
+//! is computed at the start. Its Embree scene is built when first needed, possibly when the
+//! first ray arrives: threads that need it then build it together, and others continue.
 
 use std::borrow::Borrow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -26,26 +24,26 @@ use crate::with_solid_kind;
 
 /// A group that can be traced.
 pub(crate) struct Group {
-    /// Contains every point at which a query may place a hit: the box of its members,
-    /// and what roundings on the way through placements can add to it.
+    /// Contains every point that a query may report as a hit: the box of its members, grown by
+    /// the roundings in placements.
     pub reach: Bounds,
-    /// Boxes that together contain its members.
+    /// Boxes whose union contains its members.
     pub parts: Parts,
     pub frame: Frame,
     prototype: PrototypeIndex,
-    /// What it contains of the prototype.
+    /// The members of the prototype that it contains.
     pub members: Members,
     prototype_ref: PrototypeRef,
-    /// The placements, a geometry for each group of what they place.
+    /// The placements, one geometry for each group of the placed prototypes.
     placements: Vec<Arc<Placements>>,
     context: BuildContext,
     scene: OnceLock<Result<JointCommit<Query>, embree::Error>>,
-    /// Whether what it places is in the scene of a parent.
+    /// Whether its placements are in the scene of a parent.
     is_opened: AtomicBool,
 }
 
 impl Group {
-    /// Makes a group of a prototype.
+    /// Creates a group of a prototype.
     pub fn new(
         context: &BuildContext,
         description: &Arc<Scene>,
@@ -54,7 +52,7 @@ impl Group {
         children: &Children<Prototype>,
     ) -> Self {
         let prototype = &description.prototypes[index.0 as usize];
-        // Only in the root the rays are those of the caller.
+        // Only the root has the caller's rays.
         let view = context.view.filter(|_| index == PrototypeIndex::ROOT);
         let placement_margin = outline.placement_margin;
         let placements = outline.members.placements().filter_map(|(group, all)| {
@@ -105,12 +103,12 @@ impl Group {
         placements.flat_map(|one| one.reached.iter())
     }
 
-    /// The placements, for each group of what they place.
+    /// The placements, for each group of the placed prototypes.
     pub(super) fn placements(&self) -> &[Arc<Placements>] {
         &self.placements
     }
 
-    /// Notes that what it places is in the scene of a parent.
+    /// Records that its placements are in the scene of a parent.
     pub fn open(&self) {
         self.is_opened.store(true, Ordering::Relaxed);
     }
@@ -120,8 +118,8 @@ impl Group {
         self.joined().map(|_| ())
     }
 
-    /// Whether the Embree scene is built or being built, or that of a parent with what is
-    /// placed here.
+    /// Whether the Embree scene, or that of a parent with these placements, is built or being
+    /// built.
     pub fn is_touched(&self) -> bool {
         self.is_begun() || self.is_opened.load(Ordering::Relaxed)
     }
@@ -130,12 +128,11 @@ impl Group {
         self.scene.get().is_some()
     }
 
-    /// The Embree scene, which is built if this is the first time it is needed.
+    /// The Embree scene, built on first use.
     ///
     /// # Panics
-    /// When Embree runs out of memory, the only reason for which it fails: the frame
-    /// makes boxes legal. A query cannot return an error; build everything beforehand
-    /// to get one.
+    /// When Embree runs out of memory, the only possible failure: the frame makes boxes legal.
+    /// A query cannot return an error; build everything beforehand to get one.
     #[inline]
     fn scene(&self) -> &embree::Scene<Query> {
         match self.joined() {
@@ -151,8 +148,8 @@ impl Group {
         scene.as_ref().map_err(Clone::clone)?.join()
     }
 
-    /// Embree's scene, ready to be built. It has instances of other scenes, which are
-    /// built first, by all threads that come here.
+    /// Embree's scene, ready to be built. The scenes that it has instances of are built first,
+    /// by all threads that arrive here.
     #[cold]
     fn ready(&self) -> &Result<JointCommit<Query>, embree::Error> {
         for placements in &self.placements {
@@ -161,7 +158,7 @@ impl Group {
         self.scene.get_or_init(|| self.begin())
     }
 
-    /// Makes Embree's scene ready to be built.
+    /// Prepares Embree's scene for building.
     #[cold]
     fn begin(&self) -> Result<JointCommit<Query>, embree::Error> {
         let mut builder = SceneBuilder::new(&self.context.device)?;
@@ -183,10 +180,10 @@ impl Group {
         Ok(builder.into_joint())
     }
 
-    /// What Embree is to take packets for. Its traversal of coherent packets goes on for ever
-    /// in some scenes with instances (Embree 3.13.5 of Debian 12, with AVX-512), and
-    /// relies on the signs of small components of directions, which the frame chooses but
-    /// an instance does not.
+    /// The coherence that Embree may assume. Its traversal of coherent packets never ends in
+    /// some scenes with instances (Embree 3.13.5 of Debian 12, with AVX-512), and it relies on
+    /// the signs of small components of directions, which the frame controls but an instance
+    /// does not.
     fn coherence(&self) -> Coherence {
         let mut placements = self.placements.iter();
         let has_instances = placements.any(|one| one.has_instances());
@@ -197,14 +194,13 @@ impl Group {
         }
     }
 
-    /// How many instances of other scenes the Embree scene has.
+    /// The number of instances in the Embree scene.
     pub fn instances(&self) -> u64 {
         let placements = self.placements.iter().filter(|_| self.is_begun());
         placements.map(|one| one.instance_count()).sum()
     }
 
-    /// The bytes that are kept for the members beside the description and
-    /// Embree's tree.
+    /// The bytes stored for the members, in addition to the description and Embree's tree.
     pub fn kept_bytes(&self) -> usize {
         let blocks = if self.is_begun() {
             kept_blocks_bytes(&self.members, self.context.layout)
@@ -214,7 +210,7 @@ impl Group {
         self.members.bytes() + blocks
     }
 
-    /// Traces for the hits that `query` keeps.
+    /// Traces a ray for the hits that `query` keeps.
     pub fn search(&self, ray: &LocalRay, query: &mut Query) {
         if let Some((level, ray32)) = query.enter(&self.frame, ray) {
             query.within(self.prototype, level, |query| {
@@ -233,8 +229,8 @@ impl Group {
         })
     }
 
-    /// Traces rays of a packet that was brought here for their first hits. Returns those
-    /// whose first hit is nearer now.
+    /// Traces rays of a packet that was brought here for their first hits. Returns the rays
+    /// with a nearer first hit.
     pub fn search_packet(&self, rays: RaySet, packet: &mut Packet) -> RaySet {
         let PacketEntry { rays32, entered } = packet.enter(&self.frame, rays);
         let before: [f64; GREATEST_PACKET] = std::array::from_fn(|ray| packet.bound(ray));
@@ -244,7 +240,7 @@ impl Group {
                 scene.closest_packet(&rays32, entered, width, self.coherence(), packet);
             });
         } else {
-            self.each_alone(entered, packet, |scene, ray, query| {
+            self.for_each_alone(entered, packet, |scene, ray, query| {
                 scene.closest(&rays32.ray(ray), query);
             });
         }
@@ -257,7 +253,7 @@ impl Group {
         nearer
     }
 
-    /// Those rays of a packet for which anything is hit.
+    /// The rays of a packet that hit anything.
     pub fn occluded_packet(&self, rays: RaySet, packet: &mut Packet) -> RaySet {
         let PacketEntry { rays32, entered } = packet.enter(&self.frame, rays);
         if stays_packet(entered, packet) {
@@ -267,7 +263,7 @@ impl Group {
             });
         }
         let mut blocked = RaySet::EMPTY;
-        self.each_alone(entered, packet, |scene, ray, query| {
+        self.for_each_alone(entered, packet, |scene, ray, query| {
             if scene.any(&rays32.ray(ray), query) {
                 blocked.insert(ray);
             }
@@ -276,7 +272,7 @@ impl Group {
     }
 
     /// Traces rays of a packet one by one.
-    fn each_alone(
+    fn for_each_alone(
         &self,
         rays: RaySet,
         packet: &mut Packet,
@@ -289,8 +285,8 @@ impl Group {
         }
     }
 
-    /// As [`Group::search`], but visits every primitive, wherever the
-    /// ray is: neither boxes nor spheres are tested.
+    /// As [`Group::search`], but visits every primitive for any ray: it tests neither boxes nor
+    /// spheres.
     pub fn search_exhaustively(&self, ray: &LocalRay, query: &mut Query) {
         let level = self.frame.enter_unseen(ray);
         query.within(self.prototype, level, |query| self.visit_all(query));

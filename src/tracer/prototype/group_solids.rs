@@ -1,5 +1,5 @@
-//! The solids of one kind in a group, as user geometries see them, and the plainest of
-//! those: a primitive of Embree's for each solid.
+//! The solids of one kind in a group, for user geometries, and the simplest geometry: one
+//! primitive per solid.
 
 use std::borrow::Borrow;
 use std::marker::PhantomData;
@@ -13,13 +13,12 @@ use crate::embree::{
 };
 use crate::math::LANES;
 use crate::scene::SolidList;
-use crate::tracer::counters;
 use crate::tracer::filter::FilterOf;
 use crate::tracer::kinds::TracedKind;
 use crate::tracer::query::{Packet, Query};
 use crate::tracer::traced::TracedSolid;
 
-/// Where callbacks find the solids of one kind, by the positions of their records in the
+/// Access for callbacks to the solids of one kind, by the positions of their records in the
 /// description.
 pub(crate) trait Records: Send + Sync + 'static {
     /// The kind.
@@ -28,10 +27,10 @@ pub(crate) trait Records: Send + Sync + 'static {
     /// The solid of a record.
     fn solid(&self, prototype_ref: &PrototypeRef, record: u32) -> impl Borrow<Self::Solid>;
 
-    /// Begins to bring a record near to the processor.
+    /// Prefetches a record.
     fn prefetch(&self, prototype_ref: &PrototypeRef, record: u32);
 
-    /// As [`Query::visit`]. A call by default, for a solver with its branches gains nothing from
+    /// As [`Query::visit`]. Not inlined by default: a solver with branches gains nothing from
     /// being compiled for each instruction set.
     fn visit(&self, prototype_ref: &PrototypeRef, record: u32, query: &mut Query) {
         query.visit::<Self::Solid>(
@@ -41,9 +40,9 @@ pub(crate) trait Records: Send + Sync + 'static {
         );
     }
 
-    /// As [`Query::meets`], likewise.
-    fn meets(&self, prototype_ref: &PrototypeRef, record: u32, query: &Query) -> bool {
-        query.meets::<Self::Solid>(self.solid(prototype_ref, record).borrow())
+    /// As [`Query::intersects`], in the same way.
+    fn intersects(&self, prototype_ref: &PrototypeRef, record: u32, query: &Query) -> bool {
+        query.intersects::<Self::Solid>(self.solid(prototype_ref, record).borrow())
     }
 }
 
@@ -87,13 +86,13 @@ impl<R: Records> GroupSolids<R> {
         }
     }
 
-    /// Whose they are.
+    /// The prototype of the solids.
     #[inline(always)]
     pub fn prototype_ref(&self) -> &PrototypeRef {
         &self.prototype_ref
     }
 
-    /// How many there are.
+    /// The number of solids.
     pub fn len(&self) -> u32 {
         self.numbers.len()
     }
@@ -114,7 +113,7 @@ impl<R: Records> GroupSolids<R> {
     pub fn grown_box(&self, record: u32) -> Box32 {
         let bounds = TracedSolid::bounds(self.solid(record).borrow());
         if bounds.is_empty() {
-            // What set operations leave nothing of; Embree wants a box all the same.
+            // The result of set operations may be empty; Embree requires a box anyway.
             return Box32 {
                 lower: [0.0; 3],
                 upper: [0.0; 3],
@@ -123,27 +122,27 @@ impl<R: Records> GroupSolids<R> {
         self.prototype_ref.grown_box(&bounds)
     }
 
-    /// Begins to bring a record near to the processor.
+    /// Prefetches a record.
     #[inline(always)]
     pub fn prefetch(&self, record: u32) {
         self.records.prefetch(&self.prototype_ref, record);
     }
 
-    /// Keeps of the points where the query's ray meets a solid those that are wanted.
+    /// Keeps the hits of the query's ray with a solid that the query is for.
     #[inline(always)]
     pub fn visit(&self, record: u32, query: &mut Query) {
         self.records.visit(&self.prototype_ref, record, query);
     }
 
-    /// Whether the query's ray meets a solid.
+    /// Whether the query's ray hits a solid.
     #[inline(always)]
-    pub fn meets(&self, record: u32, query: &Query) -> bool {
-        self.records.meets(&self.prototype_ref, record, query)
+    pub fn intersects(&self, record: u32, query: &Query) -> bool {
+        self.records.intersects(&self.prototype_ref, record, query)
     }
 
-    /// As [`visit`](Self::visit) for rays of a packet. Returns those that end earlier now,
-    /// whose `t_far` is set.
-    // Inlined for the rows of lanes within, as `embree::callback` says.
+    /// As [`visit`](Self::visit) for rays of a packet. Returns the rays that now end earlier,
+    /// and sets their `t_far`.
+    // Inlined for the rows of lanes within; see `embree::callback`.
     #[inline(always)]
     pub fn visit_packet(
         &self,
@@ -156,15 +155,15 @@ impl<R: Records> GroupSolids<R> {
         packet.visit::<R::Solid>(self.solid(record).borrow(), place, rays, t_far)
     }
 
-    /// Those of the rays that meet a solid.
+    /// The rays that hit a solid.
     #[inline(always)]
-    pub fn meets_packet(&self, record: u32, rays: RaySet, packet: &Packet) -> RaySet {
-        packet.meets::<R::Solid>(self.solid(record).borrow(), rays)
+    pub fn intersects_packet(&self, record: u32, rays: RaySet, packet: &Packet) -> RaySet {
+        packet.intersects::<R::Solid>(self.solid(record).borrow(), rays)
     }
 }
 
 impl<R: Records<Solid: TracedKind>> GroupSolids<R> {
-    /// The filter of up to eight solids, whose lanes are in this order.
+    /// The filter of up to eight solids, in lanes of this order.
     pub fn filter(&self, records: &[u32]) -> <R::Solid as TracedKind>::Filter {
         let solids = records.iter().map(|&record| *self.solid(record).borrow());
         let solids: SmallVec<[R::Solid; LANES]> = solids.collect();
@@ -188,8 +187,7 @@ impl<R: Records> UserGeometry for Single<R> {
 
     #[inline(always)]
     fn intersect(&self, at: Reached, _: &Ray32, query: &mut Query) -> Option<f32> {
-        counters::called_back();
-        query.callbacks += 1;
+        query.called_back();
         query.reach(at.instance, self.0.prototype_ref());
         let before = query.bound();
         self.0.visit(self.0.record(at.primitive), query);
@@ -198,10 +196,9 @@ impl<R: Records> UserGeometry for Single<R> {
 
     #[inline(always)]
     fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
-        counters::called_back();
-        query.callbacks += 1;
+        query.called_back();
         query.reach(at.instance, self.0.prototype_ref());
-        self.0.meets(self.0.record(at.primitive), query)
+        self.0.intersects(self.0.record(at.primitive), query)
     }
 
     #[inline(always)]
@@ -213,8 +210,7 @@ impl<R: Records> UserGeometry for Single<R> {
         t_far: &mut [f32; GREATEST_PACKET],
         packet: &mut Packet,
     ) -> RaySet {
-        counters::called_back();
-        packet.callbacks += 1;
+        packet.called_back();
         packet.reach(at.instance, self.0.prototype_ref());
         let record = self.0.record(at.primitive);
         self.0.visit_packet(record, rays, t_far, packet)
@@ -228,10 +224,9 @@ impl<R: Records> UserGeometry for Single<R> {
         _: &Rays32,
         packet: &mut Packet,
     ) -> RaySet {
-        counters::called_back();
-        packet.callbacks += 1;
+        packet.called_back();
         packet.reach(at.instance, self.0.prototype_ref());
         let record = self.0.record(at.primitive);
-        self.0.meets_packet(record, rays, packet)
+        self.0.intersects_packet(record, rays, packet)
     }
 }

@@ -1,40 +1,39 @@
-//! When the solids of a prototype get more than one frame.
+//! Decides when the solids of a prototype get more than one frame.
 //!
-//! Boxes grow by g = 2^-19 R, R the radius of their frame ([`BOX_GROWTH`]). One solid
-//! that is very far from the others, or very large, makes R and so g large for all of
-//! them. Where g is no longer small against solids that lie close together, a
-//! ray through them meets most of their boxes.
+//! Boxes grow by g = 2^-19 R, R the radius of their frame ([`BOX_GROWTH`]). One solid that is
+//! very far from the others, or very large, makes R and so g large for all of them. If g is no
+//! longer small compared with solids that are close together, a ray through them intersects
+//! most of their boxes.
 //!
-//! **What it costs.** A line through a convex region of half surface area A meets a
-//! convex box in it, of half area a, with the probability a/A (Crofton). So the
-//! callbacks of a ray through a cube of side 2h, with n boxes in it, are
+//! **Cost.** A line through a convex region of half surface area A intersects a convex box in
+//! it, of half area a, with the probability a/A (Crofton). So the number of callbacks of a ray
+//! through a cube of side 2h with n boxes in it is
 //!
 //! ```text
 //! callbacks(g) = sum over the boxes of min(1, a(g) / 12 h²)
 //! ```
 //!
-//! where a(g) is the half area of a box grown by g. With a frame of their own
-//! the n solids have `g' = 2^-19 √3 h`. A ray is as likely to go to the cube as its
-//! target is one of the n among all N, hence
+//! where a(g) is the half area of a box grown by g. With a frame of their own the n solids have
+//! `g' = 2^-19 √3 h`. The probability that a ray passes through the cube is that of its target
+//! being one of the n among all N, hence
 //!
 //! ```text
 //! gain = n/N (callbacks(g) - callbacks(g'))
 //! ```
 //!
-//! Another frame costs each ray that comes to the prototype about what a callback
-//! costs: entering it, and mostly finding that its sphere is missed. So the solids in
-//! the cube become a group of their own where the gain is at least
-//! [`LEAST_GAIN`] and their frame is at least [`LEAST_RATIO`] times smaller.
+//! Another frame costs each ray that enters the prototype about as much as a callback: the ray
+//! is tested against the sphere of the frame, and mostly misses. So the solids in the cube
+//! become a group of their own if the gain is at least [`LEAST_GAIN`] and their frame is at
+//! least [`LEAST_RATIO`] times smaller.
 //!
-//! **How it is found.** The areas come from a sample of [`SAMPLE`] boxes at equal
-//! strides, cubes around the middles of some of them are tried, and the best one is
-//! doubled until the next octave is empty. Then nothing is left out that belongs to
-//! it: everything else is more than twice as far away as the rest. What remains
-//! is treated likewise. Where g adds less than a quarter to the boxes of the sample,
-//! as in nearly all prototypes, that ends the search.
+//! **Search.** The areas come from a sample of [`SAMPLE`] boxes at equal strides. Cubes around
+//! the centers of some of them are tried, and the best one is doubled until the next octave is
+//! empty. Then nothing is left out that belongs to it: everything else is more than twice as
+//! far away as the rest. The remainder is treated in the same way. If g adds less than a
+//! quarter to the boxes of the sample, as in nearly all prototypes, that ends the search.
 //!
-//! The result depends on the boxes alone, not on threads. Answers do not
-//! depend on it.
+//! The groups depend on the boxes alone, not on threads. Results of queries do not depend on
+//! the groups.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -42,40 +41,40 @@ use rayon::prelude::*;
 use crate::math::{Bounds, power_of_two};
 use crate::tracer::frame::BOX_GROWTH;
 
-/// The least number of callbacks that another frame spares a ray.
+/// The least number of callbacks that another frame saves a ray.
 const LEAST_GAIN: f64 = 1.0;
 
-/// By how much a frame has to be smaller. Below, a growth of 2^-19 R is 2^-15 of
-/// the group: only hundreds of millions of solids are so close together.
+/// The least ratio of the frames' sizes. Below it, a growth of 2^-19 R is 2^-15 of the group:
+/// only hundreds of millions of solids are so close together.
 const LEAST_RATIO: f64 = 16.0;
 
-/// The most boxes that decide. More find groups that are a smaller share of all, and
-/// take longer: the square of them, in prototypes that need groups.
+/// The size of the sample. More boxes find groups that are a smaller share of all, and take
+/// longer: the square of their number, in prototypes that need groups.
 const SAMPLE: usize = 256;
 
-/// The most cubes that are tried.
+/// The greatest number of cubes that are tried.
 const CENTERS: usize = 32;
 
-/// The least part of a sample that is trusted: a few boxes that are close by chance
-/// would represent thousands.
+/// The least share of a sample that makes a group: a few boxes that are close by chance would
+/// represent thousands.
 const LEAST_SHARE: f64 = 1.0 / 32.0;
 
-/// The octaves around a cube that are looked at in one pass over the boxes.
+/// The octaves around a cube that one pass over the boxes examines.
 const OCTAVES: u32 = 64;
 
-/// Growth matters to a box whose area it multiplies by more than this.
+/// Growth matters for a box whose area it multiplies by more than this.
 const NOTABLE: f64 = 1.25;
 
-/// The most groups of a prototype. Each takes a leaf in the tree of every
+/// The greatest number of groups of a prototype. Each takes a leaf in the tree of every
 /// prototype that places it.
 pub(super) const MOST_GROUPS: usize = 8;
 
-/// Things with boxes; the box of what contains nothing is empty.
+/// A collection of boxes; the box of an empty solid is empty.
 pub(super) trait Boxed: Sync {
-    /// How many there are.
+    /// The number of boxes.
     fn len(&self) -> usize;
 
-    /// The box of one.
+    /// A box.
     fn bounds(&self, number: usize) -> Bounds;
 }
 
@@ -87,7 +86,7 @@ pub(super) struct Cube {
 }
 
 impl Cube {
-    /// Half the side of the cube doubled some times.
+    /// Half the side of the cube, doubled some times.
     fn side_after(&self, octaves: u32) -> f64 {
         self.half_side * power_of_two(octaves as i32)
     }
@@ -111,13 +110,13 @@ fn half_area(bounds: &Bounds) -> f64 {
     extent.x * extent.y + extent.y * extent.z + extent.z * extent.x
 }
 
-/// The cubes of all groups but the last, which has the rest; `whole` contains
-/// everything. What is in several cubes belongs to the first of them.
+/// The cubes of all groups except the last, which has the rest; `whole` contains everything.
+/// What is in several cubes belongs to the first of them.
 ///
-/// `first` contains all but the further groups of what is placed. Where nothing is gained
-/// by a frame of its own, it gets one all the same if that is [`LEAST_RATIO`] times
-/// smaller: what was apart in a child stays apart, and hits are the bits of the scene
-/// without the child's outliers.
+/// `first` contains everything except the further groups of placed prototypes. If a frame of
+/// its own gains nothing, it gets one anyway if the frame is [`LEAST_RATIO`] times smaller:
+/// outliers of a child stay separate, and hits have the bits of the scene without the child's
+/// outliers.
 pub(super) fn cubes(all: &impl Boxed, whole: &Bounds, first: &Bounds) -> Vec<Cube> {
     let mut cubes = Vec::new();
     let mut rest = Rest {
@@ -141,10 +140,10 @@ pub(super) fn cubes(all: &impl Boxed, whole: &Bounds, first: &Bounds) -> Vec<Cub
     cubes
 }
 
-/// What no group has been found for.
+/// The boxes without a group.
 struct Rest<'a, B> {
     all: &'a B,
-    /// The numbers of it; `None` for all.
+    /// Their numbers; `None` for all.
     numbers: Option<Vec<usize>>,
     bounds: Bounds,
 }
@@ -158,7 +157,7 @@ impl<'a, B: Boxed> Rest<'a, B> {
         self.numbers.as_ref().map_or(position, |all| all[position])
     }
 
-    /// The numbers of those whose box has a property.
+    /// The numbers of the boxes with a property.
     fn with(&self, property: impl Fn(&Bounds) -> bool + Sync) -> Vec<usize> {
         let positions = (0..self.len()).into_par_iter().with_min_len(1 << 10);
         let numbers = positions.map(|position| self.number(position));
@@ -180,7 +179,7 @@ impl<'a, B: Boxed> Rest<'a, B> {
         }
     }
 
-    /// The greatest half side of a cube. Whatever its center, something is outside.
+    /// The greatest half side of a cube. Something is outside such a cube for any center.
     fn greatest(&self) -> f64 {
         0.5 * self.bounds.extent().max_element() / LEAST_RATIO
     }
@@ -217,7 +216,7 @@ impl<'a, B: Boxed> Rest<'a, B> {
         (gain >= LEAST_GAIN).then(|| self.widened(cube))
     }
 
-    /// The cube doubled until the next octave is empty, or it is the greatest.
+    /// The cube, doubled until the next octave is empty or the greatest size is reached.
     fn widened(&self, cube: Cube) -> Cube {
         let most = (1..=OCTAVES).take_while(|&octaves| cube.side_after(octaves) <= self.greatest());
         let occupied = self.octaves_around(&cube).trailing_ones();
@@ -232,7 +231,7 @@ impl<'a, B: Boxed> Rest<'a, B> {
         }
     }
 
-    /// Which of the octaves around a cube have a box: bit k is set if one reaches beyond the
+    /// The octaves around a cube that contain a box: bit k is set if a box extends beyond the
     /// cube doubled k times, but not beyond it doubled once more.
     fn octaves_around(&self, cube: &Cube) -> u64 {
         let positions = (0..self.len()).into_par_iter().with_min_len(1 << 10);
@@ -253,7 +252,7 @@ struct Search<'a> {
     sample: &'a [Bounds],
     /// The least number of boxes in a cube.
     least: usize,
-    /// What a box of the sample counts for.
+    /// The number of boxes that a box of the sample represents.
     each: f64,
     growth: f64,
     /// The greatest half side of a cube.
@@ -261,8 +260,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The best cube around a point with what it gains, among those that contain the
-    /// nearest boxes and are half as large and smaller each time.
+    /// The best cube around a point, with its gain, among those that contain the nearest boxes
+    /// and are half as large and smaller each time.
     fn around(&self, center: DVec3) -> Option<(f64, Cube)> {
         let mut near: Vec<(f64, &Bounds)> = self
             .sample
@@ -286,14 +285,15 @@ impl Search<'_> {
         }
     }
 
-    /// The callbacks that a frame of their own spares a ray.
+    /// The callbacks that a frame of their own saves a ray.
     fn gain(&self, half_side: f64, inside: &[(f64, &Bounds)]) -> f64 {
         let own = 3_f64.sqrt() * half_side * BOX_GROWTH;
         let region = 12.0 * half_side * half_side;
-        let met = |bounds: &Bounds, growth| (half_area(&bounds.grown(growth)) / region).min(1.0);
+        let probability =
+            |bounds: &Bounds, growth| (half_area(&bounds.grown(growth)) / region).min(1.0);
         let spared = inside
             .iter()
-            .map(|(_, bounds)| met(bounds, self.growth) - met(bounds, own));
+            .map(|(_, bounds)| probability(bounds, self.growth) - probability(bounds, own));
         let share = inside.len() as f64 / self.sample.len() as f64;
         share * self.each * spared.sum::<f64>()
     }

@@ -1,13 +1,12 @@
-//! Embree's own instances: which placements are some, and how far the f32 ray in the
-//! child is off.
+//! Embree's own instances: which placements use them, and the displacement of the f32 ray in
+//! the child.
 //!
-//! Embree maps its f32 ray into the child in f32, and the child's boxes grow by what that
-//! can displace the ray. With `L` the matrix from the child's frame to the parent's, G its
-//! inverse, P where L takes the child's center, `g` and `l` the greatest rows of G and L, R
-//! the radius of the parent's frame, r that of the child's, v = 2^-24: a point c of the
-//! ray in the child's sphere is the image of q = L c + P, which is within R of the
-//! parent's center and within `l r √3` of P. Displacements of c along an axis, of the first
-//! order:
+//! Embree maps its f32 ray into the child in f32, and the child's boxes grow by the
+//! displacement of that ray. Let `L` be the matrix from the child's frame to the parent's, G
+//! its inverse, P the image of the child's center under L, `g` and `l` the greatest rows of G
+//! and L, R the radius of the parent's frame, r that of the child's, v = 2^-24. A point c of
+//! the ray in the child's sphere corresponds to q = L c + P, which is within R of the parent's
+//! center and within `l r √3` of P. Displacements of c along an axis, of the first order:
 //!
 //! | source | in units of `v g R` |
 //! |---|---|
@@ -15,18 +14,18 @@
 //! | P rounded | 1 |
 //! | `G P`: three products and sums | 3 |
 //! | the origin: products and sums, 4 for `G s` and 3 for `G P` | 7 |
-//! | the direction: 3, over a way of 2 R | 6 |
+//! | the direction: 3, over a length of 2 R | 6 |
 //! | the slab test in the child, whose rays start up to 2 `g R` away | 14.5 |
 //! | packets as a whole: two products and a difference | 4, and r |
 //! | **sum** | **38.5** |
 //!
-//! The filter of a block needs more (`tracer::filter`): the distance between both rays, which is
-//! √3 times the rows above that of the slab test, 35, and 20 v of the distance of the ray's
-//! origin, which is at most 2 √3 g R, 70. So boxes grow by 105 v g R.
+//! The filter of a block needs more (`tracer::filter`): the distance between the two rays, √3
+//! times the rows above that of the slab test, 35, and 20 v times the distance of the ray's
+//! origin, at most 2 √3 g R, 70. So boxes grow by 105 v g R.
 //!
-//! The computed inverse Ĝ maps origin, direction and P alike, so its error acts on q - P
-//! alone. `adj L / det L` is off by `2 v` of the products in each cofactor and `6 v` of
-//! those in the determinant, and rounding L to f32 by `v` of its condition:
+//! The computed inverse Ĝ maps origin, direction and P, so its error acts on q - P alone.
+//! `adj L / det L` is off by `2 v` of the products in each cofactor and `6 v` of those in the
+//! determinant, and rounding L to f32 by `v` of its condition:
 //!
 //! ```text
 //! |ΔG| <= v (2 |adj| / |det| + (6 perm / |det| + 2 + κ) g)
@@ -34,20 +33,20 @@
 //!
 //! where |adj| and perm are the cofactors and the determinant with all terms positive.
 //!
-//! Embree computes an instance's box in the parent from the eight corners of the child's
-//! scene, `5 v (l r √3 + R)` off along an axis, and tests it as any other box, for which the parent
-//! needs 22 v R (`docs/derivations.md`, section 4). The image of a child's box that is grown by γ is
-//! grown by the sum of a row of |L| times γ: so that divides both.
+//! Embree computes an instance's box in the parent from the eight corners of the child's scene,
+//! off by `5 v (l r √3 + R)` along an axis, and tests it like any other box, for which the
+//! parent needs 22 v R (`docs/derivations.md`, section 4). The image of a child's box that is
+//! grown by γ is grown by the sum of a row of |L| times γ, so both are divided by that sum.
 //!
-//! What f64 rounds comes on top: the ray in the child is not quite the image of the
-//! parent's (`PlacementMargin`), and P is computed from numbers of the parent's size. Through an opened prototype
-//! (`opened`) L is of the product of two matrices M N, whose terms are off by 3 u of |M| |N|: with the
-//! product by the center, 3 u, the translation M t + s, 4 u, and two sums, P and the image of
-//! what is in the child's sphere are off by less than 12 u of the sizes. What is displaced in the opened
-//! prototype is displaced in the parent by at most the norm of M times as much.
+//! The roundings of f64 are added: the ray in the child is not quite the image of the parent's
+//! (`PlacementMargin`), and P is computed from numbers of the parent's size. Through an opened
+//! prototype (`opened`), L comes from the product of two matrices M N, whose terms are off by 3
+//! u of |M| |N|. With the product by the center, 3 u, the translation M t + s, 4 u, and two
+//! sums, P and the image of the child's sphere are off by less than 12 u of the sizes. A
+//! displacement in the opened prototype is multiplied in the parent by at most the norm of M.
 //!
-//! The sum is of the first order, with second orders below 2^-9 of it as long as the
-//! share is below [`GREATEST_GROWTH`]; a factor of 1 + 2^-4 covers them.
+//! The sum is of the first order. The second order is below 2^-9 of it if the share is below
+//! [`GREATEST_GROWTH`]; a factor of 1 + 2^-4 covers it.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -59,28 +58,29 @@ use crate::tracer::frame::Frame;
 /// Half an ulp of f32, relative to 1.
 const V: f64 = 1.0 / (1 << 24) as f64;
 
-/// The greatest share of a child's radius by which its boxes grow to have instances of
-/// it. At 2^-13 nothing is measurable; at 2^-11 the trees of a forest take 12 % longer, more than
+/// The greatest share of a child's radius by which its boxes may grow for instances of it. At
+/// 2^-13 the cost is not measurable; at 2^-11 the trees of a forest take 12 % longer, more than
 /// instances save.
 const GREATEST_GROWTH: f64 = 1.0 / (1 << 12) as f64;
 
-/// A prototype with more placements has none as instances: Embree takes about 380 bytes for
-/// each, where a primitive takes 90. Where there are many, each is small in its parent, so that
-/// few could be.
+/// The greatest number of placements of a prototype with instances: Embree takes about 380
+/// bytes for each, and 90 for a primitive. Among many placements each is small in its parent,
+/// so few could be instances.
 pub(crate) const MOST_INSTANCES: usize = 1 << 12;
 
-/// The map from a child's space to its parent's, through one placement or two.
+/// The map from a child's space to its parent's, through one or two placements.
 pub(super) struct Image {
     affine: DAffine3,
-    /// The matrix with all products positive, and the sizes of what the translation is the sum of.
+    /// The matrix with all products positive, and the sum of the sizes of the translation's
+    /// terms.
     size: DMat3,
     shift_size: f64,
-    /// By how much f64 displaces hits in the child, in the parent.
+    /// The displacement of the child's hits by f64 roundings, in the parent.
     displacement: f64,
 }
 
 impl Image {
-    /// That of a placement; `placement_margin` is the parent's.
+    /// The map of a placement; `placement_margin` is the parent's.
     pub fn new(placement_margin: &PlacementMargin, placement: &Placement) -> Self {
         let affine = placement.parent_from_child;
         Self {
@@ -91,11 +91,11 @@ impl Image {
         }
     }
 
-    /// That of a placement in the opened prototype that is placed by this one; `inner_sight` is
+    /// The map of a placement in the opened prototype that this one places; `inner_margin` is
     /// the opened prototype's.
-    pub fn through(self, inner_sight: &PlacementMargin, inner: &Placement) -> Self {
-        let inner = Self::new(inner_sight, inner);
-        // The Frobenius norm, which is at least the greatest stretch.
+    pub fn through(self, inner_margin: &PlacementMargin, inner: &Placement) -> Self {
+        let inner = Self::new(inner_margin, inner);
+        // The Frobenius norm, at least the greatest stretch.
         let terms = self.affine.matrix3.to_cols_array();
         let stretch = terms.iter().map(|x| x * x).sum::<f64>().sqrt();
         Self {
@@ -107,13 +107,13 @@ impl Image {
     }
 }
 
-/// How a child's frame lies in its parent's.
+/// The relation of a child's frame to its parent's.
 struct Relation {
     /// L.
     matrix: DMat3,
     /// P.
     center: DVec3,
-    /// The error of P, and of L times what is in the child's sphere.
+    /// The error bound of P, and of L times the points of the child's sphere.
     center_error: f64,
 }
 
@@ -133,7 +133,7 @@ impl Relation {
     }
 }
 
-/// The map from the child's frame to its parent's, as Embree gets it.
+/// The map from the child's frame to its parent's, for Embree.
 pub(super) fn instance_map(parent: &Frame, image: &Image, child: &Frame) -> [[f32; 4]; 3] {
     let Relation { matrix, center, .. } = Relation::new(parent, image, child);
     std::array::from_fn(|axis| {
@@ -142,21 +142,21 @@ pub(super) fn instance_map(parent: &Frame, image: &Image, child: &Frame) -> [[f3
     })
 }
 
-/// By which share of the child's radius its boxes have to grow to have an instance of it
-/// here. `None` where that is too much.
+/// The share of the child's radius by which its boxes have to grow for an instance of it here.
+/// `None` if that is too much.
 pub(super) fn needed_growth(parent: &Frame, image: &Image, child: &Frame) -> Option<f64> {
     let share = displacement(parent, image, child);
     // Written so that NaN is too much.
     (share <= GREATEST_GROWTH).then_some(share)
 }
 
-/// The bound of the head of this file, as a share of the child's radius.
+/// The bound derived at the head of this file, as a share of the child's radius.
 fn displacement(parent: &Frame, image: &Image, child: &Frame) -> f64 {
     let relation = Relation::new(parent, image, child);
     let (matrix, inverse) = (relation.matrix, relation.matrix.inverse());
     let (g, l) = (greatest_row(&inverse), greatest_row(&matrix));
     let (radius, own) = (parent.radius(), child.radius());
-    // What f64 displaces, in the parent's frame.
+    // The displacement by f64, in the parent's frame.
     let wide = image.displacement * parent.scale() + relation.center_error;
 
     let size = matrix.abs();
@@ -173,7 +173,7 @@ fn displacement(parent: &Frame, image: &Image, child: &Frame) -> f64 {
         V * (2.0 * cofactors / determinant + (6.0 * permanent / determinant + 2.0 + condition) * g);
 
     let image = 3_f64.sqrt() * l * own;
-    // Distances, √3 times what is along an axis.
+    // Distances, √3 times the displacement along an axis.
     let rest = 3_f64.sqrt() * inverse_error * image + 3.0 * g * wide;
     let in_child = V * (105.0 * g * radius + own) + rest;
     let thinnest = (size * DVec3::ONE).min_element();
@@ -202,7 +202,7 @@ mod tests {
     use crate::math::{Bounds, Random, power_of_two_below};
     use crate::scene::PrototypeIndex;
 
-    /// `a b + c` as Embree has it: with one rounding, or with two.
+    /// `a b + c` as Embree computes it: with one rounding, or with two.
     fn multiply_add(fused: bool, a: f32, b: f32, c: f32) -> f32 {
         if fused {
             // The product is exact in f64.
@@ -244,19 +244,19 @@ mod tests {
         }
     }
 
-    /// No ray is off by more than the bound, which is not twenty times too great; two thirds
-    /// of it are for the roundings of filters, which are not made here.
+    /// No ray is off by more than the bound, which is not twenty times too large. Two thirds of
+    /// the bound are for the roundings of filters, which are not computed here.
     #[test]
     fn rays_mapped_in_f32_are_off_by_less_than_the_bound() {
         let most = most_used(false);
         assert!(most > 0.05, "{most}");
-        // Two placements displace less than the sum of what each of them may.
+        // Two placements displace less than the sum of the bounds of each.
         let most = most_used(true);
         assert!(most > 0.03, "{most} through two placements");
     }
 
     /// The greatest share of the bound by which a ray is off, in instances through one
-    /// placement, or two.
+    /// placement or two.
     fn most_used(is_opened: bool) -> f64 {
         let mut random = Random::new(97, u64::from(is_opened));
         let (mut cases, mut most) = (0, 0.0_f64);
@@ -268,9 +268,9 @@ mod tests {
             let mut map = placement.parent_from_child;
             if is_opened {
                 let outer = random_placement(&mut random, 0.3);
-                let inner_sight = placement_margin;
+                let inner_margin = placement_margin;
                 (placement_margin, reach) = placed(&mut random, &outer, &reach);
-                image = Image::new(&placement_margin, &outer).through(&inner_sight, &placement);
+                image = Image::new(&placement_margin, &outer).through(&inner_margin, &placement);
                 map = outer.parent_from_child * map;
             }
             let (parent, child) = (Frame::new(&reach), Frame::new(&in_child));
@@ -284,11 +284,11 @@ mod tests {
             let map = instance_map(&parent, &image, &child);
             let heading = random.direction();
             let heading = heading / power_of_two_below(heading.abs().max_element());
-            // Back to the sphere.
+            // Moves back to the sphere.
             let (along, square) = (q.dot(heading), heading.length_squared());
             let inside = parent.radius() * parent.radius() - q.length_squared();
-            let way = (along + (along * along + square * inside.max(0.0)).sqrt()) / square;
-            let start = (q - heading * way).to_array().map(|x| x as f32);
+            let length = (along + (along * along + square * inside.max(0.0)).sqrt()) / square;
+            let start = (q - heading * length).to_array().map(|x| x as f32);
             let heading = heading.to_array().map(|x| x as f32);
             for fused in [false, true] {
                 let inverse = inverse_of(fused, &map);
@@ -296,7 +296,7 @@ mod tests {
                 let from = mapped(fused, &inverse, start);
                 let along = mapped(fused, &[x, y, z, [0.0; 3]], heading);
                 let vector = |a: [f32; 3]| DVec3::from_array(a.map(f64::from));
-                let off = vector(from) + vector(along) * way - c;
+                let off = vector(from) + vector(along) * length - c;
                 let used = off.abs().max_element() / (share * child.radius());
                 assert!(used < 1.0, "case {cases}, fused {fused}: {used}");
                 most = most.max(used);

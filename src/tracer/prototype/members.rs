@@ -1,9 +1,9 @@
-//! What the groups of a prototype contain.
+//! The members of the groups of a prototype.
 //!
-//! A prototype has a list for each kind of solid, and its placements. A placed
-//! prototype may have several groups itself: then a placement is one primitive for
-//! each of them, and these may be in different groups of the parent. So a far solid
-//! in a placed prototype does not enlarge the boxes of the others there, at any depth.
+//! A prototype has a list for each kind of solid, and its placements. A placed prototype may
+//! have several groups itself. Then a placement is one primitive for each of them, and these
+//! may be in different groups of the parent. So a far solid in a placed prototype does not
+//! enlarge the boxes of the others there, at any depth.
 
 use std::borrow::Borrow;
 
@@ -20,9 +20,9 @@ use crate::with_solid_kind;
 /// A list of a prototype.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum List {
-    /// The solids of a kind; those of all set operations are one list.
+    /// The solids of a kind; all set operations share one list.
     Solids(SolidKind),
-    /// The placements, each for one group of what it places.
+    /// The placements, for one group of the placed prototypes.
     Placements {
         /// The number of the group.
         group: usize,
@@ -35,7 +35,7 @@ const KINDS: &[SolidKind] = SolidKind::LISTS;
 impl List {
     fn position(self) -> usize {
         match self {
-            // Further set operations are in the last list.
+            // All set operations are in the last list.
             Self::Solids(kind) => (kind as usize).min(KINDS.len() - 1),
             Self::Placements { group } => KINDS.len() + group,
         }
@@ -49,38 +49,38 @@ impl List {
     }
 }
 
-/// What a group contains of each list.
+/// The members of a group, by list.
 #[derive(Clone, Debug)]
 pub(crate) struct Members {
     lists: Vec<Numbers>,
 }
 
 impl Members {
-    /// The numbers of a list that it contains.
+    /// The members in a list.
     pub fn of(&self, list: List) -> &Numbers {
         &self.lists[list.position()]
     }
 
-    /// The lists of solids with at least one number.
+    /// The lists of solids with at least one member.
     pub fn solids(&self) -> impl Iterator<Item = (SolidKind, &Numbers)> {
         let lists = KINDS.iter().copied().zip(&self.lists);
         lists.filter(|(_, numbers)| numbers.len() > 0)
     }
 
-    /// The lists of placements with at least one number, each with the number of the
-    /// child's group.
+    /// The lists of placements with at least one member, each with the number of the child's
+    /// group.
     pub fn placements(&self) -> impl Iterator<Item = (usize, &Numbers)> {
         let lists = self.lists[KINDS.len()..].iter().enumerate();
         lists.filter(|(_, numbers)| numbers.len() > 0)
     }
 
-    /// How many it contains of each kind of solid, without set operations.
+    /// The number of solids of each kind, without set operations.
     pub fn single_counts(&self) -> impl Iterator<Item = u32> {
         let kinds = SolidKind::SIMPLE.iter();
         kinds.map(|&kind| self.of(List::Solids(kind)).len())
     }
 
-    /// All that it contains.
+    /// All members.
     pub fn iter(&self) -> impl Iterator<Item = (List, u32)> {
         let lists = self.lists.iter().enumerate();
         lists.flat_map(|(position, numbers)| {
@@ -89,7 +89,7 @@ impl Members {
         })
     }
 
-    /// How much it contains.
+    /// The number of members.
     pub fn len(&self) -> u64 {
         self.lists
             .iter()
@@ -103,10 +103,10 @@ impl Members {
     }
 }
 
-/// The boxes of the groups of a prototype; none of one that contains nothing.
+/// The boxes of the groups of a prototype; none if it is empty.
 pub(crate) type BoxesOf<'a> = dyn Fn(PrototypeIndex) -> &'a [Bounds] + Sync + 'a;
 
-/// The boxes of all that a prototype contains.
+/// The boxes of everything in a prototype.
 pub(crate) struct Boxes<'a> {
     prototype: &'a scene::Prototype,
     children: &'a BoxesOf<'a>,
@@ -115,7 +115,7 @@ pub(crate) struct Boxes<'a> {
 }
 
 impl<'a> Boxes<'a> {
-    /// Those of a prototype, given those of what it places.
+    /// The boxes of a prototype, given those of its children.
     pub fn new(prototype: &'a scene::Prototype, children: &'a BoxesOf<'a>) -> Self {
         let (mut groups, mut last) = (1, None);
         for placement in &prototype.placements {
@@ -132,7 +132,7 @@ impl<'a> Boxes<'a> {
         }
     }
 
-    /// The box of an entry of a list; empty if it contains nothing.
+    /// The box of an entry of a list; empty if the entry is.
     pub fn entry(&self, list: List, number: u32) -> Bounds {
         let (prototype, number) = (self.prototype, number as usize);
         match list {
@@ -163,8 +163,8 @@ impl<'a> Boxes<'a> {
         boxes.fold(Bounds::EMPTY, |one, other| one.union(&other))
     }
 
-    /// The groups with their boxes: nearly always one, with everything. None where there is
-    /// nothing.
+    /// The groups with their boxes: nearly always one, with everything; none if the prototype
+    /// is empty.
     pub fn groups(&self) -> Vec<(Members, Bounds)> {
         let everything = Members {
             lists: self.lens.iter().copied().map(Numbers::All).collect(),
@@ -186,7 +186,7 @@ impl<'a> Boxes<'a> {
         groups
     }
 
-    /// The box around all but the further groups of what is placed.
+    /// The box around everything except the further groups of placed prototypes.
     fn without_further_groups(&self, everything: &Members, whole: &Bounds) -> Bounds {
         let mut lists = everything.lists.clone();
         if lists.len() == KINDS.len() + 1 {
@@ -196,7 +196,7 @@ impl<'a> Boxes<'a> {
         self.around(&Members { lists })
     }
 
-    /// The groups that cubes make, from one pass over all boxes.
+    /// The groups of the cubes, from one pass over all boxes.
     fn divided(&self, cubes: &[Cube]) -> Vec<(Members, Bounds)> {
         let nothing = Members { lists: Vec::new() };
         let mut groups = vec![(nothing, Bounds::EMPTY); cubes.len() + 1];
@@ -213,7 +213,7 @@ impl<'a> Boxes<'a> {
         groups
     }
 
-    /// What each group has of a list.
+    /// The members of each group in a list.
     fn divided_list(&self, list: List, len: u32, cubes: &[Cube]) -> Vec<Part> {
         let nothing = || vec![Part::default(); cubes.len() + 1];
         let numbers = (0..len).into_par_iter().with_min_len(1 << 10);
@@ -235,7 +235,7 @@ impl<'a> Boxes<'a> {
     }
 }
 
-/// What a group has of a list.
+/// The members of a group in a list.
 #[derive(Clone)]
 struct Part {
     /// In ascending order.

@@ -1,13 +1,13 @@
-//! A prototype that can be traced: what it contains, in groups.
+//! A prototype that can be traced: its contents, in groups.
 //!
-//! Nearly every prototype is one group: a frame, and an Embree scene with a callback for
-//! each primitive (`group`). Innermost placements are instances of Embree's where that is
-//! proven to lose nothing (`instances`), others are primitives (`placements`). A prototype of nothing
-//! but a few innermost placements is opened into its parent, which then has the instances (`opened`). Where one solid is so far away or so large that its
-//! box alone would set the frame of all others, there are several (`grouping` has the rule,
-//! `members` what they contain). A ray enters them one after another,
-//! each with the range that the hits so far have left. Which groups there are is known
-//! from the start; what each needs is built when a first ray gets there.
+//! Nearly every prototype is one group: a frame, and an Embree scene with a callback for each
+//! primitive (`group`). Innermost placements are instances of Embree's if that provably loses
+//! nothing (`instances`), others are primitives (`placements`). A prototype of a few innermost
+//! placements only is opened into its parent, which then has the instances (`opened`). If one
+//! solid is so far away or so large that its box alone would determine the frame of all others,
+//! there are several groups (`grouping` has the rule, `members` the lists). A ray enters them
+//! one after another, each with the range that the hits so far have left. The groups are
+//! determined at the start; what each needs is built when the first ray arrives there.
 
 mod attach;
 mod blocks;
@@ -47,15 +47,14 @@ use crate::embree::{self, Device, PacketWidth, RaySet};
 use crate::math::Bounds;
 use crate::scene::{Placement, PrototypeIndex, Scene, ViewVolume};
 
-/// With fewer rays than this a packet is given up for single rays: what they
-/// share no longer pays for what Embree does for all lanes.
+/// With fewer rays than this a packet is split into single rays: what they share no longer pays
+/// for Embree's work on all lanes.
 const LEAST_PACKET: usize = 4;
 
-/// Below this many placements a packet is given up for single rays, for a level
-/// of a packet takes up to 65 kB of the stack, and one of a ray 12 kB (Embree
-/// 3.13.5 with AVX-512; less with others). So the 64 levels of the deepest scene
-/// that loads take 8 · 65 + 56 · 12 = 1192 kB, and fit the 2 MB of a thread as
-/// Rust makes them. Packets alone would take 4.2 MB.
+/// Below this number of placements a packet is split into single rays: a level of a packet
+/// takes up to 65 kB of the stack, and one of a ray 12 kB (Embree 3.13.5 with AVX-512; less
+/// with others). So the 64 levels of the deepest scene that loads take 8 · 65 + 56 · 12 = 1192
+/// kB, and fit the 2 MB of a default Rust thread. Packets alone would take 4.2 MB.
 const GREATEST_PACKET_DEPTH: usize = 8;
 
 /// How prototypes are built.
@@ -63,16 +62,16 @@ const GREATEST_PACKET_DEPTH: usize = 8;
 pub(super) struct BuildContext {
     pub device: Device,
     pub layout: Layout,
-    /// Threads that a prototype's blocks are made on.
+    /// The number of threads that make a prototype's blocks.
     pub threads: usize,
-    /// The part of space that all rays will be in, if it is known.
+    /// The part of space that contains all rays, if known.
     pub view: Option<ViewVolume>,
-    /// How many rays Embree takes together; `None` if it takes no packets.
+    /// The width of Embree's packets; `None` if it supports none.
     pub packet_width: Option<PacketWidth>,
 }
 
 impl BuildContext {
-    /// The width of packets, which are only made where there is one.
+    /// The width of packets, which are traced only if Embree supports them.
     #[inline]
     fn packet_width(&self) -> PacketWidth {
         self.packet_width
@@ -80,7 +79,7 @@ impl BuildContext {
     }
 }
 
-/// Whether rays that got into a prototype go on as a packet.
+/// Whether rays that entered a prototype continue as a packet.
 #[inline]
 fn stays_packet(entered: RaySet, packet: &Packet) -> bool {
     packet.is_together && entered.len() >= LEAST_PACKET && packet.path.len() < GREATEST_PACKET_DEPTH
@@ -90,7 +89,7 @@ fn stays_packet(entered: RaySet, packet: &Packet) -> bool {
 pub(crate) struct Prototype {
     /// Contains all its solids.
     pub bounds: Bounds,
-    /// At least one. The first has most of what rays are after, as a rule.
+    /// At least one. The first usually has most of what rays hit.
     pub groups: Vec<Arc<Group>>,
     description: Arc<Scene>,
     index: PrototypeIndex,
@@ -101,12 +100,12 @@ pub(crate) struct Prototype {
     is_viewed: bool,
 }
 
-/// Steps from the root to a place. Scenes are rarely nested deeper than what is kept
+/// The steps from the root to a place. Scenes are rarely nested deeper than what is stored
 /// without the heap.
-type Way<'a, T> = SmallVec<[(T, Option<&'a Placement>); 4]>;
+type Steps<'a, T> = SmallVec<[(T, Option<&'a Placement>); 4]>;
 
-/// The prototypes that another one places, or a group of each, without those that
-/// contain nothing, in the order of their indices.
+/// The prototypes that another one places, or a group of each, without empty ones, in the order
+/// of their indices.
 pub(super) struct Children<T>(Vec<(PrototypeIndex, Arc<T>)>);
 
 impl<T> Children<T> {
@@ -114,7 +113,7 @@ impl<T> Children<T> {
         self.0.is_empty()
     }
 
-    /// The one of an index, if it contains anything.
+    /// The child with an index, if it is not empty.
     #[inline]
     pub fn of(&self, index: PrototypeIndex) -> Option<&Arc<T>> {
         let position = self.0.partition_point(|(known, _)| *known < index);
@@ -124,11 +123,11 @@ impl<T> Children<T> {
 }
 
 impl Children<Prototype> {
-    /// Those that any of the placements place, of all that are made.
+    /// The children of these placements, among all created prototypes.
     fn new(placements: &[Placement], made: &[Option<Arc<Prototype>>]) -> Self {
         let mut indices: Vec<PrototypeIndex> = Vec::new();
         for placement in placements {
-            // Runs of the same prototype are what scattered placements come in.
+            // Scattered placements usually form runs of one prototype.
             if indices.last() != Some(&placement.of) {
                 indices.push(placement.of);
             }
@@ -154,10 +153,10 @@ impl Children<Prototype> {
 }
 
 impl Prototype {
-    /// Makes a prototype of the outlines of its groups, when its children are made. `made`
-    /// has the child of each index; `None` for one that contains nothing.
+    /// Creates a prototype from the outlines of its groups, after its children. `made` has the
+    /// child of each index; `None` for an empty one.
     ///
-    /// Returns `None` if the prototype itself contains nothing.
+    /// Returns `None` if the prototype itself is empty.
     pub fn new(
         context: &BuildContext,
         description: &Arc<Scene>,
@@ -195,7 +194,7 @@ impl Prototype {
         self.groups.iter().any(|group| group.is_touched())
     }
 
-    /// How many placements no ray will reach.
+    /// The number of placements that no ray will reach.
     pub fn placements_out_of_view(&self) -> usize {
         if !self.is_viewed {
             return 0;
@@ -209,12 +208,12 @@ impl Prototype {
         self.placements().len() - in_view.len()
     }
 
-    /// How many instances Embree has in it.
+    /// The number of Embree's instances in it.
     pub fn instances(&self) -> u64 {
         self.groups.iter().map(|group| group.instances()).sum()
     }
 
-    /// The bytes that are kept beside the description and Embree's trees.
+    /// The bytes stored in addition to the description and Embree's trees.
     pub fn kept_bytes(&self) -> usize {
         self.groups.iter().map(|group| group.kept_bytes()).sum()
     }
@@ -223,8 +222,7 @@ impl Prototype {
         &self.description.prototypes[self.index.0 as usize].placements
     }
 
-    /// A placement and the prototype it places, which is there because a hit
-    /// lies in it.
+    /// A placement and the prototype that it places, which exists because it contains a hit.
     pub fn placement(&self, index: u32) -> (&Placement, &Arc<Self>) {
         let placement = &self.placements()[index as usize];
         let child = self.children.of(placement.of);
@@ -241,16 +239,16 @@ impl Prototype {
         group.expect("what is hit is in a group")
     }
 
-    /// Takes a step for each group on the way from the root to a place, with the placement
-    /// that led there; the root has none.
+    /// Calls `step` for each group from the root to a place, with the placement that leads
+    /// there; the root has none.
     #[inline]
-    pub fn along_way<'a>(
+    pub fn for_each_step<'a>(
         root: &'a Arc<Self>,
         place: &SolidRef,
         mut step: impl FnMut(&'a Group, Option<&'a Placement>),
     ) {
         if root.has_several_groups {
-            for (group, placement) in Self::way_through_groups(root, place) {
+            for (group, placement) in Self::steps_through_groups(root, place) {
                 step(group, placement);
             }
             return;
@@ -264,10 +262,10 @@ impl Prototype {
         }
     }
 
-    /// The way of [`Prototype::along_way`] where a prototype has several groups.
+    /// The steps of [`Prototype::for_each_step`] if a prototype has several groups.
     #[cold]
-    fn way_through_groups<'a>(root: &'a Arc<Self>, place: &SolidRef) -> Way<'a, &'a Group> {
-        let mut prototypes = Way::new();
+    fn steps_through_groups<'a>(root: &'a Arc<Self>, place: &SolidRef) -> Steps<'a, &'a Group> {
+        let mut prototypes = Steps::new();
         prototypes.push((root, None));
         let mut last = root;
         for &index in &place.path {
@@ -275,29 +273,29 @@ impl Prototype {
             prototypes.push((child, Some(placement)));
             last = child;
         }
-        // A group of a child is a primitive in a group of its parent: so the groups
-        // follow from the last one on.
+        // A group of a child is a primitive in a group of its parent. So the groups follow from
+        // the last one.
         let mut list = List::Solids(place.member.kind);
         let mut number = place.member.record;
         let numbers = place.path.iter().rev().copied().chain([0]);
-        let mut way = Way::new();
+        let mut steps = Steps::new();
         for ((prototype, placement), above) in prototypes.into_iter().rev().zip(numbers) {
             let group = prototype.group_with(list, number);
-            way.push((&*prototype.groups[group], placement));
+            steps.push((&*prototype.groups[group], placement));
             (list, number) = (List::Placements { group }, above);
         }
-        way.reverse();
-        way
+        steps.reverse();
+        steps
     }
 
-    /// Traces for the hits that `query` keeps.
+    /// Traces a ray for the hits that `query` keeps.
     pub fn search(&self, ray: &LocalRay, query: &mut Query) {
         for group in &self.groups {
             group.search(ray, query);
         }
     }
 
-    /// As [`Prototype::search`], but visits every primitive, wherever the ray is.
+    /// As [`Prototype::search`], but visits every primitive for any ray.
     pub fn search_exhaustively(&self, ray: &LocalRay, query: &mut Query) {
         for group in &self.groups {
             group.search_exhaustively(ray, query);
@@ -317,7 +315,7 @@ impl Prototype {
         }
     }
 
-    /// Those rays of a packet for which anything is hit.
+    /// The rays of a packet that hit anything.
     pub fn occluded_packet(&self, rays: RaySet, local: &PacketRays, packet: &mut Packet) -> RaySet {
         let mut blocked = RaySet::EMPTY;
         for group in &self.groups {

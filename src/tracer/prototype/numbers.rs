@@ -1,4 +1,4 @@
-//! Which entries of a list a group contains.
+//! The entries of a list that a group contains.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ pub(crate) enum Numbers {
 }
 
 impl Numbers {
-    /// How many there are.
+    /// The number of entries.
     #[inline]
     pub fn len(&self) -> u32 {
         match self {
@@ -23,7 +23,7 @@ impl Numbers {
         }
     }
 
-    /// The number at a position, which is the primitive to Embree.
+    /// The number at a position, which is Embree's primitive.
     #[inline(always)]
     pub fn number(&self, position: u32) -> u32 {
         match self {
@@ -32,12 +32,12 @@ impl Numbers {
         }
     }
 
-    /// All of them in order.
+    /// All numbers in order.
     pub fn iter(&self) -> impl Iterator<Item = u32> {
         (0..self.len()).map(|position| self.number(position))
     }
 
-    /// The same on several threads.
+    /// All numbers in order, on several threads.
     pub fn par_iter(&self) -> impl IndexedParallelIterator<Item = u32> {
         let positions = (0..self.len()).into_par_iter().with_min_len(1 << 10);
         positions.map(|position| self.number(position))
@@ -51,12 +51,12 @@ impl Numbers {
         }
     }
 
-    /// Those for which `keep` is true.
+    /// The numbers for which `keep` is true.
     pub fn filtered(&self, keep: impl Fn(u32) -> bool + Sync) -> Self {
         Self::These(self.par_iter().filter(|&number| keep(number)).collect())
     }
 
-    /// The memory that they take.
+    /// The memory of the numbers.
     pub fn bytes(&self) -> usize {
         match self {
             Self::All(_) => 0,

@@ -1,26 +1,26 @@
-//! Prototypes that are opened into those that place them.
+//! Prototypes that are opened into their parents.
 //!
-//! A prototype that contains nothing but a few placements of innermost ones, such as an assembly
-//! of parts, costs each ray that comes near it a callback and an entry into a scene of a few boxes.
-//! So it is *opened* where Embree can have all that it places as instances in the parent's scene
-//! (`instances` derives by how much boxes have to grow for that). Answers are the same bits:
-//! paths have both placements, and the f64 ray goes through both, and is moved nearer on the
-//! way where the opened prototype would have moved it. A ray reaches the parts
-//! without a callback, and they are built with the parent.
+//! A prototype that contains only a few placements of innermost prototypes, such as an assembly
+//! of parts, costs each ray near it a callback and an entry into a scene of a few boxes. So it
+//! is *opened* if Embree can have everything that it places as instances in the parent's scene
+//! (`instances` derives the required growth of boxes). Results are the same bits: paths have
+//! both placements, and the f64 ray goes through both, and is moved nearer where the opened
+//! prototype would have moved it. A ray reaches the parts without a callback, and the parts are
+//! built with the parent.
 
 use std::sync::Arc;
 
 use crate::scene::{Placement, PrototypeIndex, Scene};
 use crate::tracer::frame::Frame;
 
-/// The most placements of a prototype that is opened: beyond, a tree of its own pays.
+/// The greatest number of placements of an opened prototype: beyond it, a tree of its own pays.
 pub(crate) const MOST_INNER: usize = 8;
 
-/// A prototype with more placements opens none of what it places, so that few instances are
-/// added: at most `MOST_INNER` times as many.
+/// The greatest number of placements of a prototype that opens its children. It limits the
+/// number of added instances, at most `MOST_INNER` times as many.
 pub(crate) const MOST_OUTER: usize = 512;
 
-/// What an instance in a prototype with `placements` placements leads through.
+/// The placements between a prototype and an instance in its scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Through {
     /// A placement of the prototype.
@@ -30,7 +30,7 @@ pub(super) enum Through {
 }
 
 impl Through {
-    /// The number by which Embree knows the instance.
+    /// Embree's number of the instance, in a prototype with `placements` placements.
     pub fn number(self, placements: usize) -> u32 {
         match self {
             Self::One(number) => number,
@@ -38,7 +38,7 @@ impl Through {
         }
     }
 
-    /// The reverse of [`Through::number`].
+    /// The inverse of [`Through::number`].
     #[inline(always)]
     pub fn of(number: u32, placements: usize) -> Self {
         let placements = placements as u32;
@@ -71,7 +71,7 @@ impl OpenedFrames {
     }
 }
 
-/// The placements in a prototype, if it may be opened; `is_innermost` reports whether Embree may
+/// The placements in a prototype, if it may be opened; `is_innermost` is whether Embree may
 /// have instances of a prototype.
 pub(super) fn inner_placements(
     scene: &Scene,

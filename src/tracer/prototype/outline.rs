@@ -1,9 +1,9 @@
-//! What is known of groups before there are any: what they contain, how far they reach,
-//! and which of their placements are instances of Embree's.
+//! Outlines of groups, before the groups are created: their members, their reach, and which of
+//! their placements are instances of Embree's.
 //!
-//! A group's frame needs the reach of all that it places, and its boxes grow by what its
-//! instances in other prototypes need. So outlines are made from children to parents, and grow
-//! from parents to children, before groups are made of them.
+//! A group's frame depends on the reach of everything that it places, and its boxes grow for
+//! its instances in other prototypes. So outlines are created from children to parents, and
+//! grow from parents to children, before groups are created from them.
 
 use std::sync::Arc;
 
@@ -19,26 +19,26 @@ use crate::math::Bounds;
 use crate::scene::{Placement, PrototypeIndex, Scene};
 use crate::tracer::frame::Frame;
 
-/// A group that is to be made.
+/// The outline of a group.
 pub(crate) struct Outline {
     pub members: Members,
     /// The box of the members.
     pub bounds: Bounds,
     pub(super) placement_margin: PlacementMargin,
-    /// Contains every point at which a query may place a hit.
+    /// Contains every point that a query may report as a hit.
     pub reach: Bounds,
-    /// Boxes that together contain the members.
+    /// Boxes whose union contains the members.
     pub(super) parts: Parts,
     pub frame: Frame,
     /// The placements that are instances of Embree's, in ascending order.
     pub instances: Vec<u32>,
-    /// Those of prototypes that are opened, likewise.
+    /// The placements of prototypes that are opened, in ascending order.
     pub opened: Vec<u32>,
     /// The frames of all opened prototypes of the scene.
     pub opened_frames: OpenedFrames,
 }
 
-/// The outlines of the groups of each prototype; none of one that contains nothing.
+/// The outlines of the groups of each prototype; none for an empty prototype.
 pub(crate) struct Outlines {
     of: Vec<Vec<Outline>>,
     /// The boxes of the groups.
@@ -46,7 +46,7 @@ pub(crate) struct Outlines {
 }
 
 impl Outlines {
-    /// Those of prototypes in an order with children before parents.
+    /// The outlines of prototypes in an order with children before parents.
     pub fn new(scene: &Arc<Scene>, order: &[PrototypeIndex]) -> Self {
         let mut outlines = Self {
             of: Vec::new(),
@@ -71,7 +71,7 @@ impl Outlines {
         outlines
     }
 
-    /// Those of a prototype, which are given away.
+    /// Removes and returns the outlines of a prototype.
     pub fn take(&mut self, index: PrototypeIndex) -> Vec<Outline> {
         std::mem::take(&mut self.of[index.0 as usize])
     }
@@ -93,9 +93,9 @@ impl Outlines {
             .collect()
     }
 
-    /// The placements of a group that may be instances of Embree's, which has one level of
-    /// them: of prototypes without placements. They have one group, so that a placement is
-    /// one instance and has its number.
+    /// The placements of a group that may be instances of Embree's: those of prototypes without
+    /// placements, since Embree has one level of instances. Such a prototype has one group, so
+    /// that a placement is one instance with the same number.
     fn innermost(&self, scene: &Scene, placements: &[Placement], outline: &Outline) -> Vec<u32> {
         if placements.len() > MOST_INSTANCES {
             return Vec::new();
@@ -114,14 +114,14 @@ impl Outlines {
         self.of[index].len() == 1 && scene.prototypes[index].placements.is_empty()
     }
 
-    /// By how much the boxes of what is placed grow if it is an instance.
+    /// The growth of the child's boxes if a placement is an instance.
     fn needed_growth(&self, placement: &Placement, parent: &Outline) -> Option<f64> {
         let child = self.of[placement.of.0 as usize].first()?;
         let image = Image::new(&parent.placement_margin, placement);
         needed_growth(&parent.frame, &image, &child.frame)
     }
 
-    /// By how much the boxes of all that an opened prototype places grow.
+    /// The growth of the boxes of everything that an opened prototype places.
     fn opened_growths(
         &self,
         scene: &Scene,
@@ -163,7 +163,7 @@ impl Outlines {
         }
     }
 
-    /// The placements of a group, each with the group it places.
+    /// The placements of a group, each with the group that it places.
     fn placed<'a>(
         &'a self,
         placements: &'a [Placement],
@@ -218,7 +218,7 @@ impl Outlines {
     }
 
     /// Chooses the placements of a prototype that are opened, and grows the boxes of what is
-    /// placed in these. Returns the frames of what is opened.
+    /// placed in these. Returns the frames of the opened prototypes.
     fn choose_opened(
         &mut self,
         scene: &Scene,
@@ -252,18 +252,18 @@ impl Outlines {
     }
 }
 
-/// Numbers of placements by what Embree has of them.
+/// Numbers of placements by their form in Embree.
 pub(super) struct Divided {
-    /// Those that are instances.
+    /// The instances.
     pub instances: Numbers,
-    /// Those of opened prototypes, whose placements are instances.
+    /// The placements of opened prototypes, whose placements are instances.
     pub opened: Numbers,
-    /// Those that are primitives.
+    /// The primitives.
     pub called_back: Numbers,
 }
 
 impl Divided {
-    /// All of them.
+    /// All numbers.
     pub fn iter(&self) -> impl Iterator<Item = u32> {
         let instances = self.instances.iter().chain(self.opened.iter());
         instances.chain(self.called_back.iter())

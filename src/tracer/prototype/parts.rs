@@ -1,41 +1,43 @@
-//! Boxes that together contain a group, for tight boxes of its placements.
+//! Boxes whose union contains a group, for tight boxes of its placements.
 //!
-//! The box of a placement could be the image of the group's box. But an image of a box is
-//! larger than what is in it where the placement turns it: a rod along the diagonal of its box
-//! keeps a box as wide as the rod is long when it is turned to lie along an axis, and the box of a
-//! tree, turned by 45 degrees, is twice as large as the box of the tree turned alike. Rays then
-//! enter placements in which there is nothing for them. So the boxes of the members of a group
-//! are gathered into at most 64 *parts*, by the cell of a grid that the middle of each is in,
-//! and the box of a placement is the box around the images of the parts.
+//! The box of a placement could be the image of the group's box. But the image of a box is
+//! larger than its contents if the placement turns it: the box of a diagonal rod remains as
+//! wide as the rod is long when the rod is turned to lie along an axis, and the box of a tree,
+//! turned by 45 degrees, is twice as large as the box of the turned tree. Rays then enter
+//! placements in vain. So the boxes of the members of a group are gathered into at most 64
+//! *parts*, by the cell of a grid that contains their center, and the box of a placement is the
+//! box around the images of the parts.
 //!
-//! A part is a middle c and a half extent h, so that `|x - c| <= h` for all its points x. With a
-//! row m of the placement's matrix and its translation t, the images of these points are at
-//! `m·c + t ± |m|·h` along an axis, |m| the absolute values. Each of these terms takes part in at most
-//! 6 roundings, so the box of all images grows by 8 u of the greatest sum of the terms' sizes,
-//! and is rounded outward. So it contains the images of all members, as the image of the group's box does.
+//! A part has a center c and a half extent h, so that `|x - c| <= h` for all its points x. With
+//! a row m of the placement's matrix and its translation t, the images of these points are at
+//! `m·c + t ± |m|·h` along an axis, |m| the absolute values. Each of these terms takes part in
+//! at most 6 roundings, so the box of all images grows by 8 u of the greatest sum of the terms'
+//! sizes, and is rounded outward. So it contains the images of all members, as the image of the
+//! group's box does.
 
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use crate::math::{Bounds, LANES, Lanes, UNIT_ROUNDOFF};
 
-/// Cells of the grid along each axis. In the forest of `scenes/` 4 spare a sixth of all entries into
-/// trees, 8 a fifth and 2 a thirtieth. 64 parts take 3 kB, less than Embree takes for a scene.
+/// Cells of the grid along each axis. In the forest of `scenes/` 4 saves a sixth of all entries
+/// into trees, 8 a fifth and 2 a thirtieth. 64 parts take 3 kB, less than Embree's scene.
 const CELLS: usize = 4;
 
-/// Placements in longer lists get the images of whole boxes: 64 images take 0.25 µs, where reading,
-/// measuring and building a placement takes 0.7.
+/// The greatest length of a list whose placements use parts. In longer lists they use the
+/// images of whole boxes: 64 images take 0.25 µs, compared with 0.7 to read, measure and build
+/// a placement.
 const MOST_PLACEMENTS: usize = 1 << 16;
 
-/// Boxes that together contain a group; none of one that is not placed.
+/// Boxes whose union contains a group; none for a group that is not placed.
 #[derive(Default)]
 pub(crate) struct Parts {
     eights: Box<[Eight]>,
-    /// At least the sizes of all coordinates.
+    /// An upper bound of the sizes of all coordinates.
     size: DVec3,
 }
 
-/// Eight parts, by axis. The last eight repeat a part where there are fewer.
+/// Eight parts, by axis. The last eight repeat a part if there are fewer.
 struct Eight {
     middle: [Lanes; 3],
     half: [Lanes; 3],
@@ -46,14 +48,14 @@ impl Parts {
     pub fn new(whole: &Bounds, members: impl ParallelIterator<Item = Bounds>) -> Self {
         let rate = whole.extent().map(|extent| CELLS as f64 / extent);
         let none = || vec![Bounds::EMPTY; CELLS * CELLS * CELLS];
-        let solid_collector = members.fold(none, |mut cells, member| {
+        let gathered = members.fold(none, |mut cells, member| {
             if !member.is_empty() {
                 let cell = &mut cells[cell((member.center() - whole.lower) * rate)];
                 *cell = cell.union(&member);
             }
             cells
         });
-        let mut cells = solid_collector.reduce(none, |mut cells, others| {
+        let mut cells = gathered.reduce(none, |mut cells, others| {
             for (cell, other) in cells.iter_mut().zip(others) {
                 *cell = cell.union(&other);
             }
@@ -68,7 +70,7 @@ impl Parts {
         }
     }
 
-    /// Whether a placement in a list of this length gets the box around the parts' images.
+    /// Whether placements in a list of this length use parts.
     pub fn serve(&self, placements: usize) -> bool {
         !self.eights.is_empty() && placements <= MOST_PLACEMENTS
     }
@@ -96,7 +98,7 @@ impl Parts {
 }
 
 impl Eight {
-    /// At most eight boxes, and at least one.
+    /// From at least one and at most eight boxes.
     fn new(boxes: &[Bounds]) -> Self {
         let lanes = |of: fn(&Bounds) -> DVec3| {
             [0, 1, 2].map(|axis| {
@@ -121,7 +123,7 @@ impl Eight {
         for lane in 0..LANES {
             let middle = row.x * x.0[lane] + row.y * y.0[lane] + row.z * z.0[lane];
             let half = size.x * a.0[lane] + size.y * b.0[lane] + size.z * c.0[lane];
-            // Comparisons, unlike `min` and `max`, are one instruction of eight lanes.
+            // Comparisons, unlike `min` and `max`, compile to one instruction for eight lanes.
             let (least, greatest) = (middle - half, middle + half);
             lower[lane] = if least < lower[lane] {
                 least
@@ -137,9 +139,10 @@ impl Eight {
     }
 }
 
-/// The number of the cell that a place is in, in sides of a cell from the grid's corner.
+/// The number of the cell that contains a place, which is in sides of a cell from the grid's
+/// corner.
 fn cell(place: DVec3) -> usize {
-    // What is outside is in the nearest cell, and NaN, of a flat grid, in the first.
+    // A place outside is in the nearest cell, and NaN, from a flat grid, in the first.
     let [x, y, z] = place
         .to_array()
         .map(|along| (along as usize).min(CELLS - 1));
@@ -195,7 +198,7 @@ mod tests {
         })
     }
 
-    /// Any number of boxes, of any sizes and near or far.
+    /// Any number of boxes, of any sizes, near or far.
     #[test]
     fn image_contains_the_images_of_all_corners() {
         let mut random = Random::new(SEED, 0);
@@ -231,7 +234,7 @@ mod tests {
             DVec3::ONE.normalize(),
             DVec3::new(1.0, -1.0, 0.0).normalize(),
         );
-        // To where the row lies along the x axis.
+        // Turns the row to the x axis.
         let map = DAffine3::from_mat3(DMat3::from_cols(x, y, x.cross(y)).transpose());
         let parts = Parts::new(&whole, boxes.par_iter().copied());
         let (tight, loose) = (parts.image(&map).extent(), whole.transformed(&map).extent());

@@ -1,5 +1,5 @@
-//! From how far the rays come that a prototype hands on to what it places, and
-//! so by how much the boxes of placements have to grow.
+//! The distance of rays that a prototype passes on to its children, and the resulting growth of
+//! the boxes of placements.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -9,26 +9,25 @@ use crate::math::{Bounds, ChildFromParent, PlacementErrors, UNIT_ROUNDOFF};
 use crate::scene::Placement;
 use crate::tracer::frame::FAR;
 
-/// From how far the rays come that a prototype hands on to what it places.
+/// The greatest distance of rays that a prototype passes on to its children.
 ///
-/// The roundings of a child's ray, and of the solvers that get it, displace its
-/// hits in proportion to the distance of the ray's origin from the child's. The
-/// origin is at most `√3` [`FAR`] units of the prototype's frame from the center, or
-/// the ray was moved nearer; a unit is at most the radius of the prototype's
-/// reach, which in turn contains the displacements:
+/// The roundings of a child's ray, and of its solvers, displace its hits in proportion to the
+/// distance of the ray's origin from the child's. The origin is at most `√3` [`FAR`] units of
+/// the prototype's frame from the center, or the ray was moved nearer. A unit is at most the
+/// radius of the prototype's reach, which in turn contains the displacements:
 ///
 /// ```text
 /// reach <= radius + √3 max (displacement · (√3 FAR reach + offset))
 /// ```
 ///
-/// with `offset` the distance of a child's origin from the center. As
-/// [`GREATEST_CONDITION`](crate::scene::GREATEST_CONDITION) keeps `displacement`
-/// below `60 u 2^27`, the factor of `reach` on the right is below 1/5, and
-/// `reach` below 5/4 of the rest.
+/// with `offset` the distance of a child's origin from the center. Since
+/// [`GREATEST_CONDITION`](crate::scene::GREATEST_CONDITION) keeps `displacement` below
+/// `60 u 2^27`, the factor of `reach` on the right is below 1/5, and `reach` below 5/4 of the
+/// rest.
 #[derive(Clone, Copy)]
 pub(super) struct PlacementMargin {
     center: DVec3,
-    /// The bound of the radius of the reach.
+    /// An upper bound of the radius of the reach.
     reach: f64,
 }
 
@@ -48,15 +47,15 @@ impl PlacementMargin {
         }
     }
 
-    /// Where hits in a placed child may be: the image of the child's reach,
-    /// grown by the displacement.
+    /// The box that contains the hits in a placed child: the image of the child's reach, grown
+    /// by the displacement.
     pub fn placement_reach(&self, placement: &Placement, child_reach: &Bounds) -> Bounds {
         let image = child_reach.transformed(&placement.parent_from_child);
         image.grown(self.slack(placement))
     }
 
-    /// The same in a tighter box, of the child's parts where these serve a list of this
-    /// many placements.
+    /// A tighter box with the same property, from the child's parts if a list of this length
+    /// uses them.
     pub fn tight_reach(
         &self,
         placement: &Placement,
@@ -71,7 +70,7 @@ impl PlacementMargin {
         image.grown(self.slack(placement))
     }
 
-    /// How far a placed child's hits are displaced in the parent.
+    /// The displacement of a placed child's hits in the parent.
     pub fn slack(&self, placement: &Placement) -> f64 {
         let distance = 2.0 * FAR * self.reach + offset(self.center, placement);
         displacement(placement) * distance
@@ -83,11 +82,11 @@ fn offset(center: DVec3, placement: &Placement) -> f64 {
     (center - placement.parent_from_child.translation).length()
 }
 
-/// By how much a child's hits are displaced in its parent, as a share of the
-/// distance of the ray's origin from the child's: by the roundings of the
-/// child's origin and direction and, behind `condition`, of the solver.
+/// The displacement of a child's hits in its parent, as a share of the distance of the ray's
+/// origin from the child's: from the roundings of the child's origin and direction and,
+/// multiplied by `condition`, of the solver.
 fn displacement(placement: &Placement) -> f64 {
-    let way = ChildFromParent::new(&placement.parent_from_child);
-    let errors = PlacementErrors::new(&placement.parent_from_child, &way);
+    let child_from_parent = ChildFromParent::new(&placement.parent_from_child);
+    let errors = PlacementErrors::new(&placement.parent_from_child, &child_from_parent);
     2.0 * errors.inverse_error + 16.0 * UNIT_ROUNDOFF * errors.condition
 }

@@ -1,5 +1,5 @@
-//! The placements of a group: as Embree's instances, or as primitives whose callback
-//! traces what they place.
+//! The placements of a group: Embree's instances, or primitives whose callback traces what they
+//! place.
 
 use std::sync::Arc;
 
@@ -19,13 +19,12 @@ use crate::tracer::counters;
 use crate::tracer::frame::{Frame, LocalRay};
 use crate::tracer::query::{Packet, Query};
 
-/// Placements of a prototype, each of them for the group with the same number of what
-/// it places. The description keeps them: there is
-/// nothing else in memory of a primitive but its leaf in Embree's tree.
+/// Placements of a prototype, each for the child's group with the same number. The description
+/// stores them: a primitive takes no other memory than its leaf in Embree's tree.
 ///
-/// The way back into the child's space is worked out on each visit. It is some
-/// forty operations without a branch, beside the hundreds of a nested
-/// traversal; keeping it would take as much memory again as the placement.
+/// The map into the child's space is computed on each visit. It takes some forty operations
+/// without a branch, compared with the hundreds of a nested traversal; storing it would take as
+/// much memory again as the placement.
 pub(super) struct Placements {
     pub description: Arc<Scene>,
     pub prototype: PrototypeIndex,
@@ -43,15 +42,15 @@ impl Placements {
         &self.description.prototypes[self.prototype.0 as usize].placements
     }
 
-    /// A placement and the group it places, if there is anything.
+    /// A placement and the group that it places, if that is not empty.
     #[inline]
     fn get(&self, index: u32) -> Option<(&Placement, &Arc<Group>)> {
         let placement = &self.placements()[index as usize];
         Some((placement, self.children.of(placement.of)?))
     }
 
-    /// The instances: what each leads through, its map, and the group in it.
-    fn each_instance<E>(
+    /// Calls `each` for each instance, with its placements, its map and its group.
+    fn for_each_instance<E>(
         &self,
         mut each: impl FnMut(Through, &Image, &Arc<Group>) -> Result<(), E>,
     ) -> Result<(), E> {
@@ -79,17 +78,17 @@ impl Placements {
         Ok(())
     }
 
-    /// Builds the groups that there are instances of, which has to be done before the scene that the
-    /// instances are in.
+    /// Builds the instanced groups. This has to be done before the scene with the instances is
+    /// built.
     pub fn build_instanced(&self) {
         let mut last: Option<*const Group> = None;
-        let built = self.each_instance(|_, _, child| {
+        let built = self.for_each_instance(|_, _, child| {
             if last.replace(Arc::as_ptr(child)) == Some(Arc::as_ptr(child)) {
                 return Ok(());
             }
             child.build()
         });
-        // An error is found again when the instances are made.
+        // An error is reported again when the instances are attached.
         let _ = built;
     }
 
@@ -98,17 +97,17 @@ impl Placements {
         self.reached.instances.len() + self.reached.opened.len() > 0
     }
 
-    /// How many instances there are.
+    /// The number of instances.
     pub fn instance_count(&self) -> u64 {
         let mut count = 0;
-        let counted = self.each_instance(|_, _, _| {
+        let counted = self.for_each_instance(|_, _, _| {
             count += 1;
             Ok::<_, std::convert::Infallible>(())
         });
         counted.map_or(0, |()| count)
     }
 
-    /// Adds the instances, under the numbers of what they lead through.
+    /// Adds the instances, numbered by their placements.
     pub fn attach_instances(&self, builder: &mut SceneBuilder<Query>) -> Result<(), embree::Error> {
         for outer in self.reached.opened.iter() {
             if let Some((_, opened)) = self.get(outer) {
@@ -116,14 +115,14 @@ impl Placements {
             }
         }
         let placements = self.placements().len();
-        self.each_instance(|through, image, child| {
+        self.for_each_instance(|through, image, child| {
             let map = instance_map(&self.frame, image, &child.frame);
             let number = GeometryId(through.number(placements));
             builder.attach_instance_as(number, child.joined()?, &map)
         })
     }
 
-    /// Hands the query's ray to `trace` in the space of the placed group.
+    /// Passes the query's ray to `trace`, in the space of the placed group.
     #[inline]
     pub fn visit<T: Default>(
         &self,
@@ -134,17 +133,17 @@ impl Placements {
         let Some((placement, child)) = self.get(index) else {
             return T::default();
         };
-        counters::handed_on(1);
+        counters::passed_on(1);
         query.leave_instance();
-        let way = ChildFromParent::new(&placement.parent_from_child);
-        let ray = query.ray().in_child(&way);
+        let child_from_parent = ChildFromParent::new(&placement.parent_from_child);
+        let ray = query.ray().in_child(&child_from_parent);
         query.path.push(index);
         let answer = trace(child, &ray, query);
         query.path.pop();
         answer
     }
 
-    /// Brings a packet to the placed group for `trace`, likewise.
+    /// Passes a packet to `trace`, in the space of the placed group.
     #[inline]
     fn visit_packet(
         &self,
@@ -156,7 +155,7 @@ impl Placements {
         let Some((placement, child)) = self.get(index) else {
             return RaySet::EMPTY;
         };
-        counters::handed_on(rays.len() as u32);
+        counters::passed_on(rays.len() as u32);
         packet.arrive_through(&ChildFromParent::new(&placement.parent_from_child));
         packet.path.push(index);
         let answer = trace(child, packet);
@@ -173,7 +172,7 @@ impl UserGeometry for Arc<Placements> {
     }
 
     fn bounds(&self, primitive: u32) -> Box32 {
-        // Where nothing is placed any box will do; the least is best.
+        // An empty child may have any box; the least is best.
         let reach = self.get(self.reached.called_back.number(primitive)).map_or(
             Bounds::at(self.frame.center()),
             |(placement, child)| {
@@ -186,8 +185,7 @@ impl UserGeometry for Arc<Placements> {
     }
 
     fn intersect(&self, at: Reached, _: &Ray32, query: &mut Query) -> Option<f32> {
-        counters::called_back();
-        query.callbacks += 1;
+        query.called_back();
         let before = query.bound();
         let number = self.reached.called_back.number(at.primitive);
         self.visit(number, query, Group::search);
@@ -195,8 +193,7 @@ impl UserGeometry for Arc<Placements> {
     }
 
     fn occluded(&self, at: Reached, _: &Ray32, query: &mut Query) -> bool {
-        counters::called_back();
-        query.callbacks += 1;
+        query.called_back();
         let number = self.reached.called_back.number(at.primitive);
         self.visit(number, query, Group::occluded)
     }
@@ -209,8 +206,7 @@ impl UserGeometry for Arc<Placements> {
         t_far: &mut [f32; GREATEST_PACKET],
         packet: &mut Packet,
     ) -> RaySet {
-        counters::called_back();
-        packet.callbacks += 1;
+        packet.called_back();
         let number = self.reached.called_back.number(at.primitive);
         let shorter = self.visit_packet(number, rays, packet, |child, packet| {
             child.search_packet(rays, packet)
@@ -228,8 +224,7 @@ impl UserGeometry for Arc<Placements> {
         _: &Rays32,
         packet: &mut Packet,
     ) -> RaySet {
-        counters::called_back();
-        packet.callbacks += 1;
+        packet.called_back();
         let number = self.reached.called_back.number(at.primitive);
         self.visit_packet(number, rays, packet, |child, packet| {
             child.occluded_packet(rays, packet)

@@ -1,4 +1,4 @@
-//! Where a prototype's solids are kept: in the description.
+//! Access to a prototype's solids in the description.
 
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ impl PrototypeRef {
         }
     }
 
-    /// Which one.
+    /// The index of the prototype.
     #[inline(always)]
     pub fn index(&self) -> PrototypeIndex {
         self.index
@@ -45,22 +45,22 @@ impl PrototypeRef {
         &self.scene.prototypes[self.index.0 as usize]
     }
 
-    /// The number that the user knows a solid by.
+    /// The number of a solid for the user.
     #[inline]
     pub fn primitive(&self, member: SolidSlot) -> u32 {
         let SolidSlot { kind, record } = member;
         self.prototype().solids.primitive(kind, record as usize)
     }
 
-    /// Where the solids' Embree scene is.
+    /// The frame of the solids' Embree scene.
     #[inline(always)]
     pub fn frame(&self) -> &Frame {
         &self.frame
     }
 
-    /// Takes a step through each placement on the way into the solids' prototype, which an instance
-    /// in another one leads through: the number of the placement, the way through it, and
-    /// the frame of what it places.
+    /// Calls `step` for each placement between the prototype `parent` and this one, for an
+    /// instance in the parent's scene: with the number of the placement, the map into its
+    /// child, and the frame of the child.
     #[inline(always)]
     pub fn along_instance(
         &self,
@@ -69,18 +69,23 @@ impl PrototypeRef {
         mut step: impl FnMut(u32, &ChildFromParent, &Frame),
     ) {
         let prototypes = &self.scene.prototypes;
-        let way = |placement: &Placement| ChildFromParent::new(&placement.parent_from_child);
+        let child_from_parent =
+            |placement: &Placement| ChildFromParent::new(&placement.parent_from_child);
         let placements = &prototypes[parent.0 as usize].placements;
         let (number, placement) = match Through::of(instance, placements.len()) {
             Through::One(number) => (number, &placements[number as usize]),
             Through::Two { outer, inner } => {
                 let placement = &placements[outer as usize];
-                step(outer, &way(placement), self.opened_frames.of(placement.of));
+                step(
+                    outer,
+                    &child_from_parent(placement),
+                    self.opened_frames.of(placement.of),
+                );
                 let opened = &prototypes[placement.of.0 as usize];
                 (inner, &opened.placements[inner as usize])
             }
         };
-        step(number, &way(placement), &self.frame);
+        step(number, &child_from_parent(placement), &self.frame);
     }
 
     /// A box in the frame of the Embree scene.

@@ -9,14 +9,14 @@ use crate::scene::PrototypeIndex;
 use crate::solid::SolidKind;
 use crate::tracer::traced::SurfaceHit;
 
-/// The placements on the way from the root to a prototype, outermost first.
-/// Scenes are rarely nested deeper than what is kept without the heap.
+/// The placements from the root to a prototype, outermost first. Scenes are rarely nested
+/// deeper than what is stored without the heap.
 pub(crate) type InstancePath = SmallVec<[u32; 4]>;
 
-/// Which solid of a prototype.
+/// A solid of a prototype.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SolidSlot {
-    /// Its kind, of which the prototype has a list.
+    /// The kind, which selects a list of the prototype.
     pub kind: SolidKind,
     /// The position in the list.
     pub record: u32,
@@ -29,7 +29,7 @@ impl SolidSlot {
     }
 }
 
-/// Which solid of the scene.
+/// A solid of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SolidRef {
     pub prototype: PrototypeIndex,
@@ -38,19 +38,19 @@ pub(crate) struct SolidRef {
 }
 
 impl SolidRef {
-    /// The place of a solid in the prototype that is reached along a path.
+    /// A solid of the prototype that is reached along a path.
     #[inline(always)]
     pub fn new(prototype: PrototypeIndex, member: SolidSlot, path: &InstancePath) -> Self {
         Self {
             prototype,
             member,
-            // Copied as bytes; `clone` would go number by number.
+            // Copied as bytes; `clone` would copy number by number.
             path: InstancePath::from_slice(path),
         }
     }
 }
 
-/// The first hit of a ray, as far as a query works it out.
+/// The first hit of a ray, as a query stores it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Nearest {
     pub t: f64,
@@ -58,10 +58,9 @@ pub(crate) struct Nearest {
 }
 
 impl Nearest {
-    /// Whether a solid that is met at `t` comes before this one: by `t`, then by
-    /// the instance path, then by the primitive's number. `primitive` answers with
-    /// the number of a member of the solid's prototype, which for equal paths
-    /// is this one's too.
+    /// Whether a hit of a solid at `t` comes before this one: by `t`, then by the instance
+    /// path, then by the primitive's number. `primitive` returns the number of a member of the
+    /// solid's prototype, which for equal paths is also the prototype of this one.
     #[inline]
     pub fn is_after(
         &self,
@@ -79,31 +78,28 @@ impl Nearest {
     }
 }
 
-/// One of all hits, as a query keeps it: what is needed to work it out
-/// afterwards.
+/// One of all hits, as a query stores it: the input for computing it afterwards.
 #[derive(Clone, Debug)]
 pub(crate) struct Found {
-    pub met: SurfaceHit,
-    /// The number that the user knows the solid by.
+    pub hit: SurfaceHit,
+    /// The number of the solid for the user.
     pub primitive: u32,
     pub place: SolidRef,
 }
 
 impl Found {
-    /// Compares a hit that is not kept yet with this one: by `t`, then by
-    /// the instance path, the primitive, the number of the crossing, entry before exit,
-    /// and the part.
-    /// No two hits of a ray are equal.
+    /// Compares a new hit with this one: by `t`, then by the instance path, the primitive, the
+    /// number of the crossing, entry before exit, and the part. No two hits of a ray are equal.
     #[inline]
-    fn order(&self, met: &SurfaceHit, path: &InstancePath, primitive: u32) -> Ordering {
-        let by_t = met.intersection.t.partial_cmp(&self.met.intersection.t);
+    fn order(&self, hit: &SurfaceHit, path: &InstancePath, primitive: u32) -> Ordering {
+        let by_t = hit.intersection.t.partial_cmp(&self.hit.intersection.t);
         let surface =
-            |met: &SurfaceHit| (met.rank, met.intersection.crossing, met.intersection.part);
+            |hit: &SurfaceHit| (hit.rank, hit.intersection.crossing, hit.intersection.part);
         by_t.expect("a hit's t is a number").then_with(|| {
-            (path, primitive, surface(met)).cmp(&(
+            (path, primitive, surface(hit)).cmp(&(
                 &self.place.path,
                 self.primitive,
-                surface(&self.met),
+                surface(&self.hit),
             ))
         })
     }
@@ -111,7 +107,7 @@ impl Found {
 
 impl Ord for Found {
     fn cmp(&self, other: &Self) -> Ordering {
-        other.order(&self.met, &self.place.path, self.primitive)
+        other.order(&self.hit, &self.place.path, self.primitive)
     }
 }
 
@@ -129,24 +125,24 @@ impl PartialEq for Found {
 
 impl Eq for Found {}
 
-/// What a query is after.
+/// What a query searches for.
 #[derive(Debug)]
 pub(crate) enum QueryMode {
     /// The first hit.
     First(Option<Nearest>),
-    /// The next hits after one that is known.
+    /// The next hits after a known one.
     Next(Next),
-    /// The solids that hold the ray's origin, whatever its range.
+    /// The solids that contain the ray's origin, for any range.
     Containing(Vec<SolidRef>),
 }
 
-/// The first `most` hits after one that is known.
+/// The first `most` hits after a known one.
 #[derive(Debug)]
 pub(crate) struct Next {
     pub after: Option<Found>,
     pub most: usize,
-    /// The last of them on top: the one that an earlier hit replaces, in time
-    /// logarithmic in `most`.
+    /// The last of them on top: it is replaced by an earlier hit, in time logarithmic in
+    /// `most`.
     pub hits: BinaryHeap<Found>,
 }
 
@@ -159,23 +155,23 @@ impl QueryMode {
             Self::Next(next) if next.hits.len() == next.most => next
                 .hits
                 .peek()
-                .map_or(t_max, |last| last.met.intersection.t),
+                .map_or(t_max, |last| last.hit.intersection.t),
             Self::Next(_) | Self::Containing(_) => t_max,
         }
     }
 }
 
 impl Next {
-    /// Keeps a hit if it is wanted.
+    /// Keeps a hit if it is among the next ones.
     #[inline]
     pub fn offer(
         &mut self,
-        met: SurfaceHit,
+        hit: SurfaceHit,
         path: &InstancePath,
         primitive: u32,
         place: impl FnOnce() -> SolidRef,
     ) {
-        let order = |kept: &Found| kept.order(&met, path, primitive);
+        let order = |kept: &Found| kept.order(&hit, path, primitive);
         if self
             .after
             .as_ref()
@@ -190,7 +186,7 @@ impl Next {
             };
         }
         self.hits.push(Found {
-            met,
+            hit,
             primitive,
             place: place(),
         });

@@ -1,21 +1,20 @@
-//! The rays of a packet in the prototypes on the way.
+//! The rays of a packet in the prototypes from the root to the current one.
 //!
-//! A level has some two kilobytes. So each is written where it stays, and its memory is
-//! used again for whatever the packet comes to next at that depth.
+//! A level takes some two kilobytes. So each is written in place, and its memory is reused for
+//! the next prototype at that depth.
 
 use crate::tracer::frame::PacketLevel;
 
-/// The levels of the prototypes that are being traced, and that of the prototype that the
-/// packet comes to next.
+/// The levels of the prototypes that are being traced, and that of the next one.
 pub(super) struct Levels {
-    /// At least one more than `depth`.
+    /// At least `depth + 1` levels.
     all: Vec<PacketLevel>,
-    /// How many prototypes are being traced.
+    /// The number of prototypes that are being traced.
     depth: usize,
 }
 
 impl Levels {
-    /// None being traced.
+    /// No prototype is being traced.
     pub fn new() -> Self {
         Self {
             all: vec![PacketLevel::NOWHERE],
@@ -23,19 +22,19 @@ impl Levels {
         }
     }
 
-    /// The level that callbacks run in.
+    /// The level of the current callbacks.
     #[inline(always)]
     pub fn current(&self) -> &PacketLevel {
         &self.all[self.innermost()]
     }
 
-    /// The level of the prototype that the packet comes to.
+    /// The level of the prototype that the packet enters next.
     #[inline(always)]
     pub fn next(&mut self) -> &mut PacketLevel {
         &mut self.all[self.depth]
     }
 
-    /// Both.
+    /// Both levels.
     #[inline]
     pub fn current_and_next(&mut self) -> (&PacketLevel, &mut PacketLevel) {
         let innermost = self.innermost();
@@ -52,7 +51,7 @@ impl Levels {
         }
     }
 
-    /// Goes back to the level before.
+    /// Returns to the previous level.
     #[inline]
     pub fn ascend(&mut self) {
         self.depth = self.innermost();

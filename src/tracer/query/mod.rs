@@ -1,8 +1,8 @@
 //! The state of queries: rays in f64, and the hits so far.
 //!
-//! It travels through Embree in the query context. Embree's own f32 rays only
-//! find candidates; what is a hit, and which is nearer, is decided here on
-//! f64 alone, for single rays ([`Query`]) as for packets of rays ([`Packet`]).
+//! It travels through Embree in the query context. Embree's f32 rays only find candidates; what
+//! is a hit, and which is nearer, is decided here in f64, for single rays ([`Query`]) and for
+//! packets ([`Packet`]).
 
 mod found;
 mod levels;

@@ -1,9 +1,8 @@
-//! A query of up to sixteen rays that go through Embree together.
+//! A query of up to sixteen rays that Embree traverses together.
 //!
-//! The rays of one level stand side by side for the solver, eight to a row of
-//! lanes, in the order that the caller gave them; and one by one, for what is
-//! worked out ray by ray. The answers are those of sixteen single queries, bit
-//! for bit: the arithmetic is the same in every lane, and no ray's answer
+//! The rays of one level are stored in rows of eight lanes for the solver, in the order of the
+//! caller, and are read one by one for other computations. The results are those of sixteen
+//! single queries, bit for bit: the arithmetic is the same in every lane, and no ray's result
 //! depends on another's.
 
 use super::found::{InstancePath, Nearest, QueryMode, SolidRef, SolidSlot};
@@ -21,7 +20,7 @@ use crate::tracer::frame::{
 use crate::tracer::prototype::PrototypeRef;
 use crate::tracer::traced::{RowOfPacket, TracedSolid};
 
-/// A packet on its way.
+/// The state of a packet.
 pub(crate) struct Packet {
     t_min: Rows<Lanes>,
     t_max: Rows<Lanes>,
@@ -29,27 +28,27 @@ pub(crate) struct Packet {
     /// The greatest `t` that can still be a first hit.
     bound: Rows<Lanes>,
     nearest: [Option<Nearest>; GREATEST_PACKET],
-    /// Whether Embree gets the rays together, or one by one.
+    /// Whether Embree traverses the rays as a packet, or one by one.
     pub is_together: bool,
-    /// The placements on the way, with those that the instance leads through.
+    /// The placements from the root, with those of the instance.
     pub path: InstancePath,
     levels: Levels,
     /// The prototype that is being traced.
     prototype: PrototypeIndex,
-    /// The instance that the last callback was in, how long the path was outside, and
-    /// the rays there.
+    /// The instance of the last callback, the length of the path outside of it, and the rays
+    /// inside.
     instance: Option<GeometryId>,
     outside: usize,
     in_instance: PacketRays,
     /// The rays in an opened prototype.
     between: PacketRays,
     instructions: Instructions,
-    /// How often Embree has called back for it, which is what it costs.
+    /// The number of callbacks, the measure of its cost.
     pub callbacks: u32,
 }
 
 impl Packet {
-    /// A packet of no rays, to be computed with these instructions.
+    /// An empty packet, to be computed with these instructions.
     pub fn new(instructions: Instructions, decisions: Decisions) -> Self {
         let nowhere = [Lanes::splat(0.0); ROWS];
         Self {
@@ -71,8 +70,8 @@ impl Packet {
         }
     }
 
-    /// Begins anew with rays in these ranges, for their first hits or whether
-    /// there are any. Embree gets the rays together, or one by one.
+    /// Begins a query of rays in these ranges, for their first hits or for occlusion. Embree
+    /// traverses them as a packet if `is_together`, otherwise one by one.
     pub fn begin(&mut self, t_min: Rows<Lanes>, t_max: Rows<Lanes>, is_together: bool) {
         (self.t_min, self.t_max, self.bound) = (t_min, t_max, t_max);
         self.is_together = is_together;
@@ -80,7 +79,7 @@ impl Packet {
         self.callbacks = 0;
     }
 
-    /// The first hit of a ray.
+    /// Removes and returns the first hit of a ray.
     pub fn take_nearest(&mut self, ray: usize) -> Option<Nearest> {
         self.nearest[ray].take()
     }
@@ -90,19 +89,18 @@ impl Packet {
         self.levels.next().rays.clone_from(rays);
     }
 
-    /// Brings the rays to a child, through a placement in the prototype that is being traced.
-    pub fn arrive_through(&mut self, way: &ChildFromParent) {
+    /// Maps the rays into a child, through a placement in the current prototype.
+    pub fn arrive_through(&mut self, child_from_parent: &ChildFromParent) {
         self.leave_instance();
         let (level, next) = self.levels.current_and_next();
         self.instructions.run(IntoChild {
             rays: &level.rays,
-            way,
+            child_from_parent,
             in_child: &mut next.rays,
         });
     }
 
-    /// Enters the prototype that the rays were brought to, with those that could find part
-    /// of the answer there.
+    /// Enters the prototype that the rays were brought to, with the `wanted` rays.
     pub fn enter(&mut self, frame: &Frame, wanted: RaySet) -> PacketEntry {
         self.instructions.run(Enter {
             frame,
@@ -143,29 +141,40 @@ impl Packet {
         let Some(GeometryId(number)) = instance else {
             return;
         };
-        counters::handed_on(1);
+        counters::passed_on(1);
         self.outside = self.path.len();
-        prototype_ref.along_instance(self.prototype, number, |placement, way, frame| {
-            let is_first = self.path.len() == self.outside;
-            if !is_first {
-                self.between.clone_from(&self.in_instance);
-            }
-            self.instructions.run(IntoInstance {
-                rays: if is_first {
-                    &self.levels.current().rays
-                } else {
-                    &self.between
-                },
-                way,
-                frame,
-                in_child: &mut self.in_instance,
-            });
-            self.path.push(placement);
-        });
+        prototype_ref.along_instance(
+            self.prototype,
+            number,
+            |placement, child_from_parent, frame| {
+                let is_first = self.path.len() == self.outside;
+                if !is_first {
+                    self.between.clone_from(&self.in_instance);
+                }
+                self.instructions.run(IntoInstance {
+                    rays: if is_first {
+                        &self.levels.current().rays
+                    } else {
+                        &self.between
+                    },
+                    child_from_parent,
+                    frame,
+                    in_child: &mut self.in_instance,
+                });
+                self.path.push(placement);
+            },
+        );
         self.instance = instance;
     }
 
-    /// Goes back to the prototype that is being traced.
+    /// Counts a callback.
+    #[inline(always)]
+    pub fn called_back(&mut self) {
+        counters::called_back();
+        self.callbacks += 1;
+    }
+
+    /// Returns from the instance to the prototype that is being traced.
     #[inline(always)]
     pub fn leave_instance(&mut self) {
         if self.instance.take().is_some() {
@@ -173,8 +182,8 @@ impl Packet {
         }
     }
 
-    /// Runs `trace` with a query of one ray of the packet in the prototype that it has
-    /// entered, and keeps its answer.
+    /// Runs `trace` with a query of one ray of the packet in the prototype that it has entered,
+    /// and keeps its result.
     pub fn alone<T>(
         &mut self,
         prototype: PrototypeIndex,
@@ -192,7 +201,7 @@ impl Packet {
         );
         let answer = query.within(prototype, level, trace);
         self.callbacks += query.callbacks;
-        if let QueryMode::First(nearest) = query.keep {
+        if let QueryMode::First(nearest) = query.mode {
             if let Some(nearest) = &nearest {
                 set_lane(&mut self.bound, ray, nearest.t);
             }
@@ -202,7 +211,7 @@ impl Packet {
         answer
     }
 
-    /// The rays in the space of what a callback is for.
+    /// The rays in the space of the current callback.
     #[inline(always)]
     fn rays(&self) -> &PacketRays {
         match self.instance {
@@ -211,21 +220,21 @@ impl Packet {
         }
     }
 
-    /// The greatest `t` that can still be part of a ray's answer.
+    /// The greatest `t` that can still be part of a ray's result.
     #[inline(always)]
     pub fn bound(&self, ray: usize) -> f64 {
         lane(&self.bound, ray)
     }
 
-    /// The `t_far` that leaves room for all hits that a ray would keep.
+    /// The `t_far` up to which a ray would keep hits.
     #[inline(always)]
     pub fn t_far(&self, ray: usize) -> f32 {
         self.levels.current().window(ray).t_far(self.bound(ray))
     }
 
-    /// Keeps the points where rays first meet a solid of the current prototype, if they are
-    /// before the known ones. Returns the rays that end earlier now, whose `t_far` is set.
-    /// `solid` is that of the record.
+    /// Keeps the first hits of rays with a solid of the current prototype, if they are before
+    /// the known ones. Returns the rays that now end earlier, and sets their `t_far`. `solid`
+    /// is that of the record.
     #[inline(always)]
     pub fn visit<S: TracedSolid>(
         &mut self,
@@ -241,8 +250,8 @@ impl Packet {
             if wanted == 0 {
                 continue;
             }
-            let (met, t) = self.first(solid, row, wanted, &self.bound[row]);
-            self.offer_row((row, met, t), (prototype_ref, member), |packet, ray| {
+            let (hit, t) = self.first(solid, row, wanted, &self.bound[row]);
+            self.offer_row((row, hit, t), (prototype_ref, member), |packet, ray| {
                 t_far[ray] = packet.t_far(ray);
                 shorter.insert(ray);
             });
@@ -250,15 +259,15 @@ impl Packet {
         shorter
     }
 
-    /// Those of the rays that meet a solid of the current prototype.
+    /// The rays that hit a solid of the current prototype.
     #[inline(always)]
-    pub fn meets<S: TracedSolid>(&self, solid: &S, rays: RaySet) -> RaySet {
+    pub fn intersects<S: TracedSolid>(&self, solid: &S, rays: RaySet) -> RaySet {
         let mut blocked = 0;
         for row in 0..ROWS {
             let wanted = (rays.bits() >> (row * LANES)) as u8;
             if wanted != 0 {
-                let (met, _) = self.first(solid, row, wanted, &self.t_max[row]);
-                blocked |= u16::from(met.bits()) << (row * LANES);
+                let (hit, _) = self.first(solid, row, wanted, &self.t_max[row]);
+                blocked |= u16::from(hit.bits()) << (row * LANES);
             }
         }
         RaySet::from_bits(blocked)
@@ -275,7 +284,7 @@ impl Packet {
         }
     }
 
-    /// Where the rays of a row that are `wanted` first meet a solid.
+    /// The first hits of the `wanted` rays of a row with a solid.
     #[inline(always)]
     fn first(
         &self,
@@ -290,19 +299,19 @@ impl Packet {
         row::first(solid, &self.row(row, t_max), active, how)
     }
 
-    /// Keeps the first hits of the rays of a row that have `met` a solid, where they are
-    /// before those that are known, and passes such rays to `is_shorter`.
+    /// Keeps the first hits of the rays of a row that `hit` a solid, if they are before the
+    /// known ones, and passes such rays to `is_shorter`.
     #[inline(always)]
     fn offer_row(
         &mut self,
-        (row, met, t): (usize, LaneMask, Lanes),
+        (row, hit, t): (usize, LaneMask, Lanes),
         (prototype_ref, member): (&PrototypeRef, SolidSlot),
         mut is_shorter: impl FnMut(&Self, usize),
     ) {
-        let mut met = met.bits();
-        while met != 0 {
-            let in_row = met.trailing_zeros() as usize;
-            met &= met - 1;
+        let mut hit = hit.bits();
+        while hit != 0 {
+            let in_row = hit.trailing_zeros() as usize;
+            hit &= hit - 1;
             let ray = row * LANES + in_row;
             if self.offer(ray, t.0[in_row], prototype_ref, member) {
                 is_shorter(self, ray);
@@ -310,7 +319,7 @@ impl Packet {
         }
     }
 
-    /// Keeps a ray's first hit if it is before the one that is known.
+    /// Keeps a ray's first hit if it is before the known one.
     #[inline(always)]
     fn offer(
         &mut self,

@@ -1,7 +1,7 @@
 //! A row of a packet's rays against a solid.
 //!
-//! The rays are solved side by side where the solver has lanes. What a lane leaves open, and
-//! solids without lanes, are solved ray by ray.
+//! The rays are solved in lanes if the solver has lanes. Open lanes, and solids without lanes,
+//! are solved ray by ray.
 
 use crate::embree::{Instructions, Kernel};
 use crate::math::{LANES, LaneMask, Lanes};
@@ -10,7 +10,7 @@ use crate::tracer::decisions::Decisions;
 use crate::tracer::frame::LocalRay;
 use crate::tracer::traced::{RowOfPacket, TracedSolid};
 
-/// Where the `active` rays first meet a solid.
+/// The first hits of the `active` rays with a solid.
 #[inline(always)]
 pub(super) fn first(
     solid: &impl TracedSolid,
@@ -41,8 +41,8 @@ impl<S: TracedSolid> Kernel for ExactRow<'_, '_, S> {
     }
 }
 
-/// The same decided exactly. A call, which gets nothing that the caller would otherwise have
-/// in registers.
+/// The first hits, decided exactly. Not inlined, and without arguments that would occupy the
+/// caller's registers.
 #[cold]
 #[inline(never)]
 fn exactly<S: TracedSolid>(
@@ -55,38 +55,38 @@ fn exactly<S: TracedSolid>(
     with_open(solid, row, quick, Decisions::Exact)
 }
 
-/// The answers with those that are left open, ray by ray.
+/// The results, with open ones solved ray by ray.
 #[inline(always)]
 fn with_open(
     solid: &impl TracedSolid,
     row: &RowOfPacket,
-    QuickLanes { open, met, t }: QuickLanes,
+    QuickLanes { open, hit, t }: QuickLanes,
     decisions: Decisions,
 ) -> (LaneMask, Lanes) {
     if !open.any() {
-        return (met, t);
+        return (hit, t);
     }
-    one_by_one(row, open, (met, t), |ray, t_min, t_max| {
+    one_by_one(row, open, (hit, t), |ray, t_min, t_max| {
         Some(solid.first(ray, decisions, t_min, t_max)?.intersection.t)
     })
 }
 
-/// The answers with those of `first`, which returns where a ray first meets a solid, where
-/// `open` is set. A call, for a solver with its branches gains nothing from being compiled for
-/// each instruction set.
+/// The results, with those of `first` where `open` is set; `first` returns the `t` of a ray's
+/// first hit. Not inlined: a solver with branches gains nothing from being compiled for each
+/// instruction set.
 #[inline(never)]
 fn one_by_one(
     row: &RowOfPacket,
     open: LaneMask,
-    (mut met, mut t): (LaneMask, Lanes),
+    (mut hit, mut t): (LaneMask, Lanes),
     first: impl Fn(&LocalRay, f64, f64) -> Option<f64>,
 ) -> (LaneMask, Lanes) {
     for lane in (0..LANES).filter(|&lane| open.0[lane]) {
         let ray = row.rays.ray(row.row, lane);
         if let Some(first) = first(&ray, row.t_min.0[lane], row.t_max.0[lane]) {
-            met.0[lane] = true;
+            hit.0[lane] = true;
             t.0[lane] = first;
         }
     }
-    (met, t)
+    (hit, t)
 }

@@ -14,7 +14,7 @@ use crate::tracer::frame::{Frame, Level, LocalRay};
 use crate::tracer::prototype::PrototypeRef;
 use crate::tracer::traced::{SurfaceHit, TracedSolid};
 
-/// A query on its way.
+/// The state of a query.
 #[derive(Debug)]
 pub(crate) struct Query {
     t_min: f64,
@@ -24,15 +24,15 @@ pub(crate) struct Query {
     level: Option<Level>,
     /// That prototype.
     prototype: PrototypeIndex,
-    /// The instance that the last callback was in, how long the path was outside, and
-    /// the ray there.
+    /// The instance of the last callback, the length of the path outside of it, and the ray
+    /// inside.
     instance: Option<GeometryId>,
     outside: usize,
     in_instance: LocalRay,
-    /// The placements on the way, with those that the instance leads through.
+    /// The placements from the root, with those of the instance.
     pub path: InstancePath,
-    pub keep: QueryMode,
-    /// How often Embree has called back for it, which is what it costs.
+    pub mode: QueryMode,
+    /// The number of callbacks, the measure of its cost.
     pub callbacks: u32,
 }
 
@@ -41,13 +41,13 @@ impl embree::Query for Query {
 }
 
 impl Query {
-    /// A query for the first hit, or whether there is any.
+    /// A query for the first hit, or for occlusion.
     pub fn first(ray: &Ray, decisions: Decisions) -> Self {
         Self::new([ray.t_min, ray.t_max], decisions, InstancePath::new(), None)
     }
 
-    /// A query for the first hit in a range, on the way along `path`, where one
-    /// is known.
+    /// A query for the first hit in a range, in the prototype at the end of `path`, with the
+    /// nearest known hit.
     pub fn new(
         [t_min, t_max]: [f64; 2],
         decisions: Decisions,
@@ -64,55 +64,54 @@ impl Query {
             outside: 0,
             in_instance: LocalRay::default(),
             path,
-            keep: QueryMode::First(nearest),
+            mode: QueryMode::First(nearest),
             callbacks: 0,
         }
     }
 
-    /// A query for the next hits after one, at most `most`.
+    /// A query for the next hits after a known one, at most `most`.
     pub fn next(ray: &Ray, decisions: Decisions, after: Option<Found>, most: usize) -> Self {
         let hits = BinaryHeap::new();
         Self {
-            keep: QueryMode::Next(Next { after, most, hits }),
+            mode: QueryMode::Next(Next { after, most, hits }),
             ..Self::first(ray, decisions)
         }
     }
 
-    /// A query for the solids that hold the origin of a ray, whose range is that
-    /// point.
-    pub fn holding(ray: &Ray) -> Self {
+    /// A query for the solids that contain the origin of a ray, whose range is that point.
+    pub fn containing(ray: &Ray) -> Self {
         Self {
-            keep: QueryMode::Containing(Vec::new()),
+            mode: QueryMode::Containing(Vec::new()),
             ..Self::first(ray, Decisions::default())
         }
     }
 
-    /// The greatest `t` that can still be part of the answer.
+    /// The greatest `t` that can still be part of the result.
     #[inline(always)]
     pub fn bound(&self) -> f64 {
-        self.keep.bound(self.t_max)
+        self.mode.bound(self.t_max)
     }
 
-    /// The least `t` that can be part of the answer. The range as it was asked
-    /// for begins earlier, and stays what solids are met in: a ray within a disk
-    /// meets it where its range begins.
+    /// The least `t` that can be part of the result. The range of the ray begins earlier, and
+    /// is the one in which solids are intersected: a ray within a disk hits it at the start of
+    /// that range.
     #[inline]
     fn start(&self) -> f64 {
-        match &self.keep {
+        match &self.mode {
             QueryMode::Next(Next {
                 after: Some(after), ..
-            }) => after.met.intersection.t,
+            }) => after.hit.intersection.t,
             QueryMode::First(_) | QueryMode::Next(_) | QueryMode::Containing(_) => self.t_min,
         }
     }
 
-    /// The ray in a prototype, if anything there could be part of the answer.
+    /// The ray in a prototype, if anything there could be part of the result.
     #[inline]
     pub fn enter(&self, frame: &Frame, ray: &LocalRay) -> Option<(Level, Ray32)> {
         frame.enter(ray, self.start(), self.bound())
     }
 
-    /// Runs `trace` with the ray in a further prototype.
+    /// Runs `trace` with the ray in another prototype.
     #[inline]
     pub fn within<T>(
         &mut self,
@@ -129,8 +128,8 @@ impl Query {
         answer
     }
 
-    /// Says which instance a callback is in, before it uses the ray or the path, and
-    /// whose solids it is for.
+    /// Sets the instance of a callback, and the prototype of its solids, before the callback
+    /// uses the ray or the path.
     #[inline(always)]
     pub fn reach(&mut self, instance: Option<GeometryId>, prototype_ref: &PrototypeRef) {
         if instance != self.instance {
@@ -138,25 +137,36 @@ impl Query {
         }
     }
 
-    /// The ray in the child is made when a callback needs it; a ray that meets nothing
-    /// but boxes of an instance does without.
+    /// The ray in the child is computed when a callback needs it, not for a ray that intersects
+    /// only boxes of an instance.
     #[inline(never)]
     fn change_instance(&mut self, instance: Option<GeometryId>, prototype_ref: &PrototypeRef) {
         self.leave_instance();
         let Some(GeometryId(number)) = instance else {
             return;
         };
-        counters::handed_on(1);
+        counters::passed_on(1);
         self.outside = self.path.len();
         self.in_instance = self.level().ray;
-        prototype_ref.along_instance(self.prototype, number, |placement, way, frame| {
-            self.in_instance = frame.approach(&self.in_instance.in_child(way));
-            self.path.push(placement);
-        });
+        prototype_ref.along_instance(
+            self.prototype,
+            number,
+            |placement, child_from_parent, frame| {
+                self.in_instance = frame.approach(&self.in_instance.in_child(child_from_parent));
+                self.path.push(placement);
+            },
+        );
         self.instance = instance;
     }
 
-    /// Goes back to the prototype that is being traced.
+    /// Counts a callback.
+    #[inline(always)]
+    pub fn called_back(&mut self) {
+        counters::called_back();
+        self.callbacks += 1;
+    }
+
+    /// Returns from the instance to the prototype that is being traced.
     #[inline(always)]
     pub fn leave_instance(&mut self) {
         if self.instance.take().is_some() {
@@ -164,7 +174,7 @@ impl Query {
         }
     }
 
-    /// The level that callbacks run in.
+    /// The level of the current callbacks.
     #[inline(always)]
     fn level(&self) -> &Level {
         self.level
@@ -172,7 +182,7 @@ impl Query {
             .expect("callbacks run within a prototype")
     }
 
-    /// The ray in the space of what a callback is for.
+    /// The ray in the space of the current callback.
     #[inline(always)]
     pub fn ray(&self) -> &LocalRay {
         match self.instance {
@@ -181,27 +191,27 @@ impl Query {
         }
     }
 
-    /// The first point, up to `t_max`, where the ray meets a solid of the current prototype.
+    /// The first hit of the ray, up to `t_max`, with a solid of the current prototype.
     #[inline(always)]
     fn first_intersection(&self, solid: &impl TracedSolid, t_max: f64) -> Option<SurfaceHit> {
         counters::solved(1);
         solid.first(self.ray(), self.decisions, self.t_min, t_max)
     }
 
-    /// Whether the ray meets a solid of the current prototype.
+    /// Whether the ray hits a solid of the current prototype.
     #[inline(always)]
-    pub fn meets<S: TracedSolid>(&self, solid: &S) -> bool {
+    pub fn intersects<S: TracedSolid>(&self, solid: &S) -> bool {
         self.first_intersection(solid, self.t_max).is_some()
     }
 
-    /// Keeps the points where the ray meets a solid of the current prototype that are wanted.
+    /// Keeps the hits of the ray with a solid of the current prototype that the query is for.
     /// `solid` is that of the record.
     #[inline(always)]
     pub fn visit<S: TracedSolid>(&mut self, solid: &S, prototype_ref: &PrototypeRef, record: u32) {
-        if let QueryMode::First(_) = self.keep {
-            if let Some(met) = self.first_intersection(solid, self.bound()) {
+        if let QueryMode::First(_) = self.mode {
+            if let Some(hit) = self.first_intersection(solid, self.bound()) {
                 let member = SolidSlot::new(solid.kind(), record);
-                self.offer(met.intersection.t, prototype_ref, member);
+                self.offer(hit.intersection.t, prototype_ref, member);
             }
         } else {
             self.visit_all(solid, prototype_ref, record);
@@ -213,8 +223,8 @@ impl Query {
     fn visit_all<S: TracedSolid>(&mut self, solid: &S, prototype_ref: &PrototypeRef, record: u32) {
         counters::solved(1);
         let member = SolidSlot::new(solid.kind(), record);
-        if let QueryMode::Containing(_) = self.keep {
-            return self.hold(prototype_ref, member, |point| solid.contains(point));
+        if let QueryMode::Containing(_) = self.mode {
+            return self.keep_if_containing(prototype_ref, member, |point| solid.contains(point));
         }
         let (ray, decisions) = (*self.ray(), self.decisions);
         let (bound, t_min) = (self.bound(), self.t_min);
@@ -223,44 +233,43 @@ impl Query {
     }
 
     /// Keeps a solid if it `contains` the origin of the ray.
-    fn hold(
+    fn keep_if_containing(
         &mut self,
         prototype_ref: &PrototypeRef,
         member: SolidSlot,
         contains: impl FnOnce(DVec3) -> bool,
     ) {
         let ray = self.ray();
-        // A ray that was moved began far away from all that is here.
+        // The origin of a ray that was moved is far away from all solids here.
         let is_moved = ray.shift != 0.0 || ray.base != DVec3::ZERO;
         if is_moved || !contains(ray.origin) {
             return;
         }
-        if let QueryMode::Containing(places) = &mut self.keep {
+        if let QueryMode::Containing(places) = &mut self.mode {
             places.push(SolidRef::new(prototype_ref.index(), member, &self.path));
         }
     }
 
-    /// What keeps the intersections with a solid that are wanted, where all hits are asked
-    /// for.
+    /// A function that keeps the next hits with a solid, in a query for all hits.
     fn next_of(
         &mut self,
         prototype_ref: &PrototypeRef,
         member: SolidSlot,
     ) -> impl FnMut(SurfaceHit) {
         let (prototype, primitive) = (prototype_ref.index(), prototype_ref.primitive(member));
-        let (keep, path) = (&mut self.keep, &self.path);
-        move |met| {
-            if let QueryMode::Next(next) = keep {
+        let (mode, path) = (&mut self.mode, &self.path);
+        move |hit| {
+            if let QueryMode::Next(next) = mode {
                 let place = || SolidRef::new(prototype, member, path);
-                next.offer(met, path, primitive, place);
+                next.offer(hit, path, primitive, place);
             }
         }
     }
 
-    /// Keeps a first hit if it is before the one that is known.
+    /// Keeps a first hit if it is before the known one.
     #[inline(always)]
     fn offer(&mut self, t: f64, prototype_ref: &PrototypeRef, member: SolidSlot) {
-        let QueryMode::First(nearest) = &mut self.keep else {
+        let QueryMode::First(nearest) = &mut self.mode else {
             return;
         };
         let path = &self.path;
@@ -275,7 +284,7 @@ impl Query {
         }
     }
 
-    /// The `t_far` that leaves room for all hits that would be kept.
+    /// The `t_far` up to which hits would be kept.
     #[inline(always)]
     pub fn t_far(&self) -> f32 {
         self.level().window.t_far(self.bound())

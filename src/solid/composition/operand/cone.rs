@@ -1,9 +1,9 @@
 //! The wall and the disks of a cone, or of a cylinder, which is a cone of equal radii.
 //!
-//! **Exact normals.** With the point `x` and the axis `a`, both from `p0`, `L² = a·a`, the
-//! radii `r0` and `r1` and `Δ = r1 - r0`: that of a disk is `-a` at `p0` and `a` at `p1`. The
-//! wall is where `F = |x|² - (x·a)² / L² - r²` is zero, with the radius `r = r0 + Δ (x·a) / L²`.
-//! The gradient of `F`, times `L⁴ / 2`, is
+//! **Exact normals.** Let the point `x` and the axis `a` be relative to `p0`, `L² = a·a`, the
+//! radii `r0` and `r1`, and `Δ = r1 - r0`. The normal of a disk is `-a` at `p0` and `a` at
+//! `p1`. The wall is where `F = |x|² - (x·a)² / L² - r²` is zero, with the radius
+//! `r = r0 + Δ (x·a) / L²`. The gradient of `F`, times `L⁴ / 2`, is
 //!
 //! ```text
 //! n = L² (L² x - a (x·a)) - a Δ (r0 L² + Δ x·a)                          (1)

@@ -6,16 +6,10 @@ use glam::DVec3;
 
 use super::{OperandSurface, Vector};
 use crate::solid::composition::piece::{Pieces, Viewed};
+use crate::solid::cuboid::FACES;
 use crate::solid::exact::vector;
 use crate::solid::spawn::SOLVER_DISPLACEMENT;
 use crate::solid::{Cuboid, Part};
-
-/// The lower and the upper face across each axis.
-const FACES: [[Part; 2]; 3] = [
-    [Part::XMin, Part::XMax],
-    [Part::YMin, Part::YMax],
-    [Part::ZMin, Part::ZMax],
-];
 
 impl OperandSurface for Cuboid {
     fn add_pieces(&self, view: &Viewed, pieces: &mut Pieces) {

@@ -1,4 +1,4 @@
-//! A disk has no inside and is no operand: it has no pieces.
+//! A disk has no inside, so it cannot be an operand: it has no pieces.
 
 use glam::DVec3;
 

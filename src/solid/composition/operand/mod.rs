@@ -1,4 +1,4 @@
-//! What set operations need of the surface of a kind of solid, one file a kind.
+//! The surface of each kind of solid for set operations, one file per kind.
 
 mod cone;
 mod cuboid;
@@ -16,17 +16,17 @@ use crate::with_solid;
 /// A vector of exact numbers.
 pub(super) type Vector = [Big; 3];
 
-/// A kind of solid that set operations compose.
+/// A kind of solid in set operations.
 pub(super) trait OperandSurface {
     /// Adds the pieces of the surface that pass through the point of a view.
     fn add_pieces(&self, view: &Viewed, pieces: &mut Pieces);
 
-    /// An outward normal of a part at a point of it that is no apex, of any length; `None`
-    /// of a solid without an inside.
+    /// An exact outward normal, of any length, of a part at one of its points that is no apex;
+    /// `None` for a solid without an inside.
     fn exact_normal(&self, part: Part, point: DVec3) -> Option<Vector>;
 }
 
-/// An exact outward normal of a solid's piece at a point of it; `None` for an apex.
+/// An exact outward normal of a solid's piece at one of its points; `None` for an apex.
 pub(super) fn outward(solid: &AnySolid, piece: &Piece, point: DVec3) -> Option<Vector> {
     if !piece.is_flat_to_first_order() {
         return None;
@@ -68,11 +68,11 @@ mod tests {
             for _ in 0..400 {
                 let from = solid.center() + random.direction() * 10.0;
                 let to = solid.center() + random.direction() * 0.5;
-                let way = to - from;
-                let Some(chord) = solid.chord(from - solid.anchor(), way) else {
+                let direction = to - from;
+                let Some(chord) = solid.chord(from - solid.anchor(), direction) else {
                     continue;
                 };
-                let (part, point) = (chord.enter.part, from + way * chord.enter.t);
+                let (part, point) = (chord.enter.part, from + direction * chord.enter.t);
                 let from_anchor = point - solid.anchor();
                 let mut pieces = Pieces::new();
                 let view = Viewed {

@@ -1,10 +1,11 @@
 //! The wall and the balls of a rounded cone.
 //!
-//! **Exact normals.** That of a ball is the way from its center. With the point `x` and the
-//! axis `a`, both from `p0`, `L² = a·a`, the radii `r0` and `r1` and `Δ = r1 - r0`, the wall is
-//! the envelope of the spheres with the centers `s a` and the radii `r0 + Δ s`. At its points
-//! `|x - s a|² - (r0 + Δ s)²` does not change with `s`, which gives `s = (x·a + r0 Δ) / β` with
-//! `β = L² - Δ² > 0`. The normal is the sphere's, `x - s a`:
+//! **Exact normals.** The normal of a ball is the offset from its center. Let the point `x` and
+//! the axis `a` be relative to `p0`, `L² = a·a`, the radii `r0` and `r1`, and `Δ = r1 - r0`.
+//! The wall is the envelope of the spheres with the centers `s a` and the radii `r0 + Δ s`. At
+//! its points `|x - s a|² - (r0 + Δ s)²` is stationary in `s`, which gives
+//! `s = (x·a + r0 Δ) / β` with `β = L² - Δ² > 0`. The normal is the sphere's, `x - s a`, times
+//! β:
 //!
 //! ```text
 //! n = β x - a (x·a + r0 Δ)                                               (1)
@@ -35,7 +36,7 @@ impl OperandSurface for RoundedCone {
         let (length, delta, beta) = (a.length(), r1 - r0, taper.beta());
         let axis = a / length;
         let (cosine, sine) = (beta.sqrt() / length, delta / length);
-        // From the first seam, and to the second, along the axis.
+        // The distances from the first seam and to the second, along the axis.
         let height = x.dot(axis);
         let from_first = height + r0 * sine;
         let to_second = beta / length - from_first;

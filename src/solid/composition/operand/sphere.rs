@@ -1,4 +1,4 @@
-//! The surface of a ball. Its exact normal is the way from the center.
+//! The surface of a ball. Its exact normal is the offset from the center.
 
 use glam::DVec3;
 
@@ -18,7 +18,7 @@ impl OperandSurface for Sphere {
     }
 }
 
-/// The piece of a ball around a center that is counted from the anchor.
+/// The piece of a ball whose center is relative to the anchor.
 pub(super) fn ball(view: &Viewed, part: Part, center: DVec3, radius: f64) -> Piece {
     let normal = (view.from_anchor - center).normalize();
     let (around, along) = normal.any_orthonormal_pair();

@@ -1,14 +1,14 @@
-//! Ways between points, with what their rounding leaves.
+//! Offsets between points, with the remainders of their roundings.
 //!
-//! A solver computes with differences: the way `x` from a point of its solid to the origin of
-//! the ray, and the axis `a` from one end to the other. f64 rounds them. Where a rounded
-//! number leaves a decision open, it is made from exact numbers, and there are two
-//! answers to what these are: the rounded difference itself, or the difference of the two
-//! points as stated. A solver is the same code for both, with the way as a type.
+//! A solver computes with differences: the offset `x` from a point of its solid to the origin
+//! of the ray, and the axis `a` from one end to the other. f64 rounds them. If a rounded number
+//! leaves a decision open, it is computed again from exact numbers, which can be two things:
+//! the rounded difference itself, or the difference of the two points as stated. A solver has
+//! the same code for both, with the offset as a type.
 //!
-//! A number `s = a + b`, rounded, and its rest `(a + b) - s` are two f64 numbers (Knuth, *The
-//! Art of Computer Programming*, volume 2, section 4.2.2), which `DoubleDouble::sum` finds without
-//! a branch. A sum of three numbers is three such numbers.
+//! The rounded sum `s` of `a` and `b` and its remainder `(a + b) - s` are two f64 numbers
+//! (Knuth, *The Art of Computer Programming*, volume 2, section 4.2.2), which
+//! `DoubleDouble::sum` computes without a branch. A sum of three numbers is three such numbers.
 
 use std::fmt::Debug;
 
@@ -17,20 +17,20 @@ use glam::DVec3;
 use super::exact::{Number, difference, vector};
 use crate::math::DoubleDouble;
 
-/// A way between two points.
-pub(super) trait Way: Copy + Debug {
-    /// The way, each component within `u + 3 u²` of itself, u = 2^-53.
+/// An offset from one point to another.
+pub(super) trait Offset: Copy + Debug {
+    /// The offset, each component within `u + 3 u²` of itself, u = 2^-53.
     fn rounded(&self) -> DVec3;
 
-    /// The way as numbers `N`.
+    /// The offset as numbers `N`.
     fn exactly<N: Number>(&self) -> [N; 3];
 
-    /// Whether the rounded way is the exact one.
+    /// Whether the rounded offset is exact.
     fn is_rounded(&self) -> bool;
 }
 
-/// A way that f64 represents.
-impl Way for DVec3 {
+/// An offset that f64 represents.
+impl Offset for DVec3 {
     #[inline(always)]
     fn rounded(&self) -> DVec3 {
         *self
@@ -46,14 +46,14 @@ impl Way for DVec3 {
     }
 }
 
-/// The way from one point to another, rounded only where that is needed.
+/// The offset from one point to another, rounded only on request.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Between {
     pub from: DVec3,
     pub to: DVec3,
 }
 
-impl Way for Between {
+impl Offset for Between {
     #[inline(always)]
     fn rounded(&self) -> DVec3 {
         self.to - self.from
@@ -69,20 +69,20 @@ impl Way for Between {
 }
 
 impl Between {
-    /// The same with its rest.
-    pub fn exact(&self) -> ExactWay {
-        RayOrigin::at(self.to).way_from(self.from)
+    /// The rounded offset with its remainder.
+    pub fn exact(&self) -> ExactOffset {
+        RayOrigin::at(self.to).offset_from(self.from)
     }
 }
 
-/// A way and what its rounding left, exactly.
+/// A rounded offset and its exact remainder.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ExactWay {
+pub(super) struct ExactOffset {
     rounded: DVec3,
     rest: [DVec3; 2],
 }
 
-impl Way for ExactWay {
+impl Offset for ExactOffset {
     #[inline(always)]
     fn rounded(&self) -> DVec3 {
         self.rounded
@@ -101,13 +101,13 @@ impl Way for ExactWay {
     }
 }
 
-/// The origin of a ray as exactly as a prototype has it: the point `base + offset`, a sum
-/// that f64 need not hold.
+/// The exact origin of a ray in a prototype: the point `base + offset`, a sum that f64 may not
+/// represent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayOrigin {
-    /// Zero, or the point that a far ray was moved next to.
+    /// Zero, or the point near which a far ray was moved.
     pub base: DVec3,
-    /// The way from there.
+    /// The offset from there.
     pub offset: DVec3,
 }
 
@@ -121,21 +121,21 @@ impl RayOrigin {
         }
     }
 
-    /// The way from a point.
+    /// The offset from a point.
     ///
-    /// Where the offset nearly cancels the way to the base, their sum is exact, and the
-    /// middle one of the three numbers is what is left of the other rounding. So the
-    /// rounded way is within `u + 3 u²` of itself always.
-    pub(super) fn way_from(&self, point: DVec3) -> ExactWay {
+    /// If the offset nearly cancels the difference to the base, their sum is exact, and the
+    /// middle one of the three numbers is the remainder of the other rounding. So the rounded
+    /// offset is always within `u + 3 u²` of itself.
+    pub(super) fn offset_from(&self, point: DVec3) -> ExactOffset {
         let [mut rounded, mut more, mut less] = [DVec3::ZERO; 3];
         for axis in 0..3 {
             let to_base = DoubleDouble::sum(self.base[axis], -point[axis]);
             let sum = DoubleDouble::sum(to_base.high, self.offset[axis]);
             let rests = DoubleDouble::sum(to_base.low, sum.low);
-            let way = DoubleDouble::sum(sum.high, rests.high);
-            (rounded[axis], more[axis], less[axis]) = (way.high, way.low, rests.low);
+            let sum = DoubleDouble::sum(sum.high, rests.high);
+            (rounded[axis], more[axis], less[axis]) = (sum.high, sum.low, rests.low);
         }
-        ExactWay {
+        ExactOffset {
             rounded,
             rest: [more, less],
         }
@@ -149,8 +149,8 @@ mod tests {
     use super::super::exact::{Expression, sign};
     use super::*;
 
-    /// A component of a way less a number.
-    struct Component(ExactWay, usize, f64);
+    /// A component of an offset minus a number.
+    struct Component(ExactOffset, usize, f64);
 
     impl Expression for Component {
         fn value<N: Number>(&self) -> N {
@@ -159,16 +159,16 @@ mod tests {
     }
 
     #[test]
-    fn exact_way_keeps_what_rounding_loses() {
+    fn exact_offset_keeps_what_rounding_loses() {
         let moved = RayOrigin {
             base: DVec3::splat(1e20),
             offset: DVec3::new(0.1, 1e-30, -1e20),
         };
         let point = DVec3::new(1e20, 1e20, 1e-40);
-        let way = moved.way_from(point);
-        assert_eq!(way.rounded(), DVec3::new(0.1, 1e-30, -1e-40));
-        assert!(way.is_rounded());
-        let off = moved.way_from(DVec3::new(1e-3, 1.0, -0.1));
+        let offset = moved.offset_from(point);
+        assert_eq!(offset.rounded(), DVec3::new(0.1, 1e-30, -1e-40));
+        assert!(offset.is_rounded());
+        let off = moved.offset_from(DVec3::new(1e-3, 1.0, -0.1));
         assert!(!off.is_rounded());
         let signs = [0, 1, 2].map(|axis| sign(&Component(off, axis, off.rounded()[axis])));
         assert_eq!(signs, [Ordering::Greater, Ordering::Less, Ordering::Equal]);

@@ -1,23 +1,23 @@
-//! Lines that certainly pass by balls, disks and cones' walls, told by a few products.
+//! Rejects lines that certainly miss balls, disks and cones' walls, by a few products.
 //!
-//! Most of the rays that come to a slender or turned solid's box pass it by, and not
-//! narrowly. For those the bounds that solvers keep of every term are not needed, nor
-//! is any root or branch: so a row of rays is tested at once.
+//! Most of the rays that enter the box of a slender or turned solid miss the solid, and not
+//! narrowly. They need neither the solvers' bounds of every term, nor a root or a branch: so a
+//! row of rays is tested at once.
 //!
-//! A line misses a ball of radius `r` iff `|l| > r |d|`, `l = x × d`, with `x`
-//! counted from its center; by a disk with the normal `n` iff `|P| > r |v|`, `P = n × l`,
-//! `v = n·d` (`disk.rs`); and by a cone's wall, both nappes, iff `E < 0` of (4) in
-//! `cone/wall.rs`, which is `√τ |w| > |k|` with `τ = (β + Δ²) / |a|²`. What is computed
-//! of these, u = 2^-53, is off by
+//! A line misses a ball of radius `r` iff `|l| > r |d|`, `l = x × d`, with `x` relative to its
+//! center; a disk with the normal `n` iff `|P| > r |v|`, `P = n × l`, `v = n·d` (`disk.rs`);
+//! and a cone's wall, both nappes, iff `E < 0` of (4) in `cone/wall.rs`, which is
+//! `√τ |w| > |k|` with `τ = (β + Δ²) / |a|²`. The errors of the computed terms are, with
+//! u = 2^-53,
 //!
 //! ```text
 //! |δl| <= 5 u |x| |d|,       |δP| <= 12 u |n| |x| |d|,   |δv| <= 6 u |n| |d|,
 //! |δw| <= 6 u |x| |a| |d|,   |δk| <= 6 u |d| (r0 |a| + |Δ| |x|)
 //! ```
 //!
-//! (of `l` one u for an `x` that is itself a rounded difference). So it is certain
-//! where the left side is above the right one by as much, `p > q + ε`; and, squared,
-//! since `(q + ε)² <= (1 + η) q² + (1 + 1/η) ε²` for any `η > 0`, where
+//! (one u of `l` is for an `x` that is itself a rounded difference). So the miss is certain if
+//! the left side exceeds the right one by their errors, `p > q + ε`; and squared, since
+//! `(q + ε)² <= (1 + η) q² + (1 + 1/η) ε²` for any `η > 0`, if
 //!
 //! ```text
 //! |l|² > (1 + η) r² |d|² + ρ |d|² |x|²
@@ -25,18 +25,18 @@
 //! τ w² > (1 + η) |k|² + ρ |d|² (r0² |a|² + Δ² |x|² + τ |x|² |a|²)
 //! ```
 //!
-//! and, with the sides of the second exchanged, that it meets the disk. `ε²` is the square
-//! of a sum of two, so at most twice the sum of their squares, and for `k` twice that:
-//! `2 (12 u)²` and `4 (6 u)²` times what follows `ρ`. With `η` = 2^-20, `ρ` = 2^-77 is above
-//! `(1 + 1/η) · 288 u²`. Lines that miss by less than 2^-19 of the radius, or a 2^-38th of
-//! the way to it, are left to the solver.
+//! and a hit of the disk is certain by the second with its sides exchanged. `ε²` is the square
+//! of a sum of two terms, so at most twice the sum of their squares, and for `k` twice that:
+//! `2 (12 u)²` and `4 (6 u)²` times the factor of `ρ`. With `η` = 2^-20, `ρ` = 2^-77 is above
+//! `(1 + 1/η) · 288 u²`. Lines that miss by less than 2^-19 of the radius, or 2^-38 of their
+//! distance, are left to the solver.
 //!
-//! **Underflow.** Lines are rejected where `|l|²`, `|P|²` or `w²` is above 2^-400. What
-//! the sides lose is then too little to matter: for the wall `|x| |a| |d| >= |w|`, so
-//! `|x|² |a|²` is above 2^-602 and `|x|²` above 2^-906, and the last of its terms is
-//! more than 2^-478, where products that lost all add up to less than 2^-870. That needs
-//! an `|a|²` that is not lost; where `|a|` is below 2^-171, the hull of two balls is
-//! within the margin of the greater one's test, for radii are at least 2^-150.
+//! **Underflow.** Lines are rejected only if `|l|²`, `|P|²` or `w²` is above 2^-400. The loss
+//! of the sides is then too small to matter. For the wall `|x| |a| |d| >= |w|`, so `|x|² |a|²`
+//! is above 2^-602 and `|x|²` above 2^-906, and the last of its terms is more than 2^-478,
+//! while products that lost all bits add up to less than 2^-870. That requires an `|a|²` that
+//! is not lost. If `|a|` is below 2^-171, the hull of two balls is within the margin of the
+//! greater one's test, for radii are at least 2^-150.
 
 use glam::DVec3;
 
@@ -49,8 +49,8 @@ const WIDER: f64 = 1.0 + power_of_two(-18);
 /// `ρ`, doubled for its roundings.
 const ROUNDINGS: f64 = power_of_two(-76);
 
-/// Squares up to this are left to the solver: what they are compared with may have been
-/// lost to underflow.
+/// Squares up to this are left to the solver: the terms compared with them may have been lost
+/// to underflow.
 const LEAST: f64 = power_of_two(-400);
 
 /// A line `x + t d`.
@@ -76,30 +76,30 @@ impl Line {
         }
     }
 
-    /// Whether it certainly misses the ball about the origin. Says nothing if not,
-    /// as for what is not finite.
+    /// Whether it certainly misses the ball about the origin. `false` is inconclusive, and
+    /// returned for values that are not finite.
     #[inline(always)]
-    pub fn passes_ball(&self, radius: f64) -> bool {
+    pub fn misses_ball(&self, radius: f64) -> bool {
         let beside = self.across.dot(self.across);
         (beside > LEAST) & is_above(beside, radius * radius * self.dd, self.dd * self.xx)
     }
 
-    /// Whether it certainly misses the disk about the origin across a normal, which
-    /// is not zero. Says nothing if not.
+    /// Whether it certainly misses the disk about the origin across a nonzero normal. `false`
+    /// is inconclusive.
     #[inline(always)]
-    pub fn passes_disk(&self, normal: DVec3, radius: f64) -> bool {
+    pub fn misses_disk(&self, normal: DVec3, radius: f64) -> bool {
         let [beside, reach, sizes] = self.disk(normal, radius);
         (beside > LEAST) & is_above(beside, reach, sizes)
     }
 
-    /// Whether it certainly meets the plane within that disk. Says nothing if not.
+    /// Whether it certainly hits that disk. `false` is inconclusive.
     #[inline(always)]
-    pub fn meets_disk(&self, normal: DVec3, radius: f64) -> bool {
+    pub fn hits_disk(&self, normal: DVec3, radius: f64) -> bool {
         let [beside, reach, sizes] = self.disk(normal, radius);
         (reach > LEAST) & is_above(reach, beside, sizes)
     }
 
-    /// `|P|²`, `r² v²` and what their roundings are of.
+    /// `|P|²`, `r² v²` and the sizes of their roundings.
     #[inline(always)]
     fn disk(&self, normal: DVec3, radius: f64) -> [f64; 3] {
         let (p, slope) = (normal.cross(self.across), normal.dot(self.d));
@@ -108,10 +108,9 @@ impl Line {
         [p.dot(p), rr * (slope * slope), sizes]
     }
 
-    /// Whether it certainly misses the wall on both sides of the apex. Says nothing
-    /// if not.
+    /// Whether it certainly misses the wall on both sides of the apex. `false` is inconclusive.
     #[inline(always)]
-    pub fn passes_wall(&self, taper: &Taper) -> bool {
+    pub fn misses_wall(&self, taper: &Taper) -> bool {
         let (a, r0) = (taper.a, taper.radius0);
         let (aa, delta) = (a.dot(a), taper.radius1 - r0);
         let squared = delta * delta;
@@ -127,7 +126,7 @@ impl Line {
     }
 }
 
-/// Whether a square is certainly above another; `sizes` is what [`ROUNDINGS`] are of.
+/// Whether a square is certainly above another; `sizes` is multiplied by [`ROUNDINGS`].
 #[inline(always)]
 fn is_above(one: f64, other: f64, sizes: f64) -> bool {
     one > WIDER * other + ROUNDINGS * sizes
@@ -145,21 +144,21 @@ mod tests {
     const SEED: u64 = 41;
 
     #[test]
-    fn balls_are_told_from_a_little_beyond_the_radius_on() {
+    fn balls_are_rejected_from_a_little_beyond_the_radius_on() {
         let mut random = Random::new(SEED, 0);
         for _ in 0..10_000 {
             let (away, radius) = (random.direction(), random.log_uniform(1e-3, 1e3));
             let heading = away.any_orthonormal_vector() * random.log_uniform(1e-3, 1e3);
             let back = heading * random.uniform(-1e3, 1e3) * radius;
             let at = |factor: f64| Line::new(away * (radius * factor) + back, heading);
-            assert!(at(1.0001).passes_ball(radius));
-            assert!(!at(1.0).passes_ball(radius));
-            assert!(!at(0.9999).passes_ball(radius));
+            assert!(at(1.0001).misses_ball(radius));
+            assert!(!at(1.0).misses_ball(radius));
+            assert!(!at(0.9999).misses_ball(radius));
         }
     }
 
     #[test]
-    fn disks_are_told_from_a_little_beyond_the_rim_on() {
+    fn disks_are_rejected_from_a_little_beyond_the_rim_on() {
         let mut random = Random::new(SEED, 2);
         for _ in 0..10_000 {
             let (axis, radius) = (random.direction(), random.log_uniform(1e-3, 1e3));
@@ -170,19 +169,19 @@ mod tests {
             let at = |factor: f64| Line::new(away * factor + back, d);
             // Nearly along the plane the rim is too far away in the direction.
             if axis.dot(d).abs() > 0.01 {
-                assert!(at(1.0001).passes_disk(normal, radius));
+                assert!(at(1.0001).misses_disk(normal, radius));
             }
-            assert!(!at(1.0).passes_disk(normal, radius));
-            assert!(!at(0.9999).passes_disk(normal, radius));
+            assert!(!at(1.0).misses_disk(normal, radius));
+            assert!(!at(0.9999).misses_disk(normal, radius));
         }
     }
 
-    /// The radii are chosen for `E` = 0, but for a factor. The sign of `E` is told by
-    /// numbers of any length.
+    /// The radii are chosen for `E` = 0, up to a factor. Numbers of any length give the sign of
+    /// `E`.
     #[test]
-    fn walls_are_told_from_a_little_beyond_the_radii_on() {
+    fn walls_are_rejected_from_a_little_beyond_the_radii_on() {
         let mut random = Random::new(SEED, 1);
-        let mut told = 0;
+        let mut rejected = 0;
         for _ in 0..10_000 {
             let a = random.direction() * random.log_uniform(1e-3, 1e3);
             let (x, d) = (random.direction() * a.length() * 9.0, random.direction());
@@ -197,33 +196,33 @@ mod tests {
                     radius1: scale * other,
                     fit: Fit::Balls,
                 };
-                let passes = Line::new(x, d).passes_wall(&taper);
+                let misses = Line::new(x, d).misses_wall(&taper);
                 let e = sign(&Exactly {
                     taper: &taper,
                     x,
                     d,
                     term: Term::E,
                 });
-                assert!(!passes || e == Ordering::Less, "{taper:?} {x} {d}");
-                assert!(passes || factor > 0.99995, "{taper:?} {x} {d}");
-                told += usize::from(passes);
+                assert!(!misses || e == Ordering::Less, "{taper:?} {x} {d}");
+                assert!(misses || factor > 0.99995, "{taper:?} {x} {d}");
+                rejected += usize::from(misses);
             }
         }
-        assert_eq!(told, 10_000, "within 2^-19 nothing is told");
+        assert_eq!(rejected, 10_000, "within 2^-19 nothing is rejected");
     }
 
     #[test]
     fn what_is_no_number_or_too_small_is_left_to_the_solver() {
         let far = DVec3::new(0.0, 9.0, 0.0);
-        assert!(Line::new(far, DVec3::X).passes_ball(1.0));
-        assert!(!Line::new(far * f64::INFINITY, DVec3::X).passes_ball(1.0));
-        assert!(!Line::new(far * f64::NAN, DVec3::X).passes_ball(1.0));
-        assert!(!Line::new(far * power_of_two(-460), DVec3::X).passes_ball(0.0));
+        assert!(Line::new(far, DVec3::X).misses_ball(1.0));
+        assert!(!Line::new(far * f64::INFINITY, DVec3::X).misses_ball(1.0));
+        assert!(!Line::new(far * f64::NAN, DVec3::X).misses_ball(1.0));
+        assert!(!Line::new(far * power_of_two(-460), DVec3::X).misses_ball(0.0));
     }
 
-    /// Lines that come into the cone, of whose products most are lost.
+    /// Lines that enter the cone, with products most of which underflow.
     #[test]
-    fn lines_at_an_apex_are_not_told_by_what_underflow_left() {
+    fn lines_at_an_apex_are_not_rejected_by_what_underflow_left() {
         let cone = |a, radius1| Taper {
             a,
             radius0: 0.0,
@@ -233,9 +232,9 @@ mod tests {
         let beside = DVec3::Y * 7.233324068983989e-161;
         let d = DVec3::new(0.9998796021390856, 0.0, 0.015517126866271849);
         let wide = cone(DVec3::Z, power_of_two(90));
-        assert!(!Line::new(beside, d).passes_wall(&wide));
+        assert!(!Line::new(beside, d).misses_wall(&wide));
         let d = DVec3::new(0.3, 0.5, 0.7);
         let long = cone(DVec3::new(0.7, 0.2, -0.4) * power_of_two(149), 1.0);
-        assert!(!Line::new(d * -power_of_two(-540), d).passes_wall(&long));
+        assert!(!Line::new(d * -power_of_two(-540), d).misses_wall(&long));
     }
 }
