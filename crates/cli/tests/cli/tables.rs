@@ -294,7 +294,7 @@ fn neurons_in_any_layout_are_the_same() {
         ),
         (
             "id x y z radius type parent\n1 1 0 0 0 2 -1\n",
-            "n.swc:1: \"x\" is column 2, SWC has",
+            "n.swc:1: \"x\" is column 2: the columns of SWC are",
         ),
         (
             "1 1 0 0 0 2 -1\n1.0 1 0 0 0 2 -1\n",
