@@ -35,7 +35,6 @@ use super::output_sink::is_standard_stream;
 #[command(
     name = "cyltrace",
     version,
-    about,
     long_about = None,
     after_long_help = exit_codes::help(),
     max_term_width = 100

@@ -263,7 +263,7 @@ fn wrong_hits_fail_both_ways_with_ray_line_and_both_answers() {
 fn bad_tables_of_hits_are_refused_with_file_and_line() {
     let folder = folder(2);
     for (text, expected) in [
-        ("hit,t\n0,\n", "told.csv: there are 1 rows for 2 rays"),
+        ("hit,t\n0,\n", "told.csv: the table has 1 rows for 2 rays"),
         ("hit\n0\n0\n", "told.csv:1: the table has no column \"t\""),
         (
             "hit,t\n0,\n2,1\n",
