@@ -17,7 +17,7 @@ pub use figure::{Figure, Mark, Series, Symbol};
 pub use film::Film;
 pub use html::Page;
 pub use new_file::{FileError, NewFile, followed};
-pub use picture::{Format, Output, OutputError, png_bytes};
+pub use picture::{Format, Output, OutputError, film_png_bytes, png_bytes};
 pub use srgb::encode as srgb_encode;
 pub use table::{Table, figure, readable};
 pub use unfinished::{UnfinishedGuard, remove_unfinished};

@@ -1,0 +1,33 @@
+//! The part of the Python package `cyltrace` that is in Rust, its module `_core`.
+//!
+//! The Python part validates shapes and types and documents everything; it hands over
+//! contiguous arrays of f64. This part finds wrong rows, adds solids, traces and renders,
+//! always without the interpreter's lock.
+
+mod arrays;
+mod found;
+mod picture;
+mod scene;
+mod solid;
+mod tracer;
+mod work;
+
+use pyo3::prelude::*;
+
+/// See `python/cyltrace/_core.pyi`.
+#[pymodule]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<scene::PyScene>()?;
+    module.add_class::<solid::PySolid>()?;
+    module.add_class::<tracer::PyTracer>()?;
+    module.add_class::<found::Found>()?;
+    module.add_function(wrap_pyfunction!(picture::render, module)?)?;
+    module.add_function(wrap_pyfunction!(picture::png, module)?)?;
+    module.add_function(wrap_pyfunction!(picture::write_picture, module)?)?;
+    let kinds: Vec<&str> = found::kinds().map(|kind| kind.name()).collect();
+    module.add("SOLIDS", kinds)?;
+    let parts: Vec<&str> = found::PARTS.iter().map(|part| part.name()).collect();
+    module.add("PARTS", parts)?;
+    module.add("VERSION", env!("CARGO_PKG_VERSION"))?;
+    Ok(())
+}
