@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ._rows import Rows
+
 Floats = npt.NDArray[np.float64]
 Codes = npt.NDArray[np.uint8]
 Ints = npt.NDArray[np.int64]
@@ -48,65 +50,48 @@ class Scene:
     def add_material(self, name: str, color: list[float]) -> int: ...
     def add_cylinders(
         self,
-        prototype: int,
-        count: int,
+        rows: Rows,
         p0: Floats,
         p1: Floats,
         radius: Floats,
         caps: Codes,
-        material: int,
-        skips: bool,
     ) -> Added: ...
     def add_cones(
         self,
-        prototype: int,
-        count: int,
+        rows: Rows,
         p0: Floats,
         p1: Floats,
         radius0: Floats,
         radius1: Floats,
         caps: Codes,
-        material: int,
-        skips: bool,
     ) -> Added: ...
     def add_rounded_cones(
         self,
-        prototype: int,
-        count: int,
+        rows: Rows,
         p0: Floats,
         p1: Floats,
         radius0: Floats,
         radius1: Floats,
-        material: int,
-        skips: bool,
     ) -> Added: ...
     def add_spheres(
         self,
-        prototype: int,
-        count: int,
+        rows: Rows,
         center: Floats,
         radius: Floats,
-        material: int,
-        skips: bool,
     ) -> Added: ...
     def add_cuboids(
         self,
-        prototype: int,
-        count: int,
+        rows: Rows,
         center: Floats,
         half_widths: Floats,
         quaternion: Floats,
-        material: int,
     ) -> Added: ...
     def add_disks(
         self,
-        prototype: int,
-        count: int,
+        rows: Rows,
         center: Floats,
         normal: Floats,
         radius: Floats,
-        material: int,
-        skips: bool,
     ) -> Added: ...
     def add_composition(self, prototype: int, solid: Solid, material: int) -> int: ...
     def add_placements(self, prototype: int, of: int, matrices: Floats) -> int: ...

@@ -203,7 +203,7 @@ class Hits:
         directions = rows("directions", directions)
         if len(directions) not in (1, len(self)):
             raise ValueError(
-                f"directions has {len(directions)} rows: it must have one, or {len(self)} as the hits"
+                f"directions has {len(directions)} rows: it must have 1 or {len(self)}, as the hits"
             )
         origins = self._core.spawn(directions).reshape(-1, 3)
         return origins, np.broadcast_to(directions, origins.shape).copy()

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from ._arrays import Floats, Ints, common_length, numbers, rows
 from ._placements import NO_TURN, composed, stated
 from ._polylines import pairs
+from ._rows import Rows
 from ._solid import Solid
 
 if TYPE_CHECKING:
@@ -486,18 +487,17 @@ class Prototype:
         columns: list[Any],
         material: str | None,
         values: npt.ArrayLike | None,
-        degenerate: Degenerate | None = None,
+        degenerate: Degenerate = "error",
     ) -> Ints:
-        if degenerate not in (None, "error", "skip"):
+        if degenerate not in ("error", "skip"):
             raise ValueError(f'degenerate is {degenerate!r}: it must be "error" or "skip"')
         if values is not None:
             values = numbers("values", values)
             if len(values) not in (1, count):
                 raise ValueError(f"values has {len(values)} rows, and there are {count} solids")
             values = np.broadcast_to(values, count).copy()
-        more = [] if degenerate is None else [degenerate == "skip"]
         number = self._scene._material(material)
-        first, _ = add(self._index, count, *columns, number, *more)
+        first, _ = add(Rows(self._index, count, number, degenerate == "skip"), *columns)
         if values is not None:
             self._values.append((first, values))
         return np.arange(first, first + count, dtype=np.int64)

@@ -158,7 +158,10 @@ impl Found {
         py.detach(|| {
             let blocks = self.blocks.par_iter();
             let values = blocks.map(|block| block.values(&tracing.tracer, fields, &missing, &get));
-            tracing.workers.install(|| values.collect::<Vec<_>>()).concat()
+            tracing
+                .workers
+                .install(|| values.collect::<Vec<_>>())
+                .concat()
         })
     }
 }
@@ -307,7 +310,10 @@ impl Found {
                 };
                 (0..block.len()).map(origin).collect::<Vec<_>>()
             });
-            tracing.workers.install(|| blocks.collect::<Vec<_>>()).concat()
+            tracing
+                .workers
+                .install(|| blocks.collect::<Vec<_>>())
+                .concat()
         });
         Ok(array(py, origins.into_flattened()))
     }

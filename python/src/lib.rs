@@ -7,6 +7,8 @@
 mod arrays;
 mod found;
 mod picture;
+mod placement;
+mod rows;
 mod scene;
 mod solid;
 mod tracer;

@@ -4,96 +4,31 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use cyltrace::scene::{
-    Camera, CylinderList, CylinderRecord, Film, Frame, Integrator, Material, MaterialIndex,
-    Placement, Projection, Prototype, PrototypeIndex, Records, Scene, Sky, SolidRecord, Sun,
+    Camera, CylinderList, Film, Frame, Integrator, Material, MaterialIndex, Placement, Projection,
+    Prototype, Records, Scene, Sky, SolidRecord, Sun,
 };
 use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
-use glam::{DAffine3, DMat4, DVec3};
+use glam::DVec3;
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
-use rayon::prelude::*;
 
 use crate::arrays::{Numbers, Quaternions, Vectors, value_error};
+use crate::placement::placement;
+use crate::rows::{Rows, has_no_size, is_degenerate};
 use crate::solid::{PySolid, orientation};
 
 /// A scene. Tracers share it until it is changed.
 #[pyclass(name = "Scene", module = "cyltrace._core")]
 pub struct PyScene {
     pub scene: Arc<Scene>,
-    records: Records,
+    pub(crate) records: Records,
     /// For each prototype, the number of the next solid. Rows that were left out keep theirs.
-    next: Vec<u32>,
-}
-
-/// Rows of an array that become solids of one kind.
-struct Rows {
-    prototype: u32,
-    count: usize,
-    material: u16,
-    /// Whether rows that are no solid are left out.
-    skips: bool,
+    pub(crate) next: Vec<u32>,
 }
 
 impl PyScene {
-    /// Adds the solids of all rows, or none of them if a row is wrong. Returns the number of
-    /// the first and which rows were left out.
-    fn add(
-        &mut self,
-        py: Python<'_>,
-        rows: &Rows,
-        is_degenerate: impl Fn(usize) -> bool + Sync,
-        solid: impl Fn(usize) -> Result<AnySolid, String> + Sync,
-    ) -> PyResult<(u32, Vec<i64>)> {
-        let records = self.records;
-        let is_left_out = |row| rows.skips && is_degenerate(row);
-        // Once to find what is wrong, once to add it: a second copy of the solids would take
-        // as much memory as the scene.
-        let fault = || {
-            (0..rows.count).into_par_iter().find_map_first(|row| {
-                if is_left_out(row) {
-                    return None;
-                }
-                let fault = match solid(row) {
-                    Ok(solid) => rounding_fault(records, &solid)?,
-                    Err(fault) => fault,
-                };
-                Some(format!("row {row}: {fault}"))
-            })
-        };
-        if let Some(fault) = py.detach(fault) {
-            return Err(value_error(fault));
-        }
-        let first = self.next[rows.prototype as usize];
-        let prototype = self.prototype(rows.prototype)?;
-        let end = u64::from(first) + rows.count as u64;
-        if end > u64::from(u32::MAX) {
-            return Err(PyOverflowError::new_err(format!(
-                "a prototype has at most {} solids, and this makes {end}",
-                u32::MAX
-            )));
-        }
-        let material = MaterialIndex(rows.material);
-        let left_out = py.detach(|| {
-            let mut left_out = Vec::new();
-            for row in 0..rows.count {
-                if is_left_out(row) {
-                    left_out.push(row as i64);
-                    continue;
-                }
-                let solid = solid(row).expect("a row that was checked");
-                let record = SolidRecord::new(solid, first + row as u32, material);
-                let added = prototype.solids.push(record);
-                added.expect("a row that was checked");
-            }
-            left_out
-        });
-        self.next[rows.prototype as usize] = end as u32;
-        Arc::make_mut(&mut self.scene).skipped_rows += left_out.len() as u64;
-        Ok((first, left_out))
-    }
-
-    fn prototype(&mut self, index: u32) -> PyResult<&mut Prototype> {
+    pub(crate) fn prototype(&mut self, index: u32) -> PyResult<&mut Prototype> {
         let prototypes = &mut Arc::make_mut(&mut self.scene).prototypes;
         let prototype = prototypes.get_mut(index as usize);
         prototype.ok_or_else(|| value_error(format!("the scene has no prototype {index}")))
@@ -115,18 +50,6 @@ impl PyScene {
             }
         }
         false
-    }
-}
-
-/// Why a list that rounds cannot keep a solid, if it cannot.
-fn rounding_fault(records: Records, solid: &AnySolid) -> Option<String> {
-    match (records, solid) {
-        (Records::F32, AnySolid::Cylinder(cylinder)) => {
-            let record = CylinderRecord::new(cylinder, 0, MaterialIndex(0));
-            let pushed = CylinderList::new(Records::F32).push(record);
-            pushed.err().map(|error| format!("in f32, {error}"))
-        }
-        _ => None,
     }
 }
 
@@ -173,8 +96,12 @@ impl PyScene {
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         // A file that cannot be opened is an OSError, as everywhere in Python.
-        std::fs::File::open(&path)
-            .map_err(|error| PyErr::from(std::io::Error::new(error.kind(), format!("{}: {error}", path.display()))))?;
+        std::fs::File::open(&path).map_err(|error| {
+            PyErr::from(std::io::Error::new(
+                error.kind(),
+                format!("{}: {error}", path.display()),
+            ))
+        })?;
         let scene = py.detach(|| cyltrace::scene::load(&path));
         let scene = scene.map_err(|error| value_error(error.to_string()))?;
         let records = scene.records();
@@ -209,29 +136,19 @@ impl PyScene {
         Ok(number)
     }
 
-    #[expect(clippy::too_many_arguments, reason = "columns")]
     fn add_cylinders(
         &mut self,
         py: Python<'_>,
-        prototype: u32,
-        count: usize,
+        rows: Rows,
         p0: PyReadonlyArray2<'_, f64>,
         p1: PyReadonlyArray2<'_, f64>,
         radius: PyReadonlyArray1<'_, f64>,
         caps: PyReadonlyArray1<'_, u8>,
-        material: u16,
-        skips: bool,
     ) -> PyResult<(u32, Vec<i64>)> {
         let (p0, p1) = (Vectors::of(&p0)?, Vectors::of(&p1)?);
         let (radius, caps) = (Numbers::of(&radius)?, Numbers::of(&caps)?);
-        let rows = Rows {
-            prototype,
-            count,
-            material,
-            skips,
-        };
         let is_degenerate = |row| is_degenerate(p0.row(row), p1.row(row), &[radius.row(row)]);
-        self.add(py, &rows, is_degenerate, |row| {
+        self.add_rows(py, &rows, is_degenerate, |row| {
             let caps = caps_of(caps.row(row));
             let cylinder = Cylinder::new(p0.row(row), p1.row(row), radius.row(row), caps);
             cylinder.map(AnySolid::from).map_err(text)
@@ -242,30 +159,21 @@ impl PyScene {
     fn add_cones(
         &mut self,
         py: Python<'_>,
-        prototype: u32,
-        count: usize,
+        rows: Rows,
         p0: PyReadonlyArray2<'_, f64>,
         p1: PyReadonlyArray2<'_, f64>,
         radius0: PyReadonlyArray1<'_, f64>,
         radius1: PyReadonlyArray1<'_, f64>,
         caps: PyReadonlyArray1<'_, u8>,
-        material: u16,
-        skips: bool,
     ) -> PyResult<(u32, Vec<i64>)> {
         let (p0, p1) = (Vectors::of(&p0)?, Vectors::of(&p1)?);
         let (radius0, radius1) = (Numbers::of(&radius0)?, Numbers::of(&radius1)?);
         let caps = Numbers::of(&caps)?;
-        let rows = Rows {
-            prototype,
-            count,
-            material,
-            skips,
-        };
         let is_degenerate = |row| {
             let radii = [radius0.row(row), radius1.row(row)];
             is_degenerate(p0.row(row), p1.row(row), &radii)
         };
-        self.add(py, &rows, is_degenerate, |row| {
+        self.add_rows(py, &rows, is_degenerate, |row| {
             let (radius0, radius1) = (radius0.row(row), radius1.row(row));
             let caps = caps_of(caps.row(row));
             let cone = Cone::new(p0.row(row), p1.row(row), radius0, radius1, caps);
@@ -273,109 +181,75 @@ impl PyScene {
         })
     }
 
-    #[expect(clippy::too_many_arguments, reason = "columns")]
     fn add_rounded_cones(
         &mut self,
         py: Python<'_>,
-        prototype: u32,
-        count: usize,
+        rows: Rows,
         p0: PyReadonlyArray2<'_, f64>,
         p1: PyReadonlyArray2<'_, f64>,
         radius0: PyReadonlyArray1<'_, f64>,
         radius1: PyReadonlyArray1<'_, f64>,
-        material: u16,
-        skips: bool,
     ) -> PyResult<(u32, Vec<i64>)> {
         let (p0, p1) = (Vectors::of(&p0)?, Vectors::of(&p1)?);
         let (radius0, radius1) = (Numbers::of(&radius0)?, Numbers::of(&radius1)?);
-        let rows = Rows {
-            prototype,
-            count,
-            material,
-            skips,
-        };
         // Without length it is a ball.
         let is_degenerate = |row| has_no_size(&[radius0.row(row), radius1.row(row)]);
-        self.add(py, &rows, is_degenerate, |row| {
+        self.add_rows(py, &rows, is_degenerate, |row| {
             let (radius0, radius1) = (radius0.row(row), radius1.row(row));
             let solid = RoundedCone::new(p0.row(row), p1.row(row), radius0, radius1);
             solid.map(AnySolid::from).map_err(text)
         })
     }
 
-    #[expect(clippy::too_many_arguments, reason = "columns")]
     fn add_spheres(
         &mut self,
         py: Python<'_>,
-        prototype: u32,
-        count: usize,
+        rows: Rows,
         center: PyReadonlyArray2<'_, f64>,
         radius: PyReadonlyArray1<'_, f64>,
-        material: u16,
-        skips: bool,
     ) -> PyResult<(u32, Vec<i64>)> {
         let (center, radius) = (Vectors::of(&center)?, Numbers::of(&radius)?);
-        let rows = Rows {
-            prototype,
-            count,
-            material,
-            skips,
-        };
         let is_degenerate = |row| has_no_size(&[radius.row(row)]);
-        self.add(py, &rows, is_degenerate, |row| {
+        self.add_rows(py, &rows, is_degenerate, |row| {
             let sphere = Sphere::new(center.row(row), radius.row(row));
             sphere.map(AnySolid::from).map_err(text)
         })
     }
 
-    #[expect(clippy::too_many_arguments, reason = "columns")]
     fn add_cuboids(
         &mut self,
         py: Python<'_>,
-        prototype: u32,
-        count: usize,
+        rows: Rows,
         center: PyReadonlyArray2<'_, f64>,
         half_widths: PyReadonlyArray2<'_, f64>,
         quaternion: PyReadonlyArray2<'_, f64>,
-        material: u16,
     ) -> PyResult<(u32, Vec<i64>)> {
         let (center, half_widths) = (Vectors::of(&center)?, Vectors::of(&half_widths)?);
         let quaternion = Quaternions::of(&quaternion)?;
-        let rows = Rows {
-            prototype,
-            count,
-            material,
-            skips: false,
-        };
-        self.add(py, &rows, |_| false, |row| {
-            let orientation = orientation(quaternion.row(row))?;
-            let cuboid = Cuboid::new(center.row(row), half_widths.row(row), orientation);
-            cuboid.map(AnySolid::from).map_err(text)
-        })
+        self.add_rows(
+            py,
+            &rows,
+            |_| false,
+            |row| {
+                let orientation = orientation(quaternion.row(row))?;
+                let cuboid = Cuboid::new(center.row(row), half_widths.row(row), orientation);
+                cuboid.map(AnySolid::from).map_err(text)
+            },
+        )
     }
 
-    #[expect(clippy::too_many_arguments, reason = "columns")]
     fn add_disks(
         &mut self,
         py: Python<'_>,
-        prototype: u32,
-        count: usize,
+        rows: Rows,
         center: PyReadonlyArray2<'_, f64>,
         normal: PyReadonlyArray2<'_, f64>,
         radius: PyReadonlyArray1<'_, f64>,
-        material: u16,
-        skips: bool,
     ) -> PyResult<(u32, Vec<i64>)> {
         let (center, normal) = (Vectors::of(&center)?, Vectors::of(&normal)?);
         let radius = Numbers::of(&radius)?;
-        let rows = Rows {
-            prototype,
-            count,
-            material,
-            skips,
-        };
         let is_degenerate = |row| has_no_size(&[radius.row(row)]);
-        self.add(py, &rows, is_degenerate, |row| {
+        self.add_rows(py, &rows, is_degenerate, |row| {
             let disk = Disk::new(center.row(row), normal.row(row), radius.row(row));
             disk.map(AnySolid::from).map_err(text)
         })
@@ -422,7 +296,6 @@ impl PyScene {
         Ok(first as u32)
     }
 
-    #[expect(clippy::too_many_arguments, reason = "as the keys of a scene file")]
     fn set_camera(
         &mut self,
         position: Option<[f64; 3]>,
@@ -539,36 +412,6 @@ impl PyScene {
     fn skipped_rows(&self) -> u64 {
         self.scene.skipped_rows
     }
-}
-
-/// Whether a row is no solid but no mistake either: as tables have it.
-fn is_degenerate(p0: DVec3, p1: DVec3, radii: &[f64]) -> bool {
-    p0.is_nan() || p1.is_nan() || (p1 - p0).length() < Cylinder::LEAST || has_no_size(radii)
-}
-
-fn has_no_size(radii: &[f64]) -> bool {
-    let is_none = |radius: &f64| (0.0..Cylinder::LEAST).contains(radius);
-    radii.iter().any(|radius| radius.is_nan()) || radii.iter().all(is_none)
-}
-
-fn placement(of: u32, matrix: &[f64]) -> Result<Placement, String> {
-    // Rows of numbers, as NumPy keeps a matrix.
-    let matrix = DMat4::from_cols_slice(matrix).transpose();
-    if !matrix.is_finite() {
-        return Err("it has an entry that is no finite number".to_owned());
-    }
-    let last = matrix.row(3).to_array();
-    if last != [0.0, 0.0, 0.0, 1.0] {
-        return Err(format!("its last row is {last:?}: it must be 0, 0, 0, 1"));
-    }
-    let parent_from_child = DAffine3::from_mat4(matrix);
-    if parent_from_child.matrix3.determinant() == 0.0 {
-        return Err("it is singular: it must not flatten what it places".to_owned());
-    }
-    Ok(Placement {
-        of: PrototypeIndex(of),
-        parent_from_child,
-    })
 }
 
 /// The integrator of a name.

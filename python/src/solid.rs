@@ -1,9 +1,7 @@
 //! Solids by themselves, which set operations combine.
 
 use cyltrace::math::Orientation;
-use cyltrace::solid::{
-    AnySolid, Caps, Composition, Cone, Cuboid, Cylinder, RoundedCone, Sphere,
-};
+use cyltrace::solid::{AnySolid, Caps, Composition, Cone, Cuboid, Cylinder, RoundedCone, Sphere};
 use glam::{DQuat, DVec3};
 use pyo3::prelude::*;
 
@@ -110,9 +108,7 @@ impl PySolid {
                 Composition::Solid(_) => 0,
                 Composition::Union(parts)
                 | Composition::Intersection(parts)
-                | Composition::Difference(parts) => {
-                    1 + parts.iter().map(depth).max().unwrap_or(0)
-                }
+                | Composition::Difference(parts) => 1 + parts.iter().map(depth).max().unwrap_or(0),
             }
         }
         depth(&self.0)

@@ -50,7 +50,8 @@ impl PyTracer {
                 work.add(rows_count);
                 answers
             });
-            self.0.workers
+            self.0
+                .workers
                 .install(|| blocks.collect::<Vec<Option<Result<T, String>>>>())
         };
         let answers = if count <= FEW {
@@ -77,7 +78,8 @@ impl PyTracer {
     ) -> PyResult<Self> {
         let threads = threads
             .map(|threads| {
-                NonZeroUsize::new(threads).ok_or_else(|| value_error("threads is 0: it must be at least 1"))
+                NonZeroUsize::new(threads)
+                    .ok_or_else(|| value_error("threads is 0: it must be at least 1"))
             })
             .transpose()?;
         let layout = match layout {
@@ -99,7 +101,8 @@ impl PyTracer {
             ..Options::default()
         };
         let scene = Arc::clone(&scene.scene);
-        let workers = workers(threads).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+        let workers =
+            workers(threads).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
         let tracer = py.detach(|| workers.install(|| Tracer::new(scene, &options)));
         let tracer = tracer.map_err(|error| match error {
             cyltrace::tracer::TracerError::Embree(error) => {
@@ -146,7 +149,9 @@ impl PyTracer {
         let rays = rays(&origins, &directions, &t_min, &t_max)?;
         let blocks = self.answer(py, rays.len(), progress, |rows| {
             let mut blocked = Vec::new();
-            self.0.tracer.occluded_batch(&rays.rows(rows)?, &mut blocked);
+            self.0
+                .tracer
+                .occluded_batch(&rays.rows(rows)?, &mut blocked);
             Ok(blocked)
         })?;
         Ok(PyArray1::from_vec(py, blocks.concat()))

@@ -8,7 +8,13 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Runs every test and example in a folder of its own, where it may leave files."""
+    monkeypatch.chdir(tmp_path)
 
 
 @pytest.fixture
