@@ -2,7 +2,8 @@
 
 A :class:`Scene` is made of arrays or loaded from a file. A :class:`Tracer` answers which
 solids rays hit first, all hits, what is occluded and what contains points, in f64 and from
-the surfaces themselves: nothing is a mesh. :func:`render` makes pictures.
+the surfaces themselves: nothing is a mesh. :func:`render` makes pictures. :func:`check`
+validates the hits of any intersector.
 
 >>> import cyltrace
 >>> scene = cyltrace.Scene()
@@ -13,6 +14,7 @@ array([0])
 (array([3.5]), array([[0.5, 0. , 1. ]]))
 """
 
+from ._check import CLASSES, Check, Intersector, check, check_hits
 from ._core import VERSION as __version__
 from ._hits import PARTS, SOLIDS, AllHits, Hits, Located
 from ._picture import Picture, render
@@ -22,10 +24,13 @@ from ._solid import Solid
 from ._tracer import Tracer
 
 __all__ = [
+    "CLASSES",
     "PARTS",
     "SOLIDS",
     "AllHits",
+    "Check",
     "Hits",
+    "Intersector",
     "Located",
     "Picture",
     "Prototype",
@@ -33,6 +38,8 @@ __all__ = [
     "Solid",
     "Tracer",
     "__version__",
+    "check",
+    "check_hits",
     "load",
     "render",
 ]

@@ -18,7 +18,13 @@ Progress = Callable[[int, int], object] | None
 #: The number of the first solid, and the rows that were left out.
 Added = tuple[int, list[int]]
 
+#: Columns of hits: `t`, normals, and places.
+Answer = tuple[Floats, Floats | None, tuple[npt.NDArray[np.int8], Ints, Ints, Ints] | None]
+Closest = Callable[[Floats, Floats, Floats, Floats], Answer]
+
 VERSION: str
+CLASSES: list[str]
+GREATEST_RAYS: int
 SOLIDS: list[str]
 PARTS: list[str]
 
@@ -161,6 +167,33 @@ class Found:
     def take(self, positions: Ints) -> Found: ...
     def spawn(self, directions: Floats) -> Floats: ...
 
+class Check:
+    def json(self) -> str: ...
+    def text(self) -> str: ...
+    def verdict(self) -> str: ...
+    def write_page(self, path: str | os.PathLike[str], scene: str) -> None: ...
+
+def check(
+    tracer: Tracer,
+    intersector: tuple[str, Closest] | None,
+    rays: int,
+    classes: list[str] | None,
+    segments: list[int],
+    seed: int,
+    max_memory: int,
+    progress: Progress = None,
+) -> Check: ...
+def check_hits(
+    tracer: Tracer,
+    origins: Floats,
+    directions: Floats,
+    t_min: Floats,
+    t_max: Floats,
+    t: Floats,
+    tolerance: float | None,
+    progress: Progress = None,
+) -> Check: ...
+def parse_size(text: str) -> int: ...
 def render(
     tracer: Tracer,
     width: int | None,

@@ -35,8 +35,9 @@ class Scene(Prototype):
     def __init__(self, records: Literal["f64", "f32"] = "f64") -> None:
         self._become(_core.Scene(records))
 
-    def _become(self, core: _core.Scene) -> None:
+    def _become(self, core: _core.Scene, path: str | None = None) -> None:
         self._core = core
+        self._path = path
         super().__init__(self, 0, "")
         names = core.prototype_names()[1:]
         self._prototypes = {
@@ -220,7 +221,7 @@ def load(path: str | os.PathLike[str]) -> Scene:
         If it is no scene: the file, the line and what would be right.
     """
     scene = Scene.__new__(Scene)
-    scene._become(_core.Scene.load(os.fspath(path)))
+    scene._become(_core.Scene.load(os.fspath(path)), os.fspath(path))
     return scene
 
 

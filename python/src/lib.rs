@@ -5,6 +5,7 @@
 //! always without the interpreter's lock.
 
 mod arrays;
+mod check;
 mod found;
 mod picture;
 mod placement;
@@ -14,6 +15,8 @@ mod solid;
 mod tracer;
 mod work;
 
+use cyltrace::scene::GREATEST_RAYS;
+use cyltrace_check::Class;
 use pyo3::prelude::*;
 
 /// See `python/cyltrace/_core.pyi`.
@@ -23,6 +26,10 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<solid::PySolid>()?;
     module.add_class::<tracer::PyTracer>()?;
     module.add_class::<found::Found>()?;
+    module.add_class::<check::PyCheck>()?;
+    module.add_function(wrap_pyfunction!(check::check, module)?)?;
+    module.add_function(wrap_pyfunction!(check::check_hits, module)?)?;
+    module.add_function(wrap_pyfunction!(check::parse_size, module)?)?;
     module.add_function(wrap_pyfunction!(picture::render, module)?)?;
     module.add_function(wrap_pyfunction!(picture::png, module)?)?;
     module.add_function(wrap_pyfunction!(picture::write_picture, module)?)?;
@@ -30,6 +37,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("SOLIDS", kinds)?;
     let parts: Vec<&str> = found::PARTS.iter().map(|part| part.name()).collect();
     module.add("PARTS", parts)?;
+    let classes: Vec<&str> = Class::ALL.iter().map(|class| class.name()).collect();
+    module.add("CLASSES", classes)?;
+    module.add("GREATEST_RAYS", GREATEST_RAYS)?;
     module.add("VERSION", env!("CARGO_PKG_VERSION"))?;
     Ok(())
 }

@@ -21,6 +21,8 @@ use crate::work::{self, Work};
 pub struct Tracing {
     pub tracer: Tracer,
     pub workers: ThreadPool,
+    /// How many of them were requested.
+    pub threads: Option<NonZeroUsize>,
 }
 
 /// The same as Python knows it.
@@ -31,7 +33,7 @@ pub struct PyTracer(pub Arc<Tracing>);
 const FEW: usize = 64;
 
 /// The progress callback of a query.
-type Progress<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+pub type Progress<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 impl PyTracer {
     /// Answers `count` rays or points in blocks.
@@ -110,7 +112,11 @@ impl PyTracer {
             }
             error => value_error(error.to_string()),
         })?;
-        Ok(Self(Arc::new(Tracing { tracer, workers })))
+        Ok(Self(Arc::new(Tracing {
+            tracer,
+            workers,
+            threads,
+        })))
     }
 
     #[pyo3(signature = (origins, directions, t_min, t_max, progress=None))]
@@ -249,7 +255,11 @@ impl PyTracer {
     }
 }
 
-fn rays<'a>(
+/// The rays of columns of the same length, or of single rows for all rays.
+///
+/// # Errors
+/// When a column is not contiguous.
+pub fn rays<'a>(
     origins: &'a PyReadonlyArray2<'_, f64>,
     directions: &'a PyReadonlyArray2<'_, f64>,
     t_min: &'a PyReadonlyArray1<'_, f64>,
