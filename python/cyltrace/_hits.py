@@ -146,6 +146,20 @@ class Hits:
         return self._once("instance", lambda: self._core.column("instance"))
 
     @property
+    def placement(self) -> Ints:
+        """(n,) The number of the outermost placement, as ``scene.add_instances`` returned it; -1
+        for solids of the scene itself and rays that hit nothing."""
+
+        def outermost() -> Ints:
+            values, offsets = self.instance
+            placed = np.diff(offsets) > 0
+            numbers = np.full(len(self), -1, dtype=np.int64)
+            numbers[placed] = values[offsets[:-1][placed]]
+            return numbers
+
+        return self._once("placement", outermost)
+
+    @property
     def value(self) -> Floats:
         """(n,) The number that ``values`` gave the solid; NaN where there is none."""
         return self._once("value", self._value)

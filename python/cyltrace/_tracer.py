@@ -174,7 +174,7 @@ class Tracer:
         >>> cyltrace.Tracer(scene).contains([[0, 0, 1], [0, 0, 1.5]])
         array([ True, False])
         """
-        return self.locate(points, progress).counts > 0
+        return self._core.contains(rows("points", points), progress)
 
     def locate(self, points: npt.ArrayLike, progress: Progress | None = None) -> Located:
         """The solids that contain each point.

@@ -190,6 +190,22 @@ impl PyTracer {
         Ok((found, PyArray1::from_vec(py, counts.concat())))
     }
 
+    /// Whether any solid contains each point.
+    #[pyo3(signature = (points, progress=None))]
+    fn contains<'py>(
+        &self,
+        py: Python<'py>,
+        points: PyReadonlyArray2<'_, f64>,
+        progress: Progress,
+    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let points = Vectors::of(&points)?;
+        let blocks = self.answer(py, points.len(), progress, |rows| {
+            let contains = |row| !self.0.tracer.contains(points.row(row)).is_empty();
+            Ok(rows.map(contains).collect::<Vec<bool>>())
+        })?;
+        Ok(PyArray1::from_vec(py, blocks.concat()))
+    }
+
     /// The solids that contain each point: prototype, kind, primitive, the instance path and
     /// how many there are of each point.
     #[pyo3(signature = (points, progress=None))]

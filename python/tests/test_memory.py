@@ -12,11 +12,11 @@ import pytest
 from cyltrace import Scene, Tracer
 
 
-def resident_megabytes() -> float:
+def resident_megabytes(which: str = "VmRSS") -> float:
     status = Path("/proc/self/status")
     if not status.exists():
         pytest.skip("there is no /proc/self/status")
-    found = re.search(r"VmRSS:\s+(\d+) kB", status.read_text())
+    found = re.search(which + r":\s+(\d+) kB", status.read_text())
     assert found is not None
     return int(found[1]) / 1000
 
@@ -43,3 +43,17 @@ def test_ten_million_rays_do_not_grow_the_process() -> None:
     gc.collect()
     # A single column of a single query that is kept would be 8 MB or more, ten of them 80.
     assert resident_megabytes() - before < 60
+
+
+def test_containment_takes_no_memory_for_the_solids_that_it_finds() -> None:
+    scene = Scene()
+    # 200 balls contain each point: the list of them takes 200 MB or more.
+    scene.add_spheres(np.zeros((200, 3)), np.linspace(2, 3, 200))
+    tracer = Tracer(scene)
+    points = np.random.default_rng(8).uniform(-1, 1, (20_000, 3))
+    assert tracer.contains(points[:1000]).all()
+    before = resident_megabytes()
+    # From here on, VmHWM is the greatest amount that was resident.
+    Path("/proc/self/clear_refs").write_text("5")
+    assert tracer.contains(points).all()
+    assert resident_megabytes("VmHWM") - before < 60

@@ -155,6 +155,21 @@ def test_placements_compose_scale_turn_and_move() -> None:
     assert_array_equal(offsets, [0, 1, 2, 2])
 
 
+def test_placement_is_the_outermost_one() -> None:
+    scene = Scene()
+    scene.add_spheres([0, 0, 0], 1)
+    branch, tree = scene.prototype("branch"), scene.prototype("tree")
+    branch.add_spheres([0, 0, 0], 1)
+    tree.add_instances(branch, positions=[[0, 0, 0], [0, 3, 0]])
+    assert_array_equal(scene.add_instances(tree, positions=[[5, 0, 0], [10, 0, 0]]), [0, 1])
+    hits = Tracer(scene).closest(
+        [[0, 0, 9], [10, 3, 9], [-9, 0, 9], [5, 3, 9], [10, 0, 9]], [0, 0, -1]
+    )
+    assert_array_equal(hits.placement, [-1, 1, -1, 0, 1])
+    assert_array_equal(hits[[3, 0]].placement, [0, -1])
+    assert_array_equal(hits.instance[0], [1, 1, 0, 1, 1, 0])
+
+
 def test_placements_by_matrices_are_checked() -> None:
     scene = Scene()
     part = scene.prototype("part")

@@ -12,6 +12,7 @@ from cyltrace.trimesh import RayIntersector
 
 def test_methods_return_what_trimesh_returns_for_boxes() -> None:
     trimesh = pytest.importorskip("trimesh")
+    pytest.importorskip("rtree", reason="without embreex, trimesh traces with rtree")
     scene = Scene()
     centers = np.array([[0, 0, 0], [3, 0, 0], [0, 0, 5]])
     scene.add_cuboids(centers, [1, 1, 1])
