@@ -182,14 +182,21 @@ unsafe impl Sync for Caller {}
 
 impl Intersector for Caller {
     fn closest(&self, ray: &Ray) -> Option<ReportedHit> {
-        let ray = CyltraceRay::from(ray);
-        let mut hit = CyltraceHit::MISS;
-        // SAFETY: invariants 1 and 3: one ray and one hit that live through the
-        // call; the caller promised a function that takes them.
-        unsafe { (self.closest)(self.user, &raw const ray, 1, &raw mut hit) };
-        hit.finding().unwrap_or_else(|fault| {
-            self.fault.get_or_init(|| fault);
-            None
-        })
+        self.closest_of_each(slice::from_ref(ray)).pop()?
+    }
+
+    fn closest_of_each(&self, rays: &[Ray]) -> Vec<Option<ReportedHit>> {
+        let rays: Vec<CyltraceRay> = rays.iter().map(CyltraceRay::from).collect();
+        let mut hits = vec![CyltraceHit::MISS; rays.len()];
+        // SAFETY: invariants 1 and 3: as many rays as hits that live through the call; the
+        // caller promised a function that takes them.
+        unsafe { (self.closest)(self.user, rays.as_ptr(), rays.len(), hits.as_mut_ptr()) };
+        let finding = |hit: &CyltraceHit| {
+            hit.finding().unwrap_or_else(|fault| {
+                self.fault.get_or_init(|| fault);
+                None
+            })
+        };
+        hits.iter().map(finding).collect()
     }
 }

@@ -49,8 +49,8 @@ pub use outcome::{
 };
 pub use rays::around::rays_around;
 pub use replay::Replay;
-pub use report::page::{PageContent, page};
-pub use report::pictures::{Pictures, PicturesError, pictures};
+pub use report::page::{Checked, page};
+pub use report::pictures::PicturesError;
 pub use report::text::{summary, verdict, violation_text};
 pub use reported_hit::{Intersector, Place, ReportedHit};
 pub use run::compare::{compare, compare_with};

@@ -6,11 +6,26 @@ use cyltrace::math::Ray;
 use cyltrace::solid::Part;
 use cyltrace::tracer::{HitFields, Tracer};
 
+use crate::tally::BLOCK;
+
 /// Finds the first hit of a ray with the scene that it is checked against, from
 /// any number of threads.
 pub trait Intersector: Sync {
     /// The hit with the least `t` in the ray's range; `None` for a miss.
     fn closest(&self, ray: &Ray) -> Option<ReportedHit>;
+
+    /// The hit of each ray, in their order. A check calls this for all rays that it makes in
+    /// bulk; an intersector that is faster with many rays overrides it.
+    fn closest_of_each(&self, rays: &[Ray]) -> Vec<Option<ReportedHit>> {
+        rays.iter().map(|ray| self.closest(ray)).collect()
+    }
+
+    /// The greatest number of rays of a call of [`Intersector::closest_of_each`], at least 1.
+    /// It changes the speed of a check and not its outcome: more is faster if a call is
+    /// expensive, less keeps more threads busy and stops sooner.
+    fn batch(&self) -> u64 {
+        BLOCK
+    }
 }
 
 /// A hit as an intersector reports it.

@@ -95,6 +95,24 @@ impl Default for Settings {
     }
 }
 
+impl Settings {
+    /// The settings with each number of sides and each class once, in the order of tables.
+    #[must_use]
+    pub fn in_order(mut self) -> Self {
+        self.segments.sort_unstable();
+        self.segments.dedup();
+        self.classes.sort_unstable();
+        self.classes.dedup();
+        self
+    }
+
+    /// The rays that a check draws with these settings, in words.
+    #[must_use]
+    pub fn rays_text(&self) -> String {
+        format!("{} rays of each class, seed {}", self.rays, self.seed)
+    }
+}
+
 /// Why nothing could be checked.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckError {

@@ -12,11 +12,11 @@ use cyltrace_bench::{
     USUAL_TIMED, WallClock, contenders, draw, figure, page, records, summaries,
 };
 use cyltrace_oracle::cases::Family;
-use cyltrace_output::{Table, csv};
+use cyltrace_output::{Table, csv, write_text};
 use serde_json::{Value, json};
 
 use super::arguments::{AccuracyArguments, Bench, BenchArguments, Common};
-use super::output_sink::{make_directory, write_text};
+use super::output_sink::make_directory;
 use super::print::print;
 use super::{GOOD, interrupt, json, progress, scene};
 

@@ -6,9 +6,10 @@ use std::path::Path;
 use anyhow::Context;
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
+use cyltrace_output::write_text;
 
 use super::arguments::{Arguments, CompletionsArguments, ManArguments};
-use super::output_sink::{make_directory, write_text};
+use super::output_sink::make_directory;
 use super::print::print;
 
 /// Prints the completion script of a shell.

@@ -76,14 +76,6 @@ fn unwritten(path: &Path, source: io::Error) -> io::Error {
     io::Error::new(kind, FileError::System { path, source })
 }
 
-/// Writes a text file that is complete or absent.
-pub fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
-    let mut file = NewFile::create(path)?;
-    file.write_all(text.as_bytes())
-        .with_context(|| format!("cannot write {}", path.display()))?;
-    Ok(file.finish()?)
-}
-
 /// Creates the directory of a report if it does not exist.
 pub fn make_directory(directory: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(directory)

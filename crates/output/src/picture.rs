@@ -119,6 +119,16 @@ pub fn png_bytes(width: u32, height: u32, pixels: &[[u8; 4]]) -> Result<Vec<u8>,
     Ok(bytes)
 }
 
+/// The bytes of the PNG file that [`Output`] writes of a film.
+///
+/// # Errors
+/// If the encoder fails.
+pub fn film_png_bytes(film: &Film) -> Result<Vec<u8>, ImageError> {
+    let mut bytes = Vec::new();
+    png(film).write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png)?;
+    Ok(bytes)
+}
+
 fn png(film: &Film) -> ImageBuffer<Rgb<u8>, Vec<u8>> {
     let codes = film.pixels().iter().flatten().map(|&v| srgb::encode(v));
     ImageBuffer::from_raw(film.width(), film.height(), codes.collect())

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
+use std::slice;
 use std::sync::Mutex;
 use std::thread::{self, ThreadId};
 
@@ -264,7 +265,9 @@ unsafe extern "C" fn answer(
         user.threads.lock().unwrap().insert(thread::current().id());
         assert_eq!(cyltrace_closest(user.scene, rays, count, hits), CYLTRACE_OK);
         if let Some(part) = user.part {
-            (*hits).part = part;
+            for hit in slice::from_raw_parts_mut(hits, count) {
+                hit.part = part;
+            }
         }
     }
 }

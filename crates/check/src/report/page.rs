@@ -1,34 +1,78 @@
 //! The outcome of a check as a page.
 
-use super::pictures::Pictures;
+use super::pictures::{Pictures, PicturesError, pictures};
 use super::text::{DASH, HEADINGS, cells, tolerance_text, verdict, violation_text};
 use crate::outcome::{Outcome, Witness};
+use cyltrace::scene::Film;
+use cyltrace::tracer::Tracer;
 use cyltrace_output::{Figure, Mark, Page, Series, Symbol, figure};
 
-/// The content of a page.
-pub struct PageContent<'a> {
+/// The width of the pictures; they have the aspect ratio of the scene's.
+const PICTURE_WIDTH: u32 = 320;
+
+/// Sides of the meshes in the pictures: few enough to see the difference.
+const PICTURE_SEGMENTS: u32 = 16;
+
+/// A check, as its page describes it.
+pub struct Checked<'a> {
     /// The scene's name.
     pub scene: &'a str,
-    /// What was done, in a sentence.
-    pub sentence: &'a str,
+    /// Which rays were checked, such as `1000 rays of each class, seed 0`.
+    pub rays: &'a str,
     /// The outcome.
     pub outcome: &'a Outcome,
-    /// Pictures of the scene and its meshes. They have no place beside external hits.
-    pub pictures: Option<&'a Pictures>,
+    /// The scene, and Embree's version.
+    pub tracer: &'a Tracer,
+    /// Bytes that the meshes in the pictures may take.
+    pub max_memory: u64,
 }
 
-/// The page: a single file that fetches nothing.
-#[must_use]
-pub fn page(content: &PageContent) -> String {
-    let outcome = content.outcome;
+/// The page of a check, with pictures unless the hits are external: those show the meshes, which
+/// a check of external hits does not have. It is a single file that fetches nothing, and does
+/// not differ from run to run.
+///
+/// # Errors
+/// If a picture cannot be encoded.
+pub fn page(checked: &Checked) -> Result<String, PicturesError> {
+    let Checked {
+        scene,
+        outcome,
+        tracer,
+        ..
+    } = checked;
+    let is_external = outcome.rows.iter().any(|row| row.tolerance.is_some());
+    let pictures = if is_external {
+        None
+    } else {
+        let film = picture_film(tracer.scene().film);
+        pictures(tracer, PICTURE_SEGMENTS, film, checked.max_memory)?
+    };
+    let statistics = tracer.statistics();
+    let sentence = format!(
+        "{}; {}; Embree {} with {}.",
+        checked.rays, statistics.instanced, statistics.embree_version, statistics.isa
+    );
+    Ok(written(scene, &sentence, outcome, pictures.as_ref()))
+}
+
+/// A small picture of the same aspect ratio, unless that is extreme.
+fn picture_film(film: Film) -> Film {
+    let height = u64::from(PICTURE_WIDTH) * u64::from(film.height) / u64::from(film.width);
+    Film {
+        width: PICTURE_WIDTH,
+        height: height.clamp(1, 2 * u64::from(PICTURE_WIDTH)) as u32,
+    }
+}
+
+fn written(scene: &str, sentence: &str, outcome: &Outcome, pictures: Option<&Pictures>) -> String {
     let external = outcome.rows.iter().find(|row| row.tolerance.is_some());
     let subject = match external.map(|row| row.witness) {
         Some(Witness::UserHits) => "Hits of another program against exact ones",
         Some(_) => "Hits of a mesh against exact ones",
         None => "Analytic hits against meshes",
     };
-    let mut page = Page::new(&format!("{subject}: {}", content.scene));
-    page.note(content.sentence);
+    let mut page = Page::new(&format!("{subject}: {scene}"));
+    page.note(sentence);
     page.paragraph(&verdict(outcome));
     page.heading("Agreement");
     agreement_table(&mut page, outcome);
@@ -36,7 +80,7 @@ pub fn page(content: &PageContent) -> String {
         page.note(&text);
     }
     page.note(external.map_or(READING, |_| READING_EXTERNAL));
-    if let Some(pictures) = content.pictures {
+    if let Some(pictures) = pictures {
         show(&mut page, pictures);
     }
     if !outcome.convergence.is_empty() {
@@ -158,12 +202,7 @@ mod tests {
     #[test]
     fn page_has_table_figure_and_worst_rays_and_fetches_nothing() {
         let outcome = sample();
-        let text = page(&PageContent {
-            scene: "a & b",
-            sentence: "1000 rays",
-            outcome: &outcome,
-            pictures: None,
-        });
+        let text = written("a & b", "1000 rays", &outcome, None);
         for part in [
             "a &amp; b",
             "fails: 1 answer is wrong",

@@ -39,7 +39,7 @@ const TRIANGLE_BYTES: u64 = 200;
 
 /// Pictures as the bytes of PNG files.
 #[derive(Clone, Debug)]
-pub struct Pictures {
+pub(super) struct Pictures {
     /// The solids.
     pub analytic: Vec<u8>,
     /// The meshes.
@@ -80,11 +80,11 @@ struct Placed {
 }
 
 /// Draws the scene of `tracer` from its own camera, in the rayon pool that this is
-/// called in.
+/// called in. `None` if the meshes do not fit into the memory.
 ///
 /// # Errors
 /// If the encoder fails.
-pub fn pictures(
+pub(super) fn pictures(
     tracer: &Tracer,
     segments: u32,
     film: Film,

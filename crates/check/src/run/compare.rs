@@ -6,7 +6,7 @@
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use cyltrace::embree::Device;
+use cyltrace::embree::{Device, Ray32};
 use cyltrace::math::Ray;
 use cyltrace::scene::Scene;
 
@@ -18,7 +18,7 @@ use crate::outcome::{Expected, Outcome, Row, Violation, Witness};
 use crate::report::words::{truth_text, window_text, wrong_text};
 use crate::reported_hit::{Intersector, ReportedHit};
 use crate::settings::{CheckError, Class, Settings};
-use crate::tally::{BLOCK, Progress, Tally, in_blocks};
+use crate::tally::{Progress, Tally, in_blocks};
 use crate::verdict::answer::{Verdict, verdict};
 use crate::verdict::judge::solid_of;
 use crate::verdict::seen::{Scratch, Seen};
@@ -27,6 +27,9 @@ use crate::verdict::truth;
 
 /// One ray in this many goes to the oracle, which takes some milliseconds.
 const RAYS_A_TRUTH: u64 = 1000;
+
+/// Rays that go to the oracle at a time.
+const TRUTHS: u64 = 8;
 
 /// Checks an intersector of a scene.
 ///
@@ -118,16 +121,20 @@ impl<I: Intersector> Run<'_, I> {
             let meshes = Meshes::new(&self.device, subject.window, subject.frame, segments)?;
             missing.push((segments, meshes.missing()));
             for (&class, row) in self.settings.classes.iter().zip(rows) {
-                self.trace(subject, row, BLOCK, |range, scratch, tally| {
-                    for number in range {
-                        self.judge_by_meshes(subject, &meshes, class, number, scratch, tally);
+                let block = self.intersector.batch().max(1);
+                self.trace(subject, row, block, |range, scratch, tally| {
+                    for shot in self.shoot(subject, class, range) {
+                        self.judge_by_meshes(subject, &meshes, &shot, scratch, tally);
                     }
                 })?;
             }
         }
         for (&class, row) in self.settings.classes.iter().zip(oracle) {
-            self.trace(subject, row, RAYS_A_TRUTH, |range, (), tally| {
-                self.judge_by_oracle(subject, class, range.start, tally);
+            self.trace(subject, row, TRUTHS * RAYS_A_TRUTH, |range, (), tally| {
+                let numbers = range.step_by(RAYS_A_TRUTH as usize);
+                for shot in self.shoot(subject, class, numbers) {
+                    self.judge_by_oracle(subject, &shot, tally);
+                }
             })?;
         }
         let (window, number) = (subject.window, subject.number);
@@ -157,55 +164,63 @@ impl<I: Intersector> Run<'_, I> {
         (self.progress)(done.min(self.total), self.total)
     }
 
-    /// The number that a ray of a window has in its class.
-    fn index(&self, subject: &Subject, number: u64) -> u64 {
-        number * self.windows + subject.number
+    /// Draws the rays of a class with these numbers in the window, and lets the intersector
+    /// answer them.
+    fn shoot(
+        &self,
+        subject: &Subject,
+        class: Class,
+        numbers: impl Iterator<Item = u64>,
+    ) -> impl Iterator<Item = Shot> {
+        let indices: Vec<u64> = numbers
+            .map(|number| number * self.windows + subject.number)
+            .collect();
+        let (rays32, rays): (Vec<Ray32>, Vec<Ray>) = indices
+            .iter()
+            .map(|&index| subject.source.ray(class, index))
+            .unzip();
+        let answers = self.intersector.closest_of_each(&rays);
+        assert_eq!(answers.len(), rays.len(), "an intersector answers each ray");
+        let rays = rays32.into_iter().zip(rays);
+        let shots = indices.into_iter().zip(rays).zip(answers);
+        shots.map(|((index, (ray32, ray)), answer)| Shot {
+            index,
+            ray32,
+            ray,
+            answer,
+        })
     }
 
     fn judge_by_meshes(
         &self,
         subject: &Subject,
         meshes: &Meshes,
-        class: Class,
-        number: u64,
+        shot: &Shot,
         scratch: &mut Scratch,
         tally: &mut Tally,
     ) {
-        let index = self.index(subject, number);
-        let (ray32, ray) = subject.source.ray(class, index);
-        let answer = self.intersector.closest(&ray);
+        let Shot { ray32, ray, .. } = shot;
+        let answer = shot.answer.as_ref();
         tally.count(answer.is_some());
-        let found = verdict(
-            &subject.directory,
-            meshes,
-            (&ray32, &ray),
-            answer.as_ref(),
-            scratch,
-        );
+        let found = verdict(&subject.directory, meshes, (ray32, ray), answer, scratch);
         found.count(&mut tally.row);
         if let Verdict::Wrong(wrong) = found {
             if tally.listed.len() < self.settings.most_listed {
-                let truth = truth_text(subject.window, truth::first_hit(subject.window, &ray));
+                let truth = truth_text(subject.window, truth::first_hit(subject.window, ray));
                 let (low, high) = wrong.allowed();
                 let reason = format!("{}; {truth}", wrong_text(&wrong));
-                let t = answer.map(|hit| hit.t);
-                let expected = Expected::Between { low, high, reason };
-                tally
-                    .listed
-                    .push(Violation::new(&tally.row, index, ray, t, expected));
+                shot.list(Expected::Between { low, high, reason }, tally);
             }
-        } else if let (Some(hit), Verdict::Right { .. }) = (&answer, &found) {
-            let is_sphere = class == Class::Sphere;
-            measure(subject, meshes, &ray, hit, &scratch.seen, is_sphere, tally);
+        } else if let (Some(hit), Verdict::Right { .. }) = (answer, &found) {
+            measure(subject, meshes, ray, hit, &scratch.seen, tally);
         }
     }
 
-    fn judge_by_oracle(&self, subject: &Subject, class: Class, number: u64, tally: &mut Tally) {
-        let index = self.index(subject, number);
-        let (_, ray) = subject.source.ray(class, index);
-        let t = self.intersector.closest(&ray).map(|hit| hit.t);
+    fn judge_by_oracle(&self, subject: &Subject, shot: &Shot, tally: &mut Tally) {
+        let ray = &shot.ray;
+        let t = shot.answer.as_ref().map(|hit| hit.t);
         tally.count(t.is_some());
-        let Some(bounds) = truth::bounds(subject.window, &ray) else {
+        let Some(bounds) = truth::bounds(subject.window, ray) else {
             tally.row.unwitnessed += 1;
             return;
         };
@@ -217,12 +232,27 @@ impl<I: Intersector> Run<'_, I> {
             let expected = Expected::Between {
                 low: bounds.low,
                 high: bounds.high,
-                reason: truth_text(subject.window, truth::first_hit(subject.window, &ray)),
+                reason: truth_text(subject.window, truth::first_hit(subject.window, ray)),
             };
-            tally
-                .listed
-                .push(Violation::new(&tally.row, index, ray, t, expected));
+            shot.list(expected, tally);
         }
+    }
+}
+
+/// A ray with its number in its class, and the answer to it.
+struct Shot {
+    index: u64,
+    ray32: Ray32,
+    ray: Ray,
+    answer: Option<ReportedHit>,
+}
+
+impl Shot {
+    /// Lists a wrong answer.
+    fn list(&self, expected: Expected, tally: &mut Tally) {
+        let t = self.answer.as_ref().map(|hit| hit.t);
+        let violation = Violation::new(&tally.row, self.index, self.ray, t, expected);
+        tally.listed.push(violation);
     }
 }
 
@@ -233,7 +263,6 @@ fn measure(
     ray: &Ray,
     answer: &ReportedHit,
     seen: &[Seen],
-    is_sphere: bool,
     tally: &mut Tally,
 ) {
     let Some(hit) = solid_of(&subject.directory, answer, seen) else {
@@ -244,7 +273,7 @@ fn measure(
     };
     let dt = (inner - answer.t).abs();
     let local = LocalRay::new(&subject.window.solids[hit.solid as usize], ray);
-    if is_sphere {
+    if tally.row.class == Class::Sphere.name() {
         tally.dt_radii.push(local.radii(dt));
     }
     let part = answer.place.as_ref().map(|place| place.part);

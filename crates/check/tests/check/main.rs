@@ -11,9 +11,10 @@ mod solids;
 use std::path::Path;
 use std::sync::Arc;
 
+use cyltrace::math::Ray;
 use cyltrace::scene::{self, Scene};
 use cyltrace::tracer::{Options, Tracer};
-use cyltrace_check::{Class, Intersector, Outcome, Replay, Settings, replay};
+use cyltrace_check::{Class, Intersector, Outcome, Replay, ReportedHit, Settings, replay};
 
 use scenes::{random_scene, single_cylinder};
 
@@ -152,6 +153,43 @@ fn threads_do_not_change_the_outcome() {
         format!("{:?}", outcome.expect("an outcome"))
     };
     assert_eq!(with(1), with(3));
+}
+
+/// The tracer, with the greatest number of rays of a call.
+struct Batched<'a>(&'a Tracer, u64);
+
+impl Intersector for Batched<'_> {
+    fn closest(&self, _: &Ray) -> Option<ReportedHit> {
+        panic!("a check calls with many rays at a time");
+    }
+
+    fn closest_of_each(&self, rays: &[Ray]) -> Vec<Option<ReportedHit>> {
+        assert!((1..=self.1.max(8)).contains(&(rays.len() as u64)));
+        self.0.closest_of_each(rays)
+    }
+
+    fn batch(&self) -> u64 {
+        self.1
+    }
+}
+
+/// The outcome does not depend on the size of batches.
+#[test]
+fn batches_do_not_change_the_outcome() {
+    let scene = sample("minimal.toml");
+    let tracer = tracer(&scene);
+    let settings = Settings {
+        rays: 9_001,
+        segments: vec![16],
+        ..Settings::default()
+    };
+    let outcome_of = |outcome| format!("{:?}", Result::expect(outcome, "an outcome"));
+    let own = outcome_of(cyltrace_check::compare(&scene, &tracer, &settings));
+    for batch in [7, 4096] {
+        let batched = Batched(&tracer, batch);
+        let outcome = cyltrace_check::compare(&scene, &batched, &settings);
+        assert_eq!(outcome_of(outcome), own, "{batch}");
+    }
 }
 
 /// A ray is found again by its number and by its bits.

@@ -6,13 +6,13 @@ use cyltrace_bench::scale::{
 };
 use cyltrace_bench::traversal::Workers;
 use cyltrace_bench::{Environment, WallClock};
-use cyltrace_output::{Table, csv};
+use cyltrace_output::{Table, csv, write_text};
 use serde_json::{Value, json};
 
 use super::{print_summary, rays_sentence, with_environment};
 use crate::arguments::ScaleArguments;
 use crate::memory::{forget_peak, peak_resident_bytes};
-use crate::output_sink::{make_directory, write_text};
+use crate::output_sink::make_directory;
 use crate::{interrupt, json, progress, scene};
 
 /// Measures build time, memory and rays per second against the size of scenes.

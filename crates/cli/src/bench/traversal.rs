@@ -6,12 +6,12 @@ use cyltrace_bench::traversal::{
     SUMMARY_HEADINGS, SceneName, Traversal, Workers, figures, page, ratio_key, records, summary,
 };
 use cyltrace_bench::{Environment, ThreadClock, Timer, WallClock};
-use cyltrace_output::{Table, csv};
+use cyltrace_output::{Table, csv, write_text};
 use serde_json::{Map, Value, json};
 
 use super::{print_summary, rays_sentence, with_environment};
 use crate::arguments::TraversalArguments;
-use crate::output_sink::{make_directory, write_text};
+use crate::output_sink::make_directory;
 use crate::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
 
 /// Measures time, error and memory of everything that traces solids. The check fails if

@@ -9,16 +9,15 @@ use std::time::Instant;
 
 use anyhow::bail;
 use cyltrace::embree::DeviceOptions;
-use cyltrace::scene::Film;
 use cyltrace::tracer::{Options, Tracer};
-use cyltrace_check::{self, Class, Outcome, PageContent, Replay, Settings};
-use cyltrace_output::NewFile;
+use cyltrace_check::{self, Checked, Outcome, Replay, Settings};
+use cyltrace_output::{NewFile, write_text};
 use serde_json::{Value, json};
 
 use super::arguments::{CheckArguments, Rays};
 use super::limit::{MemoryLimit, Need};
 use super::memory::readable;
-use super::output_sink::{make_directory, write_text};
+use super::output_sink::make_directory;
 use super::outputs::Files;
 use super::print::print;
 use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
@@ -37,12 +36,6 @@ const ISA_DEPENDENT: [&str; 6] = [
 
 /// Wrong answers that are listed, of each kind.
 const MOST_LISTED: usize = 20;
-
-/// The width of the page's pictures; they have the aspect ratio of the scene's.
-const PICTURE_WIDTH: u32 = 320;
-
-/// Sides of the meshes in the pictures: few enough to see the difference.
-const PICTURE_SEGMENTS: u32 = 16;
 
 /// Runs the check. The exit code is 0 if it passes.
 pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
@@ -130,26 +123,15 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
     let elapsed = start.elapsed().as_secs_f64();
 
     if let Some(page) = &page_path {
-        // The pictures show the meshes, which a check of external hits does not have.
-        let pictures = if external.is_some() {
-            None
-        } else {
-            workers.install(|| {
-                cyltrace_check::pictures(
-                    &tracer,
-                    PICTURE_SEGMENTS,
-                    picture_film(loaded.film),
-                    arguments.max_memory,
-                )
-            })?
-        };
-        interrupt::check()?;
-        let text = cyltrace_check::page(&PageContent {
+        let checked = Checked {
             scene: &arguments.scene.display().to_string(),
-            sentence: &sentence(arguments, &tracer, &outcome),
+            rays: &rays_text(arguments, &settings, &outcome),
             outcome: &outcome,
-            pictures: pictures.as_ref(),
-        });
+            tracer: &tracer,
+            max_memory: arguments.max_memory,
+        };
+        let text = workers.install(|| cyltrace_check::page(&checked))?;
+        interrupt::check()?;
         write_text(page, &text)?;
     }
     json::write(common, &figures(arguments, &tracer, &outcome, elapsed))?;
@@ -210,24 +192,21 @@ fn files<'a>(arguments: &'a CheckArguments, page: Option<&'a PathBuf>) -> Files<
 }
 
 fn settings(arguments: &CheckArguments) -> Settings {
-    let mut segments = arguments.segments.clone();
-    segments.sort_unstable();
-    segments.dedup();
-    let is_wanted = |class: &Class| arguments.class.is_empty() || arguments.class.contains(class);
     let mut settings = Settings {
-        segments,
-        // Each once, in the order of the table.
-        classes: Class::ALL.into_iter().filter(is_wanted).collect(),
+        segments: arguments.segments.clone(),
         seed: arguments.seed,
         max_memory: arguments.max_memory,
         most_listed: MOST_LISTED,
         device: device_options(arguments),
         ..Settings::default()
     };
+    if !arguments.class.is_empty() {
+        settings.classes.clone_from(&arguments.class);
+    }
     if let Rays::Count(count) = arguments.rays {
         settings.rays = count;
     }
-    settings
+    settings.in_order()
 }
 
 fn device_options(arguments: &CheckArguments) -> DeviceOptions {
@@ -237,35 +216,20 @@ fn device_options(arguments: &CheckArguments) -> DeviceOptions {
     }
 }
 
-/// A small picture of the same aspect ratio, unless that is extreme.
-fn picture_film(film: Film) -> Film {
-    let height = u64::from(PICTURE_WIDTH) * u64::from(film.height) / u64::from(film.width);
-    Film {
-        width: PICTURE_WIDTH,
-        height: height.clamp(1, 2 * u64::from(PICTURE_WIDTH)) as u32,
-    }
-}
-
-/// What was checked, without anything that differs from run to run.
-fn sentence(arguments: &CheckArguments, tracer: &Tracer, outcome: &Outcome) -> String {
+/// Which rays were checked, without anything that differs from run to run.
+fn rays_text(arguments: &CheckArguments, settings: &Settings, outcome: &Outcome) -> String {
     let compared = arguments.hits.as_ref().or(arguments.mesh.as_ref());
-    let compared = compared.map_or_else(String::new, |path| format!("{}: ", path.display()));
-    let given = outcome.rays();
-    let rays = match &arguments.rays {
-        Rays::Table(path) => format!("{compared}{given} rays of {}", path.display()),
-        Rays::Count(count) if compared.is_empty() => {
-            format!("{count} rays of each class, seed {}", arguments.seed)
-        }
+    let Some(compared) = compared.map(|path| path.display()) else {
+        return settings.rays_text();
+    };
+    let rays = outcome.rays();
+    match &arguments.rays {
+        Rays::Table(path) => format!("{compared}: {rays} rays of {}", path.display()),
         Rays::Count(_) => format!(
-            "{compared}{given} rays around the scene, seed {}",
+            "{compared}: {rays} rays around the scene, seed {}",
             arguments.seed
         ),
-    };
-    let statistics = tracer.statistics();
-    format!(
-        "{rays}; {}; Embree {} with {}.",
-        statistics.instanced, statistics.embree_version, statistics.isa
-    )
+    }
 }
 
 /// The figures as JSON: those of the outcome, and of this run.

@@ -9,10 +9,11 @@ use std::time::Instant;
 
 use cyltrace_bench::stress::{self, Cell, Contender, Promise, Settings, StressFamily};
 use cyltrace_oracle::cases::Inputs;
+use cyltrace_output::write_text;
 use serde_json::{Value, json};
 
 use super::arguments::StressArguments;
-use super::output_sink::{make_directory, write_text};
+use super::output_sink::make_directory;
 use super::print::print;
 use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
 

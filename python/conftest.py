@@ -1,0 +1,34 @@
+"""What the tests share."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Runs every test and example in a folder of its own, where it may leave files."""
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def scenes() -> Path:
+    """The folder of the sample scenes."""
+    return ROOT / "scenes"
+
+
+@pytest.fixture
+def program() -> str:
+    """The program `cyltrace` of the same checkout."""
+    target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+    stated = os.environ.get("CYLTRACE_PROGRAM", str(target / "release" / "cyltrace"))
+    found = shutil.which(stated)
+    if found is None:
+        pytest.skip(f"{stated} is not there: build it with `cargo build --release`")
+    return found

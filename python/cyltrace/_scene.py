@@ -1,0 +1,239 @@
+"""Scenes."""
+
+from __future__ import annotations
+
+import os
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._arrays import vector
+from ._prototype import Prototype
+
+
+class Scene(Prototype):
+    """A scene: solids, placed prototypes, materials, lights and a camera.
+
+    Parameters
+    ----------
+    records : "f64" or "f32"
+        The precision in which cylinders are kept: 64 or 32 bytes each. In f32 they are
+        rounded once, and hits are those of the rounded cylinders, as exact as ever.
+
+    Examples
+    --------
+    >>> import cyltrace
+    >>> scene = cyltrace.Scene()
+    >>> scene.add_spheres([[0, 0, 0], [3, 0, 0]], 1.0)
+    array([0, 1])
+    >>> scene
+    <cyltrace scene: 2 solids, 0 placements>
+    """
+
+    def __init__(self, records: Literal["f64", "f32"] = "f64") -> None:
+        self._become(_core.Scene(records))
+
+    def _become(self, core: _core.Scene, path: str | None = None) -> None:
+        self._core = core
+        self._path = path
+        super().__init__(self, 0, "")
+        names = core.prototype_names()[1:]
+        self._prototypes = {
+            name: Prototype(self, index, name) for index, name in enumerate(names, 1)
+        }
+        self._materials = {name: code for code, name in enumerate(core.material_names())}
+
+    @property
+    def prototypes(self) -> dict[str, Prototype]:
+        """The prototypes by their names, without the scene itself."""
+        return dict(self._prototypes)
+
+    @property
+    def notes(self) -> list[str]:
+        """What loading found worth a note, such as columns that are not read."""
+        return self._core.notes
+
+    @property
+    def skipped_rows(self) -> int:
+        """The rows that were left out because of ``degenerate="skip"``."""
+        return self._core.skipped_rows
+
+    def prototype(self, name: str) -> Prototype:
+        """Makes a prototype, or returns the one that has this name already."""
+        if not name:
+            raise ValueError("a prototype needs a name")
+        if name not in self._prototypes:
+            index = self._core.add_prototype(name)
+            self._prototypes[name] = Prototype(self, index, name)
+        return self._prototypes[name]
+
+    def add_material(self, name: str, color: npt.ArrayLike) -> str:
+        """Adds a diffuse material and returns its name.
+
+        Parameters
+        ----------
+        name : str
+            Not empty, and not the name of another material.
+        color : (3,)
+            Linear RGB reflectance, each in [0, 1].
+        """
+        if not name or name in self._materials:
+            reason = "is in use" if name else "is empty"
+            raise ValueError(f"the name {name!r} of a material {reason}")
+        reflectance = vector("color", color)
+        if not all(0.0 <= part <= 1.0 for part in reflectance):
+            raise ValueError(f"color is {reflectance}: each number must be in [0, 1]")
+        self._materials[name] = self._core.add_material(name, reflectance)
+        return name
+
+    def set_camera(
+        self,
+        position: npt.ArrayLike | None = None,
+        look_at: npt.ArrayLike | None = None,
+        up: npt.ArrayLike = (0.0, 0.0, 1.0),
+        *,
+        fov_degrees: float = 40.0,
+        orthographic: bool = False,
+        height: float | None = None,
+    ) -> None:
+        """Aims the camera. Without ``position`` and ``look_at``, the whole scene is in the picture.
+
+        Parameters
+        ----------
+        position, look_at : (3,), optional
+            The eye and a point in the middle of the picture: both or neither.
+        up : (3,)
+            The direction that is upward in the picture, not along the view.
+        fov_degrees : float in (0, 180)
+            The vertical angle of view of a perspective.
+        orthographic : bool
+            Whether lines of sight are parallel.
+        height : float, optional
+            Scene units across the height of an orthographic picture; fits the scene otherwise.
+        """
+        if (position is None) != (look_at is None):
+            raise ValueError("position and look_at go together: give both or neither")
+        if not 0.0 < fov_degrees < 180.0:
+            raise ValueError(f"fov_degrees is {fov_degrees}: it must be between 0 and 180")
+        if height is not None and not 0.0 < height < np.inf:
+            raise ValueError(f"height is {height}: it must be positive")
+        upward = np.array(vector("up", up))
+        if position is not None and look_at is not None:
+            eye = np.array(vector("position", position))
+            view = np.array(vector("look_at", look_at)) - eye
+            # As a scene file demands: the sine of the angle between them is at least 1e-6.
+            lengths = float(np.linalg.norm(view) * np.linalg.norm(upward))
+            if not float(np.linalg.norm(np.cross(view, upward))) >= 1e-6 * lengths > 0.0:
+                raise ValueError(
+                    "position, look_at and up leave no picture: look_at must be another point "
+                    "than position, and up not along the view"
+                )
+        self._core.set_camera(
+            None if position is None else vector("position", position),
+            None if look_at is None else vector("look_at", look_at),
+            vector("up", up),
+            orthographic,
+            float(fov_degrees),
+            None if height is None else float(height),
+        )
+
+    def set_sun(
+        self,
+        direction: npt.ArrayLike | None = None,
+        *,
+        elevation_degrees: float = 40.0,
+        azimuth_degrees: float = 135.0,
+        color: npt.ArrayLike = (1.0, 0.95, 0.9),
+        strength: float = 3.0,
+    ) -> None:
+        """Adds the sun, or replaces it.
+
+        Parameters
+        ----------
+        direction : (3,), optional
+            Towards the sun, of any length; instead of the two angles.
+        elevation_degrees : float in [-90, 90]
+            The angle above the x-y plane.
+        azimuth_degrees : float
+            The angle from the x axis towards the y axis.
+        color : (3,)
+            Linear RGB, not negative.
+        strength : float
+            Factor on ``color``: irradiance on a surface that faces the sun.
+        """
+        if direction is None:
+            if not -90.0 <= elevation_degrees <= 90.0:
+                raise ValueError(
+                    f"elevation_degrees is {elevation_degrees}: it must be in [-90, 90]"
+                )
+            up, around = np.radians([elevation_degrees, azimuth_degrees])
+            towards = np.array(
+                [np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)]
+            )
+        else:
+            towards = np.array(vector("direction", direction))
+        length = float(np.linalg.norm(towards))
+        if not 0.0 < length < np.inf:
+            raise ValueError(f"direction is {towards.tolist()}: it must not be zero")
+        unit = (towards / length).tolist()
+        self._core.set_sun(unit, _light("color", color), _strength(strength))
+
+    def set_sky(self, color: npt.ArrayLike = (0.5, 0.7, 1.0), strength: float = 1.0) -> None:
+        """Adds light from every direction, which is also seen behind the scene.
+
+        Parameters
+        ----------
+        color : (3,)
+            Linear RGB, not negative.
+        strength : float
+            Factor on ``color``.
+        """
+        self._core.set_sky(_light("color", color), _strength(strength))
+
+    def set_background(self, color: npt.ArrayLike) -> None:
+        """The linear RGB that is seen where a scene without a sky is not hit."""
+        self._core.set_background(_light("color", color))
+
+    def _material(self, name: str | None) -> int:
+        if name is None:
+            return 0
+        if not name or name not in self._materials:
+            known = ", ".join(repr(other) for other in self._materials if other)
+            raise ValueError(f"there is no material {name!r}: there are {known or 'none'}")
+        return self._materials[name]
+
+
+def load(path: str | os.PathLike[str]) -> Scene:
+    """Loads a scene file, with the tables and other files that it names.
+
+    Parameters
+    ----------
+    path : str or path
+        A scene in TOML (docs/scene-file.md).
+
+    Raises
+    ------
+    OSError
+        If the file cannot be opened.
+    ValueError
+        If it is no scene: the file, the line and what would be right.
+    """
+    scene = Scene.__new__(Scene)
+    scene._become(_core.Scene.load(os.fspath(path)), os.fspath(path))
+    return scene
+
+
+def _light(name: str, value: npt.ArrayLike) -> list[float]:
+    color = vector(name, value)
+    if min(color) < 0.0:
+        raise ValueError(f"{name} is {color}: no number may be negative")
+    return color
+
+
+def _strength(value: float) -> float:
+    strength = float(value)
+    if not 0.0 <= strength < np.inf:
+        raise ValueError(f"strength is {strength}: it must be finite and not negative")
+    return strength

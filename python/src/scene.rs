@@ -1,0 +1,432 @@
+//! Scenes made of arrays, or loaded from files.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use cyltrace::scene::{
+    Camera, CylinderList, Film, Frame, Integrator, Material, MaterialIndex, Placement, Projection,
+    Prototype, Records, Scene, Sky, SolidRecord, Sun,
+};
+use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
+use glam::DVec3;
+use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyOverflowError;
+use pyo3::prelude::*;
+
+use crate::arrays::{Numbers, Quaternions, Vectors, value_error};
+use crate::placement::placement;
+use crate::rows::{Rows, has_no_size, is_degenerate};
+use crate::solid::{PySolid, orientation};
+
+/// A scene. Tracers share it until it is changed.
+#[pyclass(name = "Scene", module = "cyltrace._core")]
+pub struct PyScene {
+    pub scene: Arc<Scene>,
+    pub(crate) records: Records,
+    /// For each prototype, the number of the next solid. Rows that were left out keep theirs.
+    pub(crate) next: Vec<u32>,
+}
+
+impl PyScene {
+    pub(crate) fn prototype(&mut self, index: u32) -> PyResult<&mut Prototype> {
+        let prototypes = &mut Arc::make_mut(&mut self.scene).prototypes;
+        let prototype = prototypes.get_mut(index as usize);
+        prototype.ok_or_else(|| value_error(format!("the scene has no prototype {index}")))
+    }
+
+    /// Whether a prototype places another, itself or through others, or is the other.
+    fn reaches(&self, from: u32, to: u32) -> bool {
+        let mut seen = vec![false; self.scene.prototypes.len()];
+        let mut stack = vec![from];
+        while let Some(index) = stack.pop() {
+            if index == to {
+                return true;
+            }
+            if !std::mem::replace(&mut seen[index as usize], true) {
+                let placements = self.scene.prototypes[index as usize].placements.iter();
+                let mut placed: Vec<u32> = placements.map(|placement| placement.of.0).collect();
+                placed.dedup();
+                stack.extend(placed);
+            }
+        }
+        false
+    }
+}
+
+/// The number of the next solid: one more than the greatest.
+fn next_primitive(prototype: &Prototype) -> u32 {
+    use cyltrace::solid::SolidKind;
+    let last = SolidKind::LISTS.iter().filter_map(|&kind| {
+        let count = prototype.solids.len_of(kind);
+        (count > 0).then(|| prototype.solids.primitive(kind, count - 1))
+    });
+    last.max().map_or(0, |last| last + 1)
+}
+
+fn caps_of(code: u8) -> Caps {
+    Caps::at(code & 1 != 0, code & 2 != 0)
+}
+
+fn text(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}
+
+#[pymethods]
+impl PyScene {
+    #[new]
+    fn new(records: &str) -> PyResult<Self> {
+        let records = match records {
+            "f64" => Records::F64,
+            "f32" => Records::F32,
+            other => {
+                return Err(value_error(format!(
+                    "records is \"{other}\": it must be \"f64\" or \"f32\""
+                )));
+            }
+        };
+        let mut scene = Self {
+            scene: Arc::new(Scene::new(Vec::new())),
+            records,
+            next: Vec::new(),
+        };
+        scene.add_prototype(String::new());
+        Ok(scene)
+    }
+
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        // A file that cannot be opened is an OSError, as everywhere in Python.
+        std::fs::File::open(&path).map_err(|error| {
+            PyErr::from(std::io::Error::new(
+                error.kind(),
+                format!("{}: {error}", path.display()),
+            ))
+        })?;
+        let scene = py.detach(|| cyltrace::scene::load(&path));
+        let scene = scene.map_err(|error| value_error(error.to_string()))?;
+        let records = scene.records();
+        Ok(Self {
+            next: scene.prototypes.iter().map(next_primitive).collect(),
+            scene: Arc::new(scene),
+            records,
+        })
+    }
+
+    fn add_prototype(&mut self, name: String) -> u32 {
+        let records = self.records;
+        let prototypes = &mut Arc::make_mut(&mut self.scene).prototypes;
+        let mut prototype = Prototype {
+            name,
+            ..Prototype::default()
+        };
+        prototype.solids.cylinders = CylinderList::new(records);
+        prototypes.push(prototype);
+        self.next.push(0);
+        self.next.len() as u32 - 1
+    }
+
+    fn add_material(&mut self, name: String, color: [f64; 3]) -> PyResult<u16> {
+        let materials = &mut Arc::make_mut(&mut self.scene).materials;
+        let number = u16::try_from(materials.len())
+            .map_err(|_| value_error(format!("a scene has at most {} materials", u16::MAX)))?;
+        materials.push(Material {
+            name,
+            color: color.into(),
+        });
+        Ok(number)
+    }
+
+    fn add_cylinders(
+        &mut self,
+        py: Python<'_>,
+        rows: Rows,
+        p0: PyReadonlyArray2<'_, f64>,
+        p1: PyReadonlyArray2<'_, f64>,
+        radius: PyReadonlyArray1<'_, f64>,
+        caps: PyReadonlyArray1<'_, u8>,
+    ) -> PyResult<(u32, Vec<i64>)> {
+        let (p0, p1) = (Vectors::of(&p0)?, Vectors::of(&p1)?);
+        let (radius, caps) = (Numbers::of(&radius)?, Numbers::of(&caps)?);
+        let is_degenerate = |row| is_degenerate(p0.row(row), p1.row(row), &[radius.row(row)]);
+        self.add_rows(py, &rows, is_degenerate, |row| {
+            let caps = caps_of(caps.row(row));
+            let cylinder = Cylinder::new(p0.row(row), p1.row(row), radius.row(row), caps);
+            cylinder.map(AnySolid::from).map_err(text)
+        })
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "columns")]
+    fn add_cones(
+        &mut self,
+        py: Python<'_>,
+        rows: Rows,
+        p0: PyReadonlyArray2<'_, f64>,
+        p1: PyReadonlyArray2<'_, f64>,
+        radius0: PyReadonlyArray1<'_, f64>,
+        radius1: PyReadonlyArray1<'_, f64>,
+        caps: PyReadonlyArray1<'_, u8>,
+    ) -> PyResult<(u32, Vec<i64>)> {
+        let (p0, p1) = (Vectors::of(&p0)?, Vectors::of(&p1)?);
+        let (radius0, radius1) = (Numbers::of(&radius0)?, Numbers::of(&radius1)?);
+        let caps = Numbers::of(&caps)?;
+        let is_degenerate = |row| {
+            let radii = [radius0.row(row), radius1.row(row)];
+            is_degenerate(p0.row(row), p1.row(row), &radii)
+        };
+        self.add_rows(py, &rows, is_degenerate, |row| {
+            let (radius0, radius1) = (radius0.row(row), radius1.row(row));
+            let caps = caps_of(caps.row(row));
+            let cone = Cone::new(p0.row(row), p1.row(row), radius0, radius1, caps);
+            cone.map(AnySolid::from).map_err(text)
+        })
+    }
+
+    fn add_rounded_cones(
+        &mut self,
+        py: Python<'_>,
+        rows: Rows,
+        p0: PyReadonlyArray2<'_, f64>,
+        p1: PyReadonlyArray2<'_, f64>,
+        radius0: PyReadonlyArray1<'_, f64>,
+        radius1: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<(u32, Vec<i64>)> {
+        let (p0, p1) = (Vectors::of(&p0)?, Vectors::of(&p1)?);
+        let (radius0, radius1) = (Numbers::of(&radius0)?, Numbers::of(&radius1)?);
+        // Without length it is a ball.
+        let is_degenerate = |row| has_no_size(&[radius0.row(row), radius1.row(row)]);
+        self.add_rows(py, &rows, is_degenerate, |row| {
+            let (radius0, radius1) = (radius0.row(row), radius1.row(row));
+            let solid = RoundedCone::new(p0.row(row), p1.row(row), radius0, radius1);
+            solid.map(AnySolid::from).map_err(text)
+        })
+    }
+
+    fn add_spheres(
+        &mut self,
+        py: Python<'_>,
+        rows: Rows,
+        center: PyReadonlyArray2<'_, f64>,
+        radius: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<(u32, Vec<i64>)> {
+        let (center, radius) = (Vectors::of(&center)?, Numbers::of(&radius)?);
+        let is_degenerate = |row| has_no_size(&[radius.row(row)]);
+        self.add_rows(py, &rows, is_degenerate, |row| {
+            let sphere = Sphere::new(center.row(row), radius.row(row));
+            sphere.map(AnySolid::from).map_err(text)
+        })
+    }
+
+    fn add_cuboids(
+        &mut self,
+        py: Python<'_>,
+        rows: Rows,
+        center: PyReadonlyArray2<'_, f64>,
+        half_widths: PyReadonlyArray2<'_, f64>,
+        quaternion: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<(u32, Vec<i64>)> {
+        let (center, half_widths) = (Vectors::of(&center)?, Vectors::of(&half_widths)?);
+        let quaternion = Quaternions::of(&quaternion)?;
+        self.add_rows(
+            py,
+            &rows,
+            |_| false,
+            |row| {
+                let orientation = orientation(quaternion.row(row))?;
+                let cuboid = Cuboid::new(center.row(row), half_widths.row(row), orientation);
+                cuboid.map(AnySolid::from).map_err(text)
+            },
+        )
+    }
+
+    fn add_disks(
+        &mut self,
+        py: Python<'_>,
+        rows: Rows,
+        center: PyReadonlyArray2<'_, f64>,
+        normal: PyReadonlyArray2<'_, f64>,
+        radius: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<(u32, Vec<i64>)> {
+        let (center, normal) = (Vectors::of(&center)?, Vectors::of(&normal)?);
+        let radius = Numbers::of(&radius)?;
+        let is_degenerate = |row| has_no_size(&[radius.row(row)]);
+        self.add_rows(py, &rows, is_degenerate, |row| {
+            let disk = Disk::new(center.row(row), normal.row(row), radius.row(row));
+            disk.map(AnySolid::from).map_err(text)
+        })
+    }
+
+    fn add_composition(&mut self, prototype: u32, solid: PySolid, material: u16) -> PyResult<u32> {
+        let number = self.next[prototype as usize];
+        let record = SolidRecord::new(solid.0, number, MaterialIndex(material));
+        self.prototype(prototype)?.solids.compositions.push(record);
+        self.next[prototype as usize] = number + 1;
+        Ok(number)
+    }
+
+    /// Places a prototype in another; the matrices are rows of 16 numbers.
+    fn add_placements(
+        &mut self,
+        prototype: u32,
+        of: u32,
+        matrices: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<u32> {
+        if self.reaches(of, prototype) {
+            return Err(value_error(
+                "a prototype would contain itself: place it in another one",
+            ));
+        }
+        let matrices = matrices.as_slice()?.chunks_exact(16);
+        let placements: Result<Vec<Placement>, String> = matrices
+            .enumerate()
+            .map(|(row, matrix)| {
+                placement(of, matrix).map_err(|fault| format!("matrices[{row}]: {fault}"))
+            })
+            .collect();
+        let placements = placements.map_err(value_error)?;
+        let parent = self.prototype(prototype)?;
+        let first = parent.placements.len();
+        let end = first as u64 + placements.len() as u64;
+        if end > u64::from(u32::MAX) {
+            return Err(PyOverflowError::new_err(format!(
+                "a prototype has at most {} placements, and this makes {end}",
+                u32::MAX
+            )));
+        }
+        parent.placements.extend(placements);
+        Ok(first as u32)
+    }
+
+    fn set_camera(
+        &mut self,
+        position: Option<[f64; 3]>,
+        look_at: Option<[f64; 3]>,
+        up: [f64; 3],
+        orthographic: bool,
+        fov_degrees: f64,
+        height: Option<f64>,
+    ) {
+        let projection = if orthographic {
+            Projection::Orthographic { height }
+        } else {
+            Projection::Perspective { fov_degrees }
+        };
+        let frame = match (position, look_at) {
+            (Some(position), Some(look_at)) => Frame::LookAt {
+                position: position.into(),
+                look_at: look_at.into(),
+                up: up.into(),
+            },
+            _ => Frame::Auto,
+        };
+        Arc::make_mut(&mut self.scene).camera = Camera { projection, frame };
+    }
+
+    fn set_sun(&mut self, direction: Option<[f64; 3]>, color: [f64; 3], strength: f64) {
+        Arc::make_mut(&mut self.scene).sun = direction.map(|direction| Sun {
+            direction: direction.into(),
+            color: color.into(),
+            strength,
+        });
+    }
+
+    fn set_sky(&mut self, color: Option<[f64; 3]>, strength: f64) {
+        Arc::make_mut(&mut self.scene).sky = color.map(|color| Sky {
+            color: color.into(),
+            strength,
+        });
+    }
+
+    fn set_background(&mut self, color: [f64; 3]) {
+        Arc::make_mut(&mut self.scene).background = color.into();
+    }
+
+    fn set_render(&mut self, width: u32, height: u32, spp: u32, integrator: &str) -> PyResult<()> {
+        let integrator = integrator_of(integrator)?;
+        let scene = Arc::make_mut(&mut self.scene);
+        scene.film = Film { width, height };
+        scene.render.spp = spp;
+        scene.render.integrator = integrator;
+        Ok(())
+    }
+
+    /// The names of prototypes; the root's is empty.
+    fn prototype_names(&self) -> Vec<String> {
+        let prototypes = self.scene.prototypes.iter();
+        prototypes.map(|prototype| prototype.name.clone()).collect()
+    }
+
+    /// The names of materials; the default one's is empty.
+    fn material_names(&self) -> Vec<String> {
+        let materials = self.scene.materials.iter();
+        materials.map(|material| material.name.clone()).collect()
+    }
+
+    /// How many solids and placements a prototype has.
+    fn counts(&self, prototype: u32) -> (usize, usize) {
+        let prototype = &self.scene.prototypes[prototype as usize];
+        (prototype.solids.len(), prototype.placements.len())
+    }
+
+    /// The number that the next solid of a prototype gets.
+    fn next_primitive(&self, prototype: u32) -> u32 {
+        self.next[prototype as usize]
+    }
+
+    /// `p0`, `p1`, `radius` and number of every cylinder of a prototype.
+    #[expect(clippy::type_complexity, reason = "columns")]
+    fn cylinders<'py>(
+        &self,
+        py: Python<'py>,
+        prototype: u32,
+    ) -> (
+        Bound<'py, PyArray1<f64>>,
+        Bound<'py, PyArray1<f64>>,
+        Bound<'py, PyArray1<f64>>,
+        Bound<'py, PyArray1<i64>>,
+    ) {
+        let cylinders = &self.scene.prototypes[prototype as usize].solids.cylinders;
+        let column = |get: &dyn Fn(&Cylinder) -> DVec3| {
+            let rows: Vec<[f64; 3]> = cylinders
+                .iter()
+                .map(|record| get(&record.cylinder()).to_array())
+                .collect();
+            PyArray1::from_vec(py, rows.into_flattened())
+        };
+        let radius = cylinders.iter().map(|record| record.cylinder().radius());
+        let numbers = cylinders.iter().map(|record| record.primitive().into());
+        (
+            column(&Cylinder::p0),
+            column(&Cylinder::p1),
+            PyArray1::from_vec(py, radius.collect()),
+            PyArray1::from_vec(py, numbers.collect()),
+        )
+    }
+
+    /// What the files had to say, such as columns that are not read.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.scene.notes.clone()
+    }
+
+    #[getter]
+    fn skipped_rows(&self) -> u64 {
+        self.scene.skipped_rows
+    }
+}
+
+/// The integrator of a name.
+///
+/// # Errors
+/// When there is none.
+pub fn integrator_of(name: &str) -> PyResult<Integrator> {
+    Ok(match name {
+        "sun" => Integrator::Sun,
+        "normal" => Integrator::Normal,
+        "ao" => Integrator::Ao,
+        other => {
+            return Err(value_error(format!(
+                "integrator is \"{other}\": it must be \"sun\", \"normal\" or \"ao\""
+            )));
+        }
+    })
+}
