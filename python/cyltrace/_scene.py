@@ -60,6 +60,32 @@ class Scene(Prototype):
         """The rows that were left out because of ``degenerate="skip"``."""
         return self._core.skipped_rows
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the scene as a scene file with tables beside it, which loads to the same.
+
+        Solids, placements, materials, camera and lights are kept to the last bit, with the
+        numbers of solids and placements. ``values`` are not part of a scene file.
+
+        Parameters
+        ----------
+        path : str or path
+            Ends in ``.toml``. Tables get its name and ``_cylinders_1.csv`` and the like.
+
+        Raises
+        ------
+        OSError
+            If a file cannot be written. Then none is changed.
+        ValueError
+            If the scene states what a scene file cannot, or the file would have more than
+            64 MiB: cylinders and placements are in tables, but each other solid takes some
+            hundred bytes of it.
+        """
+        folder, name = os.path.split(os.fspath(path))
+        stem, ending = os.path.splitext(name)
+        if ending != ".toml":
+            raise ValueError(f"{name!r} does not end in .toml")
+        self._core.save(folder, stem)
+
     def prototype(self, name: str) -> Prototype:
         """Makes a prototype, or returns the one that has this name already."""
         if not name:

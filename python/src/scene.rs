@@ -1,16 +1,18 @@
 //! Scenes made of arrays, or loaded from files.
 
+use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use cyltrace::scene::{
     Camera, CylinderList, Film, Frame, Integrator, Material, MaterialIndex, Placement, Projection,
-    Prototype, Records, Scene, Sky, SolidRecord, Sun,
+    Prototype, Records, SaveError, Scene, Sky, SolidRecord, Sun,
 };
 use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
+use cyltrace_output::NewFile;
 use glam::DVec3;
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
-use pyo3::exceptions::PyOverflowError;
+use pyo3::exceptions::{PyOSError, PyOverflowError};
 use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, Quaternions, Vectors, value_error};
@@ -110,6 +112,27 @@ impl PyScene {
             scene: Arc::new(scene),
             records,
         })
+    }
+
+    /// Writes `STEM.toml` and its tables to a folder: all files, or none.
+    fn save(&self, py: Python<'_>, folder: PathBuf, stem: &str) -> PyResult<()> {
+        let mut files = Vec::new();
+        let create = |name: &str| NewFile::create(&folder.join(name)).map_err(io::Error::other);
+        let complete = |file| {
+            files.push(file);
+            Ok(())
+        };
+        let saved = py.detach(|| cyltrace::scene::save(&self.scene, stem, create, complete));
+        saved.map_err(|error| match error {
+            SaveError::Output { .. } => PyOSError::new_err(error.to_string()),
+            error => value_error(error.to_string()),
+        })?;
+        // The scene file comes last, so that it never names tables that are not there.
+        for file in files {
+            let finished: Result<(), _> = file.finish();
+            finished.map_err(|error| PyOSError::new_err(error.to_string()))?;
+        }
+        Ok(())
     }
 
     fn add_prototype(&mut self, name: String) -> u32 {

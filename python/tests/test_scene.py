@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
@@ -97,7 +99,7 @@ def test_degenerate_rows_can_be_left_out_and_keep_their_numbers() -> None:
         scene.add_cylinders(p0, p1, -1.0, degenerate="skip")
 
 
-def test_axes_of_any_length_are_those_of_tables(tmp_path: object) -> None:
+def test_axes_of_any_length_are_those_of_tables() -> None:
     scene = Scene()
     scene.add_cylinders_from_axis([1, 2, 3], [[0, 3, 4], [1e-200, 0, 0]], 10.0, 0.5)
     assert_array_equal(scene.cylinders()["p1"], [[1, 8, 11], [11, 2, 3]])
@@ -232,7 +234,7 @@ def test_records_in_f32_are_rounded_once() -> None:
         Scene(records="f16")  # type: ignore[arg-type]
 
 
-def test_files_that_are_missing_or_wrong(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_files_that_are_missing_or_wrong(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match="missing.toml"):
         cyltrace.load(tmp_path / "missing.toml")
     path = tmp_path / "wrong.toml"
@@ -241,7 +243,45 @@ def test_files_that_are_missing_or_wrong(tmp_path) -> None:  # type: ignore[no-u
         cyltrace.load(path)
 
 
-def test_ten_million_cylinders_are_added_without_a_second_copy() -> None:
+def test_saved_scenes_load_to_the_same(tmp_path: Path) -> None:
+    rng = np.random.default_rng(9)
+    scene = Scene()
+    scene.add_material("bark", [0.4, 0.3, 0.2])
+    p0 = rng.normal(size=(100, 3))
+    scene.add_cylinders(p0, p0 + rng.normal(size=(100, 3)), 0.1, material="bark")
+    scene.add_cylinders(p0, p0 + [[0, 0, 1]] * 50 + [[0, 0, 0]] * 50, 0.1, "none", degenerate="skip")
+    scene.add_polylines(rng.normal(size=(20, 3)), radius=rng.uniform(0.01, 0.2, 20))
+    scene.add_cuboids(rng.normal(size=(5, 3)), 0.2 * np.ones(3), rng.normal(size=(5, 4)))
+    scene.add(Solid.sphere([1, 1, 1], 0.5) - Solid.cylinder([1, 1, 0], [1, 1, 2], 0.25))
+    part = scene.prototype("part")
+    part.add_disks([0, 0, 0], [1, 2, 3], 0.3)
+    scene.add_instances(part, positions=rng.normal(size=(30, 3)), quaternions=rng.normal(size=(30, 4)))
+    scene.set_camera([9, 8, 7], [0, 0, 0])
+    scene.set_sun(rng.normal(size=3))
+    scene.save(tmp_path / "saved.toml")
+    again = cyltrace.load(tmp_path / "saved.toml")
+    origins, directions = 5 * rng.normal(size=(20_000, 3)), rng.normal(size=(20_000, 3))
+    hits, found = (Tracer(one).all_hits(origins, directions - origins) for one in (scene, again))
+    assert len(hits) > 1000
+    for name in ("ray", "t", "normal", "uv", "primitive", "solid", "prototype", "material"):
+        assert_array_equal(getattr(found, name), getattr(hits, name), name)
+    assert_array_equal(found.instance[0], hits.instance[0])
+    assert_array_equal(
+        *(cyltrace.render(one, size=(40, 30), spp=2) for one in (scene, again))
+    )
+
+
+def test_names_of_files_and_folders_are_checked(tmp_path: Path) -> None:
+    scene = Scene()
+    scene.add_spheres([0, 0, 0], 1)
+    with pytest.raises(ValueError, match=r"'x.json' does not end in .toml"):
+        scene.save(tmp_path / "x.json")
+    with pytest.raises(OSError, match="missing"):
+        scene.save(tmp_path / "missing" / "x.toml")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_many_cylinders_are_added_at_once() -> None:
     count = 200_000
     p0 = np.random.default_rng(2).uniform(size=(count, 3))
     scene = Scene()
