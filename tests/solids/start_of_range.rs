@@ -46,7 +46,7 @@ fn lines(caps: Caps) -> Vec<Within> {
         within(disk.into(), in_plane),
     ];
     let backwards = lines.iter().map(|line| Within {
-        solid: line.solid.clone(),
+        solid: line.solid,
         origin: line.origin + line.direction * 32.0,
         direction: -line.direction,
     });
