@@ -188,7 +188,7 @@ def check(
     >>> scene.add_cylinders([0, 0, 0], [0, 0, 2], 0.5)
     array([0])
     >>> cyltrace.check(scene, rays=1000)
-    <cyltrace.Check: 10005 rays, holds: no answer is wrong>
+    <cyltrace.Check: 10005 rays, passes: no answer is wrong>
 
     An intersector that returns hits too late by a millionth:
 
@@ -269,7 +269,7 @@ def check_hits(
     array([0])
     >>> origins = [[0, 0, 3], [0, 0, 4], [0, 5, 4]]
     >>> cyltrace.check_hits(scene, origins, [0, 0, -1], [2.0, 3.0000001, float("inf")])
-    <cyltrace.Check: 3 rays, holds: no answer is wrong>
+    <cyltrace.Check: 3 rays, passes: no answer is wrong>
     >>> wrong = cyltrace.check_hits(scene, origins, [0, 0, -1], [2.0, 3.5, float("nan")])
     >>> [(one["index"], one["t"], one["exact_t"]) for one in wrong.violations]
     [(1, 3.5, 3.0)]

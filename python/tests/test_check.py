@@ -150,11 +150,11 @@ def test_rows_for_pandas() -> None:
 def test_text() -> None:
     scene, cylinders = sticks()
     found = cyltrace.check(scene, rays=200)
-    assert repr(found) == "<cyltrace.Check: 2005 rays, holds: no answer is wrong>"
+    assert repr(found) == "<cyltrace.Check: 2005 rays, passes: no answer is wrong>"
     lines = str(found).splitlines()
     assert lines[0].startswith("the whole scene: 20 solids")
     assert lines[1].split()[:3] == ["rays", "witness", "sides"]
-    assert lines[-1] == "holds: no answer is wrong"
+    assert lines[-1] == "passes: no answer is wrong"
     wrong = cyltrace.check(scene, textbook(cylinders, np.float32), rays=200)
     assert "answers are wrong" in repr(wrong) and "\n" not in repr(wrong)
 

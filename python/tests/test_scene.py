@@ -249,13 +249,17 @@ def test_saved_scenes_load_to_the_same(tmp_path: Path) -> None:
     scene.add_material("bark", [0.4, 0.3, 0.2])
     p0 = rng.normal(size=(100, 3))
     scene.add_cylinders(p0, p0 + rng.normal(size=(100, 3)), 0.1, material="bark")
-    scene.add_cylinders(p0, p0 + [[0, 0, 1]] * 50 + [[0, 0, 0]] * 50, 0.1, "none", degenerate="skip")
+    scene.add_cylinders(
+        p0, p0 + ([[0, 0, 1]] * 50 + [[0, 0, 0]] * 50), 0.1, "none", degenerate="skip"
+    )
     scene.add_polylines(rng.normal(size=(20, 3)), radius=rng.uniform(0.01, 0.2, 20))
     scene.add_cuboids(rng.normal(size=(5, 3)), 0.2 * np.ones(3), rng.normal(size=(5, 4)))
     scene.add(Solid.sphere([1, 1, 1], 0.5) - Solid.cylinder([1, 1, 0], [1, 1, 2], 0.25))
     part = scene.prototype("part")
     part.add_disks([0, 0, 0], [1, 2, 3], 0.3)
-    scene.add_instances(part, positions=rng.normal(size=(30, 3)), quaternions=rng.normal(size=(30, 4)))
+    scene.add_instances(
+        part, positions=rng.normal(size=(30, 3)), quaternions=rng.normal(size=(30, 4))
+    )
     scene.set_camera([9, 8, 7], [0, 0, 0])
     scene.set_sun(rng.normal(size=3))
     scene.save(tmp_path / "saved.toml")
@@ -266,9 +270,7 @@ def test_saved_scenes_load_to_the_same(tmp_path: Path) -> None:
     for name in ("ray", "t", "normal", "uv", "primitive", "solid", "prototype", "material"):
         assert_array_equal(getattr(found, name), getattr(hits, name), name)
     assert_array_equal(found.instance[0], hits.instance[0])
-    assert_array_equal(
-        *(cyltrace.render(one, size=(40, 30), spp=2) for one in (scene, again))
-    )
+    assert_array_equal(*(cyltrace.render(one, size=(40, 30), spp=2) for one in (scene, again)))
 
 
 def test_names_of_files_and_folders_are_checked(tmp_path: Path) -> None:

@@ -6,7 +6,9 @@ use cyltrace::math::Ray;
 use cyltrace::solid::Part;
 use cyltrace::tracer::{HitFields, Tracer};
 
-use crate::tally::BLOCK;
+/// Rays that a thread takes at a time: enough to be worth a task, few enough to stop soon
+/// after an interrupt.
+pub(crate) const BLOCK: u64 = 512;
 
 /// Finds the first hit of a ray with the scene that it is checked against, from
 /// any number of threads.

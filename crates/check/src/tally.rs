@@ -6,10 +6,6 @@ use rayon::prelude::*;
 
 use super::outcome::{Convergence, Row, Violation, percent};
 
-/// Rays that a thread takes at a time: enough to be worth a task, few enough to stop soon
-/// after an interrupt.
-pub(crate) const BLOCK: u64 = 512;
-
 /// Receives the number of rays that are done and the number of all rays, and may stop the
 /// check.
 pub type Progress<'a> = dyn Fn(u64, u64) -> ControlFlow<()> + Sync + 'a;
