@@ -259,7 +259,7 @@ def main() -> None:
             path.unlink()
             hit, true_hit = np.isfinite(t), np.isfinite(true_t)
             both = hit & true_hit
-            off = np.abs(t - true_t)[both] * np.linalg.norm(directions[both], axis=1)
+            off = np.abs(t[both] - true_t[both]) * np.linalg.norm(directions[both], axis=1)
             off /= sticks.radius
             # Half a radius beside the truth is another stick, or the other side of this one.
             other = np.where(number[both] == -2, off > 0.5, number[both] != true_number[both])

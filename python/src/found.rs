@@ -99,17 +99,22 @@ impl Block {
         }
     }
 
-    /// As [`Block::values`], of what the query itself finds.
-    fn times(&self) -> Vec<f64> {
+    /// As [`Block::values`], of what the query itself finds: nothing is computed again.
+    fn found_values<T: Clone>(
+        &self,
+        missing: &T,
+        of_first: &impl Fn(&FirstHit) -> T,
+        of_whole: &impl Fn(&PartialHit) -> T,
+    ) -> Vec<T> {
         match self {
             Self::First { slots, hits } => {
-                let time = |&slot: &u32| {
+                let value = |&slot: &u32| {
                     let hit = hits.get(slot as usize);
-                    hit.map_or(f64::INFINITY, |(_, first)| first.t)
+                    hit.map_or_else(|| missing.clone(), |(_, first)| of_first(first))
                 };
-                slots.iter().map(time).collect()
+                slots.iter().map(value).collect()
             }
-            Self::Whole(hits) => hits.iter().map(PartialHit::t).collect(),
+            Self::Whole(hits) => hits.iter().map(of_whole).collect(),
         }
     }
 
@@ -164,6 +169,22 @@ impl Found {
                 .concat()
         })
     }
+
+    /// See [`Block::found_values`].
+    fn found_values<T: Clone + Send + Sync>(
+        &self,
+        py: Python<'_>,
+        missing: T,
+        of_first: impl Fn(&FirstHit) -> T + Sync,
+        of_whole: impl Fn(&PartialHit) -> T + Sync,
+    ) -> Vec<T> {
+        py.detach(|| {
+            let blocks = self.blocks.par_iter();
+            let values = blocks.map(|block| block.found_values(&missing, &of_first, &of_whole));
+            let values: Vec<_> = self.tracing.workers.install(|| values.collect());
+            values.concat()
+        })
+    }
 }
 
 /// An array of numbers, or of rows of numbers one after the other.
@@ -183,8 +204,8 @@ impl Found {
         let nothing = HitFields::empty();
         Ok(match name {
             "t" => {
-                let times = self.blocks.iter().flat_map(Block::times);
-                array(py, times.collect())
+                let t = self.found_values(py, f64::INFINITY, |first| first.t, PartialHit::t);
+                array(py, t)
             }
             "point" => {
                 let point = |hit: &PartialHit| hit.point().expect("requested").to_array();
@@ -205,14 +226,19 @@ impl Found {
                 let error = |hit: &PartialHit| hit.error().expect("requested");
                 array(py, self.values(py, HitFields::ERROR, NAN, error))
             }
-            "solid" => array(
-                py,
-                self.values(py, nothing, -1, |hit| kind_code(hit.solid())),
-            ),
-            "primitive" => array(
-                py,
-                self.values(py, nothing, -1_i64, |hit| i64::from(hit.primitive())),
-            ),
+            "solid" => {
+                let first = |first: &FirstHit| kind_code(first.solid());
+                array(
+                    py,
+                    self.found_values(py, -1, first, |hit| kind_code(hit.solid())),
+                )
+            }
+            "primitive" => {
+                let scene = self.tracing.tracer.scene();
+                let first = |first: &FirstHit| i64::from(first.primitive(scene));
+                let whole = |hit: &PartialHit| i64::from(hit.primitive());
+                array(py, self.found_values(py, -1, first, whole))
+            }
             "part" => {
                 let part = |hit: &PartialHit| position(PARTS.into_iter(), &hit.part());
                 array(py, self.values(py, nothing, -1, part))
@@ -221,18 +247,19 @@ impl Found {
                 let entering = |hit: &PartialHit| hit.crossing() == Crossing::Enter;
                 array(py, self.values(py, nothing, false, entering))
             }
-            "prototype" => array(
-                py,
-                self.values(py, nothing, -1_i64, |hit| i64::from(hit.prototype().0)),
-            ),
+            "prototype" => {
+                let first = |first: &FirstHit| i64::from(first.prototype().0);
+                let whole = |hit: &PartialHit| i64::from(hit.prototype().0);
+                array(py, self.found_values(py, -1, first, whole))
+            }
             "material" => array(
                 py,
                 self.values(py, nothing, -1_i64, |hit| i64::from(hit.material().0)),
             ),
             "instance" => {
-                let path = |hit: &PartialHit| hit.instance().expect("requested").to_vec();
-                let paths = self.values(py, HitFields::PATH, Vec::new(), path);
-                ragged(py, &paths)?.into_any()
+                let whole = |hit: &PartialHit| hit.instance().expect("requested").to_vec();
+                let first = |first: &FirstHit| first.instance().to_vec();
+                ragged(py, &self.found_values(py, Vec::new(), first, whole))?.into_any()
             }
             _ => return Err(value_error(format!("hits have no column \"{name}\""))),
         })
