@@ -51,6 +51,23 @@ def test_lights_are_those_of_the_scene() -> None:
     assert_array_equal(picture[0, 0], [0, 0, 1])
 
 
+@pytest.mark.parametrize(
+    ("azimuth", "elevation", "towards"),
+    [(0, 0, [1, 0, 0]), (90, 0, [0, 1, 0]), (180, 0, [-1, 0, 0]), (30, 90, [0, 0, 1])],
+)
+def test_the_sun_shines_from_its_angles(
+    azimuth: float, elevation: float, towards: list[float]
+) -> None:
+    scene = Scene()
+    scene.add_spheres([0, 0, 0], 1)
+    scene.set_sun(elevation_degrees=elevation, azimuth_degrees=azimuth)
+    middle = []
+    for side in (5, -5):
+        scene.set_camera(np.multiply(side, towards), [0, 0, 0], up=[0.1, 0.2, 0.3])
+        middle.append(cyltrace.render(scene, size=(9, 9), spp=1)[4, 4].sum())
+    assert middle[0] > 1 and middle[1] == 0
+
+
 def test_files_and_notebooks(tmp_path: Path) -> None:
     picture = cyltrace.render(ball(), size=(20, 10))
     picture.save(tmp_path / "ball.png")

@@ -172,6 +172,39 @@ def test_placement_is_the_outermost_one() -> None:
     assert_array_equal(hits.instance[0], [1, 1, 0, 1, 1, 0])
 
 
+def turned(vector: np.ndarray, axis: np.ndarray, angle: float) -> np.ndarray:
+    """By Rodrigues' formula, for a unit axis."""
+    across = np.cross(axis, vector)
+    return (
+        vector * np.cos(angle)
+        + across * np.sin(angle)
+        + axis * (axis @ vector) * (1 - np.cos(angle))
+    )
+
+
+def test_quaternions_turn_placements_and_cuboids_alike() -> None:
+    rng = np.random.default_rng(10)
+    half_widths = np.array([1.0, 2.0, 3.0])
+    for _ in range(20):
+        axis = rng.normal(size=3)
+        axis /= np.linalg.norm(axis)
+        angle = rng.uniform(0, 2 * np.pi)
+        quaternion = rng.uniform(0.1, 10) * np.append(axis * np.sin(angle / 2), np.cos(angle / 2))
+        placed, direct = Scene(), Scene()
+        box = placed.prototype("box")
+        # Stretched along its own axes, then turned.
+        box.add_cuboids([0, 0, 0], [1, 1, 1])
+        placed.add_instances(box, quaternions=quaternion, scales=half_widths.reshape(1, 3))
+        direct.add_cuboids([0, 0, 0], half_widths, quaternion)
+        for scene in (placed, direct):
+            tracer = Tracer(scene)
+            for own, width in zip(np.eye(3), half_widths, strict=True):
+                outward = turned(own, axis, angle)
+                hits = tracer.closest(9 * outward, -outward)
+                np.testing.assert_allclose(hits.t, [9 - width], rtol=1e-12)
+                np.testing.assert_allclose(hits.normal, [outward], atol=1e-12)
+
+
 def test_placements_by_matrices_are_checked() -> None:
     scene = Scene()
     part = scene.prototype("part")

@@ -136,6 +136,10 @@ def test_hits_are_selected_like_arrays() -> None:
         assert_array_equal(some.ray, rows)
         for name in ("t", "normal", "primitive", "uv", "hit"):
             assert_array_equal(getattr(some, name), getattr(hits, name)[rows], name)
+    # What is selected of a selection still has the numbers of the query's rays.
+    some = hits[1000:2000][[3, 7]]
+    assert_array_equal(some.ray, [1003, 1007])
+    assert_array_equal(some.t, hits.t[[1003, 1007]])
     assert len(hits[:0]) == 0
     with pytest.raises(IndexError):
         hits[50_000]
