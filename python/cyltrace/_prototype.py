@@ -429,7 +429,7 @@ class Prototype:
         Returns
         -------
         (n,) int64
-            The numbers of the placements, of which ``Hits.instance`` is made.
+            The numbers of the placements; ``Hits.instance`` is a path of such numbers.
 
         Raises
         ------

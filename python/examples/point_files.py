@@ -18,8 +18,8 @@ RETURN = np.dtype(
 
 
 def write(chunks: Iterable[np.ndarray], output: str) -> int:
-    """Writes arrays of :data:`RETURN` to ``output.npz`` and ``output.las``, of which only one
-    chunk is in memory at a time, and returns the number of points."""
+    """Writes arrays of :data:`RETURN` to ``output.npz`` and ``output.las``, and returns the
+    number of points. Only one chunk is in memory at a time."""
     with ExitStack() as files:
         raw = files.enter_context(tempfile.TemporaryFile())
         las = None

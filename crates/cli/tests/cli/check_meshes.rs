@@ -1,5 +1,4 @@
-//! `cyltrace check --mesh` and `--hits` with inputs that could make them pass by
-//! mistake.
+//! `cyltrace check --mesh` and `--hits` with inputs that a careless check would accept.
 
 use crate::program;
 
