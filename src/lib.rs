@@ -53,7 +53,7 @@ pub mod scene;
 pub mod solid;
 pub mod tracer;
 
-// Compiles and runs the README's examples in Rust.
+// Compiles and runs the example in Rust of the guide.
 #[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
+#[doc = include_str!("../docs/guide.md")]
+struct Guide;
