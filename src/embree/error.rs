@@ -86,6 +86,16 @@ pub enum Error {
         /// Its coordinates, and its radius for a curve.
         value: Vec<f32>,
     },
+    /// A normal of a disk that Embree would not accept.
+    #[error(
+        "disk {disk} has the normal {value:?}: every component must be finite and below {GREATEST_COORDINATE:e}"
+    )]
+    Normal {
+        /// The number of the disk.
+        disk: usize,
+        /// Its normal.
+        value: [f32; 3],
+    },
     /// A triangle or curve segment uses a vertex that does not exist.
     #[error("primitive {primitive} uses vertex {vertex}, and there are {vertices}")]
     VertexIndex {

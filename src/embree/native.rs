@@ -118,7 +118,12 @@ impl<Q: Query> SceneBuilder<Q> {
         disks: &[[f32; 4]],
         normals: &[[f32; 3]],
     ) -> Result<GeometryId, Error> {
-        check_vertices(normals, |_| true)?;
+        if let Some(disk) = normals.iter().position(|normal| !is_inside(normal)) {
+            return Err(Error::Normal {
+                disk,
+                value: normals[disk],
+            });
+        }
         if normals.len() != disks.len() {
             return Err(Error::NormalCount {
                 normals: normals.len(),

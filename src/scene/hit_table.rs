@@ -108,6 +108,6 @@ fn check_number(row: &Row, column: Column, expected: usize) -> Result<(), SceneE
     }
     let cell = quoted(row.cell(column));
     let message =
-        format!("expected {expected}, found {cell}: the table must have one row per ray, in order");
+        format!("{cell} must be {expected}: the table must have one row per ray, in their order");
     Err(row.error(Some(column), message))
 }

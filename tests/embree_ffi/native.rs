@@ -244,8 +244,12 @@ fn points_bad_input_is_refused_before_embree_sees_it() {
             disks: 1
         })
     );
-    let bad_normal = builder.attach_disks(&[disk], &[[f32::NAN, 0.0, 1.0]]);
-    assert!(bad_normal.is_err());
+    let bad_normal = builder.attach_disks(&[disk; 2], &[[0.0, 0.0, 1.0], [f32::NAN, 0.0, 1.0]]);
+    let message = bad_normal.unwrap_err().to_string();
+    assert!(
+        message.starts_with("disk 1 has the normal [NaN, 0.0, 1.0]: "),
+        "{message}"
+    );
     let negative = builder.attach_spheres(&[disk, [0.0, 0.0, 0.0, -1.0]]);
     assert!(negative.unwrap_err().to_string().starts_with("vertex 1"));
 }

@@ -275,7 +275,7 @@ fn bad_tables_of_hits_are_refused_with_file_and_line() {
         ),
         (
             "ray,hit,t\n0,0,\n0,0,\n",
-            "told.csv:3: column \"ray\": expected 1, found \"0\"",
+            "told.csv:3: column \"ray\": \"0\" must be 1: the table must have one row per ray",
         ),
         (
             "hit,t\n0,\n0\n",
