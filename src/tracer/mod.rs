@@ -226,9 +226,7 @@ impl Tracer {
             embree_instances: self.embree_instances(),
             embree_bytes: self.device.memory_bytes() + self.uncounted_bytes(),
             records_bytes: self.counted.described_bytes + kept,
-            skipped: self
-                .counted
-                .skipped(&self.scene, &self.prototypes, &self.options),
+            skipped: statistics::skipped(&self.scene, &self.prototypes, &self.options),
             embree_version: self.device.version().to_string(),
             isa: self.isa.to_owned(),
         }

@@ -7,7 +7,7 @@ use super::build::Plan;
 use super::estimate::MemoryEstimate;
 use super::options::Options;
 use super::prototype::Prototype;
-use crate::scene::{Placement, PrototypeIndex, Scene};
+use crate::scene::{Placement, Scene};
 use crate::solid::SolidCounts;
 
 /// What was built, and what was not.
@@ -39,66 +39,60 @@ pub(super) struct Counted {
     pub instanced: SolidCounts,
     pub instances: u128,
     pub described_bytes: usize,
-    /// The prototypes that the root uses.
-    needed: Vec<PrototypeIndex>,
 }
 
 impl Counted {
     pub fn new(scene: &Scene, plan: &Plan) -> Self {
-        let needed = || {
-            let needed = plan.order.iter();
-            needed.map(|index| &scene.prototypes[index.0 as usize])
-        };
+        let used = plan.order.iter();
+        let used = used.map(|index| &scene.prototypes[index.0 as usize]);
         Self {
-            unique: needed().fold(SolidCounts::default(), |sum, prototype| {
+            unique: used.fold(SolidCounts::default(), |sum, prototype| {
                 sum.plus(&prototype.solids.counts())
             }),
             instanced: plan.instanced[0],
             instances: plan.instances[0],
             described_bytes: described_bytes(scene),
-            needed: plan.order.clone(),
         }
     }
+}
 
-    /// A sentence for each prototype that was not built, and one for rows of tables that are no
-    /// solid.
-    pub fn skipped(
-        &self,
-        scene: &Scene,
-        made: &[Option<Arc<Prototype>>],
-        options: &Options,
-    ) -> Vec<String> {
-        let rows = (scene.skipped_rows > 0)
-            .then(|| format!("degenerate rows of tables: {}", scene.skipped_rows));
-        let contents = scene.contents();
-        let unbuilt = contents.iter().enumerate().filter_map(|(index, contents)| {
-            let name = match contents.name.as_str() {
-                "" => "the scene itself".to_owned(),
-                name => format!("prototype \"{name}\""),
-            };
-            if !self.needed.contains(&PrototypeIndex(index as u32)) {
-                return Some(format!("{name} is placed nowhere: not built"));
-            }
-            let made = made[index].as_ref()?;
-            (!made.is_touched()).then(|| {
-                let estimate =
-                    MemoryEstimate::of(slice::from_ref(contents), options.layout, options.max_isa);
-                format!(
-                    "{name} was reached by no ray: not built ({} and {} placements), which saves about {:.1} MB",
-                    contents.solids.counts,
-                    contents.placements(),
-                    (estimate.embree_bytes + estimate.copies_bytes) as f64 / 1e6
-                )
-            })
-        });
-        let out_of_view = made
-            .first()
-            .and_then(|root| Some(root.as_ref()?.placements_out_of_view()))
-            .filter(|&count| count > 0)
-            .map(|count| format!("{count} placements are out of the camera's view: not built"));
-        let general = rows.into_iter().chain(out_of_view);
-        general.chain(unbuilt).collect()
-    }
+/// A sentence for each prototype that was not built, and one for rows of tables that are no
+/// solid.
+pub(super) fn skipped(
+    scene: &Scene,
+    made: &[Option<Arc<Prototype>>],
+    options: &Options,
+) -> Vec<String> {
+    let rows = (scene.skipped_rows > 0)
+        .then(|| format!("degenerate rows of tables: {}", scene.skipped_rows));
+    let contents = scene.contents();
+    let unbuilt = contents.iter().enumerate().filter_map(|(index, contents)| {
+        let name = match contents.name.as_str() {
+            "" => "the scene itself".to_owned(),
+            name => format!("prototype \"{name}\""),
+        };
+        if !contents.is_used {
+            return Some(format!("{name} is placed nowhere: not built"));
+        }
+        let made = made[index].as_ref()?;
+        (!made.is_touched()).then(|| {
+            let estimate =
+                MemoryEstimate::of(slice::from_ref(contents), options.layout, options.max_isa);
+            format!(
+                "{name} was reached by no ray: not built ({} and {} placements), which saves about {:.1} MB",
+                contents.solids.counts,
+                contents.placements(),
+                (estimate.embree_bytes + estimate.copies_bytes) as f64 / 1e6
+            )
+        })
+    });
+    let out_of_view = made
+        .first()
+        .and_then(|root| Some(root.as_ref()?.placements_out_of_view()))
+        .filter(|&count| count > 0)
+        .map(|count| format!("{count} placements are out of the camera's view: not built"));
+    let general = rows.into_iter().chain(out_of_view);
+    general.chain(unbuilt).collect()
 }
 
 /// The memory of solids and placements in the description.
