@@ -1,13 +1,13 @@
-//! A figure with logarithmic axes: named marks, each with a second mark above
-//! or below it at the same x, and curves through some of them.
+//! A figure with logarithmic axes: named marks, each with a second mark above or below it at
+//! the same x, and curves through some of them.
 //!
-//! It is SVG that follows the reader's preference for light or dark, by
-//! itself and within a page: colours are classes, which a plotting library
-//! would write as fixed values. A mark's details show when the pointer rests
-//! on it.
+//! It is SVG that follows the reader's preference for light or dark, by itself and within a
+//! page: colours are classes, which a plotting library would write as fixed values. A mark's
+//! details show when the pointer rests on it.
 
 use std::fmt::Write as _;
 
+use super::axis::{Axis, extent, power_of_ten, steps};
 use super::html::escape;
 use super::label::{Rectangle, Surroundings, place};
 
@@ -74,8 +74,7 @@ const PLOT: Rectangle = Rectangle {
 /// Half the size of a mark and of a second mark.
 const MARK: f64 = 5.0;
 const SECOND: f64 = 3.5;
-/// The mean width of a letter of the labels (12 pixels high), on the safe
-/// side: fonts differ.
+/// The mean width of a letter of the labels (12 pixels high), rounded up: fonts differ.
 const LETTER: f64 = 6.9;
 const LABEL_HEIGHT: f64 = 14.0;
 /// A label farther than this from its mark is led to it by a line.
@@ -106,37 +105,6 @@ const STYLE: &str = "\
 .cyl .s0 { color: #f0883e; } .cyl .s1 { color: #58b0ee; } .cyl .s2 { color: #df8fc8; } .cyl .s3 { color: #9aa1a9; } .cyl .s4 { color: #35c794; }
 }
 ";
-
-/// A logarithmic axis.
-struct Axis {
-    low: f64,
-    high: f64,
-    from: f64,
-    to: f64,
-}
-
-impl Axis {
-    /// From the decimal logarithm `low` at pixel `from` to `high` at `to`.
-    fn new((low, high): (f64, f64), from: f64, to: f64) -> Self {
-        Self {
-            low,
-            high,
-            from,
-            to,
-        }
-    }
-
-    /// The pixel of a value; the nearer edge for one beyond the axis, the far
-    /// one for NaN.
-    fn pixel(&self, value: f64) -> f64 {
-        let logarithm = if value.is_nan() {
-            self.high
-        } else {
-            libm::log10(value).clamp(self.low, self.high)
-        };
-        self.from + (self.to - self.from) * (logarithm - self.low) / (self.high - self.low)
-    }
-}
 
 impl Figure {
     /// Series beyond these would have no colour.
@@ -329,53 +297,6 @@ fn along((x1, y1): (f64, f64), (x2, y2): (f64, f64)) -> impl Iterator<Item = Rec
     })
 }
 
-/// The least and greatest decimal logarithm of those numbers that have one.
-fn extent(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
-    let logarithms = numbers
-        .filter(|x| *x > 0.0 && x.is_finite())
-        .map(libm::log10);
-    let (low, high) = logarithms.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-        (low.min(x), high.max(x))
-    });
-    if low <= high { (low, high) } else { (0.0, 1.0) }
-}
-
-/// A number at which an axis has a line.
-struct Step {
-    logarithm: f64,
-    text: String,
-}
-
-/// 1, 2, 5, 10, 20 ... from the decade of a decimal logarithm on.
-fn steps(from: f64) -> impl Iterator<Item = Step> {
-    let decade = from.floor() as i32;
-    (decade..).flat_map(|exponent| {
-        [1_u8, 2, 5].map(|digit| Step {
-            logarithm: f64::from(exponent) + libm::log10(f64::from(digit)),
-            text: match exponent {
-                0.. => format!("{digit}{}", "0".repeat(exponent as usize)),
-                _ => format!("{digit}e{exponent}"),
-            },
-        })
-    })
-}
-
-/// A power of ten as it is written.
-fn power_of_ten(exponent: i32) -> String {
-    let raised = exponent
-        .to_string()
-        .chars()
-        .map(|digit| match digit {
-            '-' => '\u{207b}',
-            '1' => '\u{b9}',
-            '2' => '\u{b2}',
-            '3' => '\u{b3}',
-            other => char::from_u32('\u{2070}' as u32 + other as u32 - '0' as u32).unwrap_or(other),
-        })
-        .collect::<String>();
-    format!("10{raised}")
-}
-
 fn line(svg: &mut String, class: &str, (x1, y1): (f64, f64), (x2, y2): (f64, f64)) {
     let _ = writeln!(
         svg,
@@ -443,15 +364,6 @@ mod tests {
     }
 
     #[test]
-    fn axis_middle_of_the_decades_is_the_middle_of_the_pixels() {
-        let axis = Axis::new((-3.0, 1.0), 500.0, 100.0);
-        assert!((axis.pixel(0.1) - 300.0).abs() < 1e-9);
-        assert_eq!(axis.pixel(0.0), 500.0);
-        assert_eq!(axis.pixel(f64::INFINITY), 100.0);
-        assert_eq!(axis.pixel(f64::NAN), 100.0);
-    }
-
-    #[test]
     fn axes_hold_all_marks_at_round_numbers() {
         let figure = figure(vec![
             mark(3.0, 1e-5, Some(0.0)),
@@ -483,13 +395,5 @@ mod tests {
             let svg = figure(marks).svg();
             assert!(!svg.contains("NaN") && svg.ends_with("</svg>\n"), "{svg}");
         }
-    }
-
-    #[test]
-    fn power_of_ten_is_raised() {
-        assert_eq!(power_of_ten(-12), "10⁻¹²");
-        assert_eq!(power_of_ten(0), "10⁰");
-        assert_eq!(power_of_ten(3), "10³");
-        assert_eq!(power_of_ten(456), "10⁴⁵⁶");
     }
 }

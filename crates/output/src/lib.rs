@@ -1,6 +1,7 @@
 //! The outputs of cyltrace: files that are never left half written, pictures, and
 //! figures, tables and pages as text.
 
+mod axis;
 mod csv;
 mod figure;
 mod film;
