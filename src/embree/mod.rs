@@ -64,6 +64,7 @@
 mod abort;
 mod attach_user;
 mod callback;
+mod callback_lanes;
 mod collect;
 mod device;
 mod error;

@@ -258,12 +258,7 @@ impl<Q: Query> Scene<Q> {
         coherence: Coherence,
         packet: &mut Q::Packet,
     ) {
-        let nothing = |_: usize, _: NativeHit| {};
-        match width {
-            PacketWidth::Four => self.intersect::<4>(rays, active, coherence, packet, nothing),
-            PacketWidth::Eight => self.intersect::<8>(rays, active, coherence, packet, nothing),
-            PacketWidth::Sixteen => self.intersect::<16>(rays, active, coherence, packet, nothing),
-        }
+        self.closest_native_packet(rays, active, width, coherence, packet, |_, _| {});
     }
 
     /// The closest hits as Embree reports them, each passed to `report` with the
