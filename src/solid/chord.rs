@@ -48,6 +48,22 @@ pub struct Intersection<S = f64> {
 }
 
 impl<S: Real> Chord<S> {
+    /// The chord of a line across the axis, from wall to wall: in the plane of a disk, or
+    /// between the disks.
+    #[inline]
+    pub(super) fn across(ends: [S; 2], disk: Option<Part>) -> Self {
+        let [enter, leave] = ends.map(|t| ChordEnd {
+            t,
+            part: disk.unwrap_or(Part::Side),
+            on_rim: disk.is_some(),
+        });
+        Self {
+            enter,
+            leave,
+            lies_on: disk,
+        }
+    }
+
     /// The intersections of the ray with the surface that has the disks `caps`: those with
     /// `t_min <= t + shift <= t_max`, in order, at most two.
     ///

@@ -11,9 +11,9 @@ use std::fmt::Debug;
 use glam::DVec3;
 
 use super::lanes::RayLanes;
-use super::quick::{self, Quick, QuickLanes, Range};
+use super::quick::{Quick, QuickLanes, Range};
 use super::{Caps, Chord, Intersection, Part, RayOrigin, SolidKind, SpawnMargin, SurfacePoint};
-use crate::math::{Bounds, LaneMask};
+use crate::math::{Bounds, LANES, LaneMask, Lanes};
 
 /// A kind of solid, a row of [`for_each_solid!`](crate::for_each_solid).
 ///
@@ -110,16 +110,16 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// to the anchor. Rays that need exact numbers are left open.
     #[inline(always)]
     fn first_in_lanes(&self, rays: &RayLanes, active: &LaneMask) -> QuickLanes {
-        quick::first(self, rays, active)
+        quick_lanes(self, rays, active)
     }
 
     /// [`ConvexSolid::exact_first`] in the same way, for rays whose origins are f64 points.
     #[inline(always)]
     fn exact_first_in_lanes(&self, rays: &RayLanes, active: &LaneMask) -> QuickLanes {
         if Self::QUICK_IS_EXACT {
-            quick::first(self, rays, active)
+            quick_lanes(self, rays, active)
         } else {
-            QuickLanes::all_open(quick::near(self, rays, active))
+            QuickLanes::all_open(near(self, rays, active))
         }
     }
 
@@ -146,6 +146,51 @@ pub trait ConvexSolid: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// The displacement of a query that starts at a point of the surface.
     fn spawn_margin(&self, surface: &SurfacePoint) -> SpawnMargin {
         SpawnMargin::of_solid(self, surface)
+    }
+}
+
+/// The `active` rays that do not certainly miss the solid.
+#[inline(always)]
+fn near(solid: &impl ConvexSolid, rays: &RayLanes, active: &LaneMask) -> LaneMask {
+    let mut near = LaneMask::splat(false);
+    for lane in 0..LANES {
+        let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
+        near.0[lane] = active.0[lane] & !solid.rejects(x, d);
+    }
+    near
+}
+
+/// [`ConvexSolid::first`] of the `active` rays, whose origins are relative to the solid's
+/// anchor.
+#[inline(always)]
+fn quick_lanes(solid: &impl ConvexSolid, rays: &RayLanes, active: &LaneMask) -> QuickLanes {
+    let (mut open, mut hit) = (LaneMask::splat(false), LaneMask::splat(false));
+    let mut t = Lanes::splat(0.0);
+    let near = near(solid, rays, active);
+    if near.any() {
+        for lane in 0..LANES {
+            let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
+            let range = Range {
+                shift: rays.shift.0[lane],
+                t_min: rays.t_min.0[lane],
+                t_max: rays.t_max.0[lane],
+            };
+            let quick = solid.quick_first(x, d, &range);
+            open.0[lane] = near.0[lane] & quick.is_open;
+            hit.0[lane] = near.0[lane] & !quick.is_open & quick.is_hit;
+            t.0[lane] = quick.t;
+        }
+    }
+    QuickLanes { open, hit, t }
+}
+
+impl SpawnMargin {
+    /// The margin in the space of a solid of any kind.
+    #[must_use]
+    pub fn of_solid(solid: &impl ConvexSolid, surface: &SurfacePoint) -> Self {
+        let size = solid.size();
+        let seen = surface.point.length() + solid.anchor().length() + size;
+        Self::new(seen, size)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Eight rays against a cylinder, or a ray against eight cylinders.
 //!
-//! A lane runs the same code as `triple_product` and `slab.rs`, so it has the bits of
+//! A lane runs the same code as `triple_product` and `slab`, so it has the bits of
 //! [`triple_product::first`](super::triple_product::first). This file has only the order: a
 //! loop over the lanes for the lines, one for the ends at which they enter if any reaches its
 //! wall, one for the ends at which they leave if any is inside and undecided. The loop bodies

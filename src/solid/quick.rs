@@ -2,16 +2,14 @@
 //!
 //! A solid's quick solver consists of the pieces of its solver, without the exact numbers for
 //! rare cases. It reports such a case as open, and the caller passes it to
-//! [`ConvexSolid::first`]. If it is not open, the quick solver has the bits of
-//! [`ConvexSolid::first`]. A loop over its inlined calls becomes vector code.
+//! [`first`](super::ConvexSolid::first). If it is not open, the quick solver has the bits of
+//! `first`. A loop over its inlined calls becomes vector code.
 //!
-//! Most rays that enter a solid's box miss the solid widely, and [`ConvexSolid::rejects`]
+//! Most rays that enter a solid's box miss the solid widely, and [`rejects`](super::ConvexSolid::rejects)
 //! detects that without a root or a division. So it runs first, and the row is solved if any
 //! ray remains.
 
-use super::ConvexSolid;
-use super::lanes::RayLanes;
-use crate::math::{LANES, LaneMask, Lanes};
+use crate::math::{LaneMask, Lanes};
 
 /// The first intersection of a line and a solid in a range, from a quick solver.
 #[derive(Clone, Copy, Debug)]
@@ -155,41 +153,4 @@ impl Range {
         let [least, most] = [end.t - end.slack, end.t + end.slack].map(|t| t + self.shift);
         (end.slack != 0.0) & !(most < self.t_min) & !(least > self.t_max)
     }
-}
-
-/// The `active` rays that do not certainly miss the solid.
-#[inline(always)]
-#[must_use]
-pub fn near(solid: &impl ConvexSolid, rays: &RayLanes, active: &LaneMask) -> LaneMask {
-    let mut near = LaneMask::splat(false);
-    for lane in 0..LANES {
-        let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
-        near.0[lane] = active.0[lane] & !solid.rejects(x, d);
-    }
-    near
-}
-
-/// [`ConvexSolid::first`] of the `active` rays, whose origins are relative to the solid's
-/// anchor.
-#[inline(always)]
-#[must_use]
-pub fn first(solid: &impl ConvexSolid, rays: &RayLanes, active: &LaneMask) -> QuickLanes {
-    let (mut open, mut hit) = (LaneMask::splat(false), LaneMask::splat(false));
-    let mut t = Lanes::splat(0.0);
-    let near = near(solid, rays, active);
-    if near.any() {
-        for lane in 0..LANES {
-            let (x, d) = (rays.from_p0.lane(lane), rays.direction.lane(lane));
-            let range = Range {
-                shift: rays.shift.0[lane],
-                t_min: rays.t_min.0[lane],
-                t_max: rays.t_max.0[lane],
-            };
-            let quick = solid.quick_first(x, d, &range);
-            open.0[lane] = near.0[lane] & quick.is_open;
-            hit.0[lane] = near.0[lane] & !quick.is_open & quick.is_hit;
-            t.0[lane] = quick.t;
-        }
-    }
-    QuickLanes { open, hit, t }
 }

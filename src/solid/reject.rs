@@ -40,7 +40,7 @@
 
 use glam::DVec3;
 
-use super::cone::wall::{Fit, Taper};
+use super::cone::taper::{Fit, Taper};
 use crate::math::power_of_two;
 
 /// `1 + η`, with four times the `η` for the roundings of the squares.
@@ -138,7 +138,7 @@ mod tests {
 
     use super::*;
     use crate::math::Random;
-    use crate::solid::cone::wall::{Exactly, Term};
+    use crate::solid::cone::taper::{Exactly, Term};
     use crate::solid::exact::sign;
 
     const SEED: u64 = 41;

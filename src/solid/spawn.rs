@@ -23,7 +23,6 @@
 
 use glam::DVec3;
 
-use super::{ConvexSolid, Cylinder, SurfacePoint};
 use crate::math::{Ray, UNIT_ROUNDOFF};
 
 /// The results of the solvers are exact for a ray displaced by at most this times
@@ -44,27 +43,14 @@ pub struct SpawnMargin {
 }
 
 impl SpawnMargin {
-    /// The margin in the space of a solid of any kind.
+    /// The margin in the space of a solid. `seen` is the sum of the sizes that the solver uses,
+    /// and `size` bounds the distance between any two points of the solid.
     #[must_use]
-    pub fn of_solid(solid: &impl ConvexSolid, surface: &SurfacePoint) -> Self {
-        let size = solid.size();
-        let seen = surface.point.length() + solid.anchor().length() + size;
+    pub fn new(seen: f64, size: f64) -> Self {
         Self {
             displacement: SOLVER_DISPLACEMENT * seen,
             normal_error: 16.0 * UNIT_ROUNDOFF,
             size,
-        }
-    }
-
-    /// The margin in a cylinder's own space.
-    #[must_use]
-    pub fn new(cylinder: &Cylinder, surface: &SurfacePoint) -> Self {
-        let (p0, p1, radius) = (cylinder.p0(), cylinder.p1(), cylinder.radius());
-        let seen = surface.point.length() + p0.length() + p1.length() + 2.0 * radius;
-        Self {
-            displacement: SOLVER_DISPLACEMENT * seen,
-            normal_error: 16.0 * UNIT_ROUNDOFF,
-            size: (p1 - p0).length() + 2.0 * radius,
         }
     }
 

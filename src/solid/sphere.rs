@@ -1,4 +1,4 @@
-//! The sphere as users define it. `ball.rs` has its solver.
+//! The sphere as users define it. `ball` has its solver.
 
 use glam::DVec3;
 

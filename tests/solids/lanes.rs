@@ -15,9 +15,8 @@ use cyltrace::math::{LANES, LaneMask, LaneVectors, Lanes, Random, Ray};
 use cyltrace::solid::lanes::{
     self, AllCapped, AllOpen, CylinderLanes, LaneCaps, MixedCaps, RayLanes,
 };
-use cyltrace::solid::{
-    Caps, ConvexSolid, Cylinder, Intersection, RayOrigin, quick, triple_product,
-};
+use cyltrace::solid::quick::QuickLanes;
+use cyltrace::solid::{Caps, ConvexSolid, Cylinder, Intersection, RayOrigin, triple_product};
 use cyltrace::with_solid;
 use cyltrace_oracle::cases::Problem;
 use cyltrace_oracle::cases::{AnyFamily, Case, Family, Inputs};
@@ -265,7 +264,9 @@ fn in_lanes(rays: &Shifted) -> RayLanes {
 /// Fails where a lane that is not open has another answer than the scalar solver, and, of a
 /// kind that says so, another than the solver with exact decisions.
 fn verify_quick<S: ConvexSolid>(solid: &S, rays: &RayLanes, active: u8, name: &str) -> Count {
-    let count = verify_lanes(solid, rays, active, name, |lane| {
+    let lanes = LaneMask::from_bits(active);
+    let answer = solid.first_in_lanes(rays, &lanes);
+    let count = verify_lanes(solid, (rays, answer), active, name, |lane| {
         let (x, d, shift, [t_min, t_max]) = lane_of(rays, lane);
         solid.first(x, d, shift, t_min, t_max)
     });
@@ -280,7 +281,8 @@ fn verify_quick<S: ConvexSolid>(solid: &S, rays: &RayLanes, active: u8, name: &s
             from_p0: origins - anchor,
             ..*rays
         };
-        verify_lanes(solid, &seen, active, name, |lane| {
+        let answer = solid.exact_first_in_lanes(&seen, &lanes);
+        verify_lanes(solid, (&seen, answer), active, name, |lane| {
             let (_, d, shift, range) = lane_of(rays, lane);
             solid.exact_first(&RayOrigin::at(origins.lane(lane)), d, shift, range)
         });
@@ -297,13 +299,12 @@ fn lane_of(rays: &RayLanes, lane: usize) -> (DVec3, DVec3, f64, [f64; 2]) {
 
 fn verify_lanes(
     solid: &impl ConvexSolid,
-    rays: &RayLanes,
+    (rays, answer): (&RayLanes, QuickLanes),
     active: u8,
     name: &str,
     first: impl Fn(usize) -> Option<Intersection>,
 ) -> Count {
     let mut count = Count::default();
-    let answer = quick::first(solid, rays, &LaneMask::from_bits(active));
     for lane in 0..LANES {
         let is_active = active >> lane & 1 == 1;
         let expected = first(lane).filter(|_| is_active);

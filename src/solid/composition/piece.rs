@@ -32,9 +32,7 @@ use smallvec::SmallVec;
 
 use super::super::spawn::SOLVER_DISPLACEMENT;
 use super::bend::Bend;
-use super::operand::OperandSurface;
 use crate::solid::{AnySolid, Part};
-use crate::with_solid;
 
 /// A piece of a leaf's surface at a point.
 #[derive(Clone, Copy, Debug)]
@@ -77,11 +75,6 @@ pub(super) struct Viewed<'a> {
 }
 
 impl Viewed<'_> {
-    /// Adds the pieces that pass through the point.
-    pub fn add_pieces(&self, pieces: &mut Pieces) {
-        with_solid!(self.solid, solid => solid.add_pieces(self, pieces));
-    }
-
     /// Whether a part at this distance from the point passes through it.
     pub fn passes(&self, part: Part, distance: f64) -> bool {
         match self.nearness {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::wall::{Fit, Taper};
+use super::taper::{Fit, Taper};
 use crate::solid::Cylinder;
 use crate::solid::offset::{Between, ExactOffset};
 

@@ -20,7 +20,7 @@ use std::cmp::Ordering::{self, Equal, Greater, Less};
 
 use glam::DVec3;
 
-use super::wall::{Fit, Measures, Taper, Term};
+use super::taper::{Fit, Measures, Taper, Term};
 use crate::math::power_of_two;
 use crate::solid::exact::{Expression, Number, dot, quotient, sign, vector};
 use crate::solid::offset::Offset;

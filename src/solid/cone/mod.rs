@@ -3,9 +3,11 @@
 mod ends;
 pub(super) mod heights;
 pub(super) mod quick;
+mod roots;
 mod rounded;
 pub(super) mod solver;
 mod surface;
+pub(super) mod taper;
 pub(super) mod wall;
 
 use glam::DVec3;
@@ -22,7 +24,7 @@ use super::{
 use crate::math::Bounds;
 pub use ends::ConeError;
 pub(super) use ends::Ends;
-use wall::{Fit, Measures};
+use taper::{Fit, Measures};
 
 /// The surface of a part of a circular cone: two endpoints, the radius at each and its caps,
 /// all taken as exact numbers.
@@ -115,6 +117,14 @@ impl Cone {
             radius1,
         } = self.ends;
         (radius0 == radius1).then(|| Cylinder::from_valid(p0, p1, radius0, Caps::Both))
+    }
+}
+
+impl Cylinder {
+    /// The cone with equal radii that is the same set.
+    pub(super) fn as_cone(&self) -> Cone {
+        let (radius, caps) = (self.radius(), self.caps());
+        Cone::from_valid(self.p0(), self.p1(), radius, radius, caps)
     }
 }
 

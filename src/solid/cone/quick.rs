@@ -32,8 +32,9 @@ use glam::DVec3;
 
 use super::Cone;
 use super::heights::{CANCELS, NEAR, Rounded as Heights, plane_at, terms};
+use super::roots::Inside;
 use super::rounded::Rounded;
-use super::wall::{Fit, Inside, Taper};
+use super::taper::{Fit, Taper};
 use crate::math::power_of_two;
 use crate::solid::linear::sum_of_sizes;
 use crate::solid::quick::{End, Quick, Range};

@@ -71,7 +71,8 @@
 
 use glam::DVec3;
 
-use super::wall::{Roots, Taper};
+use super::roots::Roots;
+use super::taper::Taper;
 use crate::math::{UNIT_ROUNDOFF, power_of_two};
 use crate::solid::offset::Offset;
 

@@ -9,7 +9,9 @@ use std::cmp::Ordering::{Equal, Greater, Less};
 use glam::DVec3;
 
 use super::heights::{End, Heights, Root};
-use super::wall::{Inside, Taper, WallIntersection};
+use super::roots::Inside;
+use super::taper::Taper;
+use super::wall::WallIntersection;
 use crate::solid::Part;
 use crate::solid::chord::{Chord, ChordEnd};
 use crate::solid::offset::Offset;
@@ -71,16 +73,8 @@ fn across(heights: &Heights<impl Offset, impl Offset>, inside: Inside) -> Option
     } else {
         None
     };
-    let end = |t| ChordEnd {
-        t,
-        part: disk.unwrap_or(Part::Side),
-        on_rim: disk.is_some(),
-    };
-    Some(Chord {
-        enter: end(inside.enter),
-        leave: end(inside.leave.max(inside.enter)),
-        lies_on: disk,
-    })
+    let leave = inside.leave.max(inside.enter);
+    Some(Chord::across([inside.enter, leave], disk))
 }
 
 /// The chord of any other line.

@@ -17,9 +17,8 @@ mod bounded;
 mod certificate;
 mod decide;
 mod expression;
+mod number;
 mod root;
-
-use std::cmp::Ordering;
 
 use glam::DVec3;
 
@@ -31,6 +30,7 @@ pub(super) use big::{Big, ratio, unit};
 use bounded::Bounded;
 use decide::{At, End, Terms};
 pub(super) use expression::{Expression, cross, difference, dot, quotient, sign, vector};
+pub(super) use number::Number;
 pub use root::Target;
 
 /// The stage that decided a result.
@@ -56,22 +56,6 @@ pub struct ExactHit {
     /// The direction of the crossing.
     pub crossing: Crossing,
     at: At,
-}
-
-/// A number type for the decisions.
-pub(super) trait Number: Clone {
-    /// The number of an f64.
-    fn of(x: f64) -> Self;
-    /// `a - b`, exactly.
-    fn difference(a: f64, b: f64) -> Self;
-    /// The sum.
-    fn plus(&self, other: &Self) -> Self;
-    /// The difference.
-    fn minus(&self, other: &Self) -> Self;
-    /// The product.
-    fn times(&self, other: &Self) -> Self;
-    /// The comparison with zero, if it is certain.
-    fn sign(&self) -> Option<Ordering>;
 }
 
 /// The first point of the cylinder's surface in the ray's range, and the stage that decided it.

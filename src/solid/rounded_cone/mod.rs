@@ -7,7 +7,7 @@ mod surface;
 use glam::DVec3;
 
 use super::cone::Ends;
-use super::cone::wall::{Fit, Measures, Taper};
+use super::cone::taper::{Fit, Measures, Taper};
 use super::cylinder::middle;
 use super::exact::{self, Expression, Number, difference, dot};
 use super::offset::{Between, Offset};

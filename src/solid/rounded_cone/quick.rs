@@ -14,7 +14,7 @@
 //!
 //! so the distance from there to the other ball is at least `β / (|a| + r + r')`. Either
 //! parameter is within 2^-36 `(|x| + |a| + R) / |d|` of itself, R the greater radius, by (3) of
-//! `ball.rs` or the solver's own rule. With `Z = |a|² + R²`, `(|a| + 2 R)² <= 8 Z` and
+//! `ball` or the solver's own rule. With `Z = |a|² + R²`, `(|a| + 2 R)² <= 8 Z` and
 //! `(|x| + |a| + R)² <= 3 (|x|² + Z)`, they are in order if
 //!
 //! ```text
@@ -30,7 +30,7 @@ use super::RoundedCone;
 use crate::math::power_of_two;
 use crate::solid::ball::QuickBall;
 use crate::solid::cone::quick::{QuickWall, Side};
-use crate::solid::cone::wall::{Fit, Taper};
+use crate::solid::cone::taper::{Fit, Taper};
 use crate::solid::quick::{End, Quick, Range};
 
 /// The first intersection of the line `p0 + x + t d`.

@@ -20,7 +20,8 @@ use super::RoundedCone;
 use crate::solid::chord::{Chord, ChordEnd};
 use crate::solid::cone::heights::{End, Heights, Root};
 use crate::solid::cone::solver::along;
-use crate::solid::cone::wall::{Fit, Taper, WallIntersection};
+use crate::solid::cone::taper::{Fit, Taper};
+use crate::solid::cone::wall::WallIntersection;
 use crate::solid::offset::Offset;
 use crate::solid::{Part, ball};
 

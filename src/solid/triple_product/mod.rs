@@ -32,7 +32,7 @@
 //! cancels as well, and is computed from exact products.
 //!
 //! The axial position of a point is `y = x·a + t d·a`, inside the slab between the disks iff
-//! `0 <= y <= |a|²`. `slab.rs` intersects wall and slab, and requests the second root only if
+//! `0 <= y <= |a|²`. `slab` intersects wall and slab, and requests the second root only if
 //! the first does not decide.
 //!
 //! `ties.rs` has the exact decisions at the rims.

@@ -26,6 +26,13 @@ pub(super) trait OperandSurface {
     fn exact_normal(&self, part: Part, point: DVec3) -> Option<Vector>;
 }
 
+impl Viewed<'_> {
+    /// Adds the pieces that pass through the point.
+    pub fn add_pieces(&self, pieces: &mut Pieces) {
+        with_solid!(self.solid, solid => solid.add_pieces(self, pieces));
+    }
+}
+
 /// An exact outward normal of a solid's piece at one of its points; `None` for an apex.
 pub(super) fn outward(solid: &AnySolid, piece: &Piece, point: DVec3) -> Option<Vector> {
     if !piece.is_flat_to_first_order() {

@@ -18,9 +18,13 @@
 //! the one at which it enters is open. Whether an end is open depends on the line alone, so all
 //! queries of the line have the same ends.
 
-use super::chord::{Chord, ChordEnd, Intersection};
-use super::{Caps, Crossing, Part};
+mod question;
+
+use super::Part;
+use super::chord::{Chord, ChordEnd};
 use crate::math::Real;
+
+pub use question::{FirstIntersection, Question, WholeChord};
 
 /// A line as seen along the axis.
 #[derive(Clone, Copy, Debug)]
@@ -61,95 +65,6 @@ pub trait Wall<S: Real> {
 pub struct Overlap<S, W> {
     slab: Slab<S>,
     wall: W,
-}
-
-/// A function of a chord. A type, not a closure: its methods are inlined, so that nothing of
-/// the chord has to be kept in memory.
-pub trait Question<S: Real> {
-    /// The result if there is a chord.
-    type Answer;
-
-    /// The result for a known chord.
-    fn of_chord(self, chord: Chord<S>) -> Option<Self::Answer>;
-
-    /// The result for wall and slab, which may have no common chord.
-    fn of_overlap(self, overlap: &Overlap<S, impl Wall<S>>) -> Option<Self::Answer>;
-}
-
-/// [`Chord::first`]. The end at which the line leaves is computed only if the one at which it
-/// enters is no hit.
-pub struct FirstIntersection<S> {
-    /// The closed ends.
-    pub caps: Caps,
-    /// The `t` of the whole ray at the line's `t = 0`.
-    pub shift: S,
-    /// The least `t` of the whole ray.
-    pub t_min: S,
-    /// The greatest `t` of the whole ray.
-    pub t_max: S,
-}
-
-impl<S: Real> Question<S> for FirstIntersection<S> {
-    type Answer = Intersection<S>;
-
-    #[inline]
-    fn of_chord(self, chord: Chord<S>) -> Option<Intersection<S>> {
-        chord.first(self.caps, self.shift, self.t_min, self.t_max)
-    }
-
-    #[inline(always)]
-    fn of_overlap(self, overlap: &Overlap<S, impl Wall<S>>) -> Option<Intersection<S>> {
-        if overlap.is_across() {
-            return self.of_chord(overlap.across()?);
-        }
-        let disks = Disks::of(&overlap.slab);
-        let intersection = |end: ChordEnd<S>, crossing| {
-            end.intersection(crossing, self.caps, self.shift, self.t_min, self.t_max)
-        };
-        let (is_there, enter) = overlap.enter(&disks);
-        if enter.is_open {
-            return self.of_chord(overlap.wall.exact_chord()?);
-        }
-        if !is_there {
-            return None;
-        }
-        if let Some(entry) = intersection(enter.end, Crossing::Enter) {
-            return Some(entry);
-        }
-        intersection(overlap.decided_leave(&disks, enter.end.t), Crossing::Leave)
-    }
-}
-
-/// The chord itself.
-pub struct WholeChord;
-
-impl<S: Real> Question<S> for WholeChord {
-    type Answer = Chord<S>;
-
-    #[inline]
-    fn of_chord(self, chord: Chord<S>) -> Option<Chord<S>> {
-        Some(chord)
-    }
-
-    #[inline(always)]
-    fn of_overlap(self, overlap: &Overlap<S, impl Wall<S>>) -> Option<Chord<S>> {
-        if overlap.is_across() {
-            return overlap.across();
-        }
-        let disks = Disks::of(&overlap.slab);
-        let (is_there, enter) = overlap.enter(&disks);
-        if enter.is_open {
-            return overlap.wall.exact_chord();
-        }
-        if !is_there {
-            return None;
-        }
-        Some(Chord {
-            enter: enter.end,
-            leave: overlap.decided_leave(&disks, enter.end.t),
-            lies_on: None,
-        })
-    }
 }
 
 /// The end at which a line enters, from rounded numbers.
@@ -376,16 +291,7 @@ impl<S: Real> Slab<S> {
         } else {
             None
         };
-        let end = |t| ChordEnd {
-            t,
-            part: disk.unwrap_or(Part::Side),
-            on_rim: disk.is_some(),
-        };
-        Some(Chord {
-            enter: end(t0),
-            leave: end(t1),
-            lies_on: disk,
-        })
+        Some(Chord::across([t0, t1], disk))
     }
 
     #[inline]
