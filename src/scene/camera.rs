@@ -4,10 +4,10 @@ use glam::DVec3;
 
 use super::defaults;
 use super::description::{Camera, Frame, Projection};
-use super::document::{CameraKeys, Triple};
+use super::document::CameraKeys;
 use super::error::SceneError;
-use super::settings::vector;
 use super::source::Source;
+use super::values::{Triple, vector};
 use crate::math::unit;
 use crate::solid::Cylinder;
 

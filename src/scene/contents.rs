@@ -5,8 +5,8 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use super::cylinder_list::Records;
 use super::description::{Prototype, PrototypeIndex, Scene};
+use super::record::Records;
 use super::solid_lists::{SolidList, Stored};
 use crate::solid::{Composition, SolidCounts, SolidKind};
 use crate::with_solid_kind;

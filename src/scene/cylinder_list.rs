@@ -1,22 +1,8 @@
 //! The cylinders of a prototype, stored in f64 or rounded to f32.
 //!
-//! In f64 a record fills a cache line, primitive number included. In f32 it fills half a
-//! cache line: the primitive numbers are stored separately, as runs of consecutive numbers,
-//! which is a single run unless rows were skipped.
-//!
-//! **Rounding.** A number is rounded to the nearest f32 once, when it is added.
-//! From then on the rounded cylinder *is* the cylinder: its conversion to f64 is
-//! exact, and every error bound refers to its surface. The difference of a number
-//! from the stated one is at most
-//!
-//! ```text
-//! |f32(x) - x| <= 2^-24 |x|     where |x| >= 2^-126,
-//!                 2^-150        below, where f32 is denormal
-//! ```
-//!
-//! and [`CylinderList::rounding`] is the greatest difference in the list. A cylinder
-//! is rejected if its ends become the same point, its radius becomes zero or a number
-//! exceeds f32.
+//! In f32 the primitive numbers are stored beside the records, as runs of consecutive numbers,
+//! which is a single run unless rows were skipped. [`CylinderList::rounding`] is the greatest
+//! difference of a number from the stated one.
 
 mod arrangement;
 
@@ -24,85 +10,11 @@ use std::borrow::Borrow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
-use super::description::{CylinderRecord, MaterialIndex};
-use super::solid_lists::{SolidList, SolidRecord};
-use crate::solid::{Caps, Cylinder, CylinderError};
-
-/// The precision in which cylinders are stored.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Records {
-    /// Unrounded, 64 bytes a cylinder.
-    #[default]
-    F64,
-    /// Rounded to f32, 32 bytes a cylinder.
-    F32,
-}
-
-impl Records {
-    /// The name in scene files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::F64 => "f64",
-            Self::F32 => "f32",
-        }
-    }
-
-    /// The bytes of one record.
-    #[must_use]
-    pub fn record_bytes(self) -> usize {
-        match self {
-            Self::F64 => size_of::<CylinderRecord>(),
-            Self::F32 => size_of::<CylinderRecord32>(),
-        }
-    }
-}
-
-/// A cylinder of f32 numbers and its material, in half a cache line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C, align(32))]
-pub struct CylinderRecord32 {
-    p0: [f32; 3],
-    p1: [f32; 3],
-    radius: f32,
-    material: MaterialIndex,
-    caps: Caps,
-}
-
-const _: () = assert!(size_of::<CylinderRecord32>() == 32);
-
-impl CylinderRecord32 {
-    /// The record of a rounded cylinder.
-    fn new(cylinder: &Cylinder, material: MaterialIndex) -> Result<Self, CylinderError> {
-        let record = Self {
-            p0: cylinder.p0().as_vec3().to_array(),
-            p1: cylinder.p1().as_vec3().to_array(),
-            radius: cylinder.radius() as f32,
-            material,
-            caps: cylinder.caps(),
-        };
-        let rounded = record.cylinder();
-        Cylinder::new(rounded.p0(), rounded.p1(), rounded.radius(), rounded.caps())?;
-        Ok(record)
-    }
-
-    /// The cylinder of exactly these numbers.
-    #[inline]
-    #[must_use]
-    pub fn cylinder(&self) -> Cylinder {
-        let widened = |point: [f32; 3]| Vec3::from_array(point).as_dvec3();
-        let radius = f64::from(self.radius);
-        Cylinder::from_valid(widened(self.p0), widened(self.p1), radius, self.caps)
-    }
-
-    /// The material.
-    #[must_use]
-    pub fn material(&self) -> MaterialIndex {
-        self.material
-    }
-}
+use super::record::{CylinderRecord, CylinderRecord32, MaterialIndex, Records, SolidRecord};
+use super::solid_lists::SolidList;
+use crate::solid::{Cylinder, CylinderError};
 
 /// The cylinders of a prototype, each with its primitive number, in any order.
 #[derive(Clone, Debug)]
@@ -245,7 +157,7 @@ impl CylinderList {
             Storage::F32(rounded) => {
                 let record = &rounded.records[position];
                 let number = rounded.primitive(position);
-                CylinderRecord::new(&record.cylinder(), number, record.material)
+                CylinderRecord::new(&record.cylinder(), number, record.material())
             }
         }
     }

@@ -1,10 +1,10 @@
 //! The validated description of a scene: everything that `tracer` and `render` need,
 //! independent of the files it came from.
 
-use super::cylinder_list::Records;
 use super::origins::Origins;
+use super::record::Records;
 use super::solid_lists::Solids;
-use crate::solid::{AnySolid, Caps, Cylinder};
+use crate::solid::AnySolid;
 use glam::{DAffine3, DVec3};
 
 /// A whole scene. Loading validates its content.
@@ -63,10 +63,6 @@ impl PrototypeIndex {
     pub const ROOT: Self = Self(0);
 }
 
-/// The position of a material in [`Scene::materials`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct MaterialIndex(pub u16);
-
 /// A named list of solids and of placements of other prototypes.
 #[derive(Clone, Debug, Default)]
 pub struct Prototype {
@@ -103,55 +99,6 @@ pub struct Placement {
     /// Maps points of the placed prototype to points of the one that contains the
     /// placement: `L x + translation`, with finite entries and `L` invertible.
     pub parent_from_child: DAffine3,
-}
-
-/// A cylinder with its number and material, in one cache line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C, align(64))]
-pub struct CylinderRecord {
-    p0: DVec3,
-    p1: DVec3,
-    radius: f64,
-    primitive: u32,
-    material: MaterialIndex,
-    caps: Caps,
-}
-
-const _: () = assert!(size_of::<CylinderRecord>() == 64);
-
-impl CylinderRecord {
-    /// The record of a cylinder. `primitive` is its number within its
-    /// prototype, as `trace` reports it.
-    #[must_use]
-    pub fn new(cylinder: &Cylinder, primitive: u32, material: MaterialIndex) -> Self {
-        Self {
-            p0: cylinder.p0(),
-            p1: cylinder.p1(),
-            radius: cylinder.radius(),
-            primitive,
-            material,
-            caps: cylinder.caps(),
-        }
-    }
-
-    /// The cylinder.
-    #[inline]
-    #[must_use]
-    pub fn cylinder(&self) -> Cylinder {
-        Cylinder::from_valid(self.p0, self.p1, self.radius, self.caps)
-    }
-
-    /// The number within the prototype.
-    #[must_use]
-    pub fn primitive(&self) -> u32 {
-        self.primitive
-    }
-
-    /// The material.
-    #[must_use]
-    pub fn material(&self) -> MaterialIndex {
-        self.material
-    }
 }
 
 /// How a surface scatters light. All materials are diffuse.

@@ -8,18 +8,14 @@ use toml::Spanned;
 use super::formats::{
     BeamLatticeKeys, CylinderTableKeys, SolidFile, SwcKeys, for_each_solid_format,
 };
-use super::set_operations::Operation;
-use super::solid_keys::{CompositionKeys, RotationKeys};
+use super::materials::MaterialKeys;
+use super::set_operations::{CompositionKeys, Operation};
+use super::solid_keys::RotationKeys;
 use super::solids::SceneSolid;
 use super::table::ColumnKey;
-use super::values::{ColumnOrList, Keys, List, Number, NumberOrList, Whole};
+use super::values::{ColumnOrList, Keys, List, Number, NumberOrList, ThreeColumns, Triple, Whole};
 use crate::for_each_solid;
 use crate::solid::SolidKind;
-
-/// Three numbers with their place.
-pub(super) type Triple = Spanned<List<Number, 3>>;
-/// Three columns, each with its place.
-pub(super) type ThreeColumns = List<Spanned<ColumnKey>, 3>;
 
 /// Declares the tables that contain solids and placements, and [`Body`], which borrows
 /// their lists. Each table repeats the lists after its own keys, because serde cannot
@@ -201,15 +197,6 @@ pub(super) struct SunKeys {
 pub(super) struct SkyKeys {
     pub color: Option<Triple>,
     pub strength: Option<Spanned<Number>>,
-}
-
-/// `[[material]]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct MaterialKeys {
-    pub name: Spanned<String>,
-    pub kind: Option<Spanned<String>>,
-    pub color: Triple,
 }
 
 /// `[[instance]]`

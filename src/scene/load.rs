@@ -2,44 +2,32 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
-use std::path::Path;
 
 use toml::Spanned;
 
 use super::camera::camera;
-use super::cylinder_list::Records;
 use super::description::{Prototype, PrototypeIndex, Scene};
 use super::document::{Body, Document, PrototypeKeys, ScatterKeys};
 use super::error::SceneError;
 use super::formats::Context;
 use super::graph::{self, Node};
+use super::materials::{Materials, check_names};
 use super::named_table::Tables;
 use super::names::{quoted, suggestion};
 use super::origins::Origins;
 use super::placing::{Edge, Placements};
+use super::pose;
+use super::record::Records;
 use super::scatter::{Pattern, Scatter};
-use super::scene_file::SceneFile;
-use super::set_operations::Operation;
-use super::settings::{Materials, check_names, film, lights, render};
+use super::set_operations::{CompositionKeys, Operation};
+use super::settings::{film, lights, render};
 use super::solid_collector::{Refusal, SolidCollector};
-use super::solid_keys::{CompositionKeys, SolidTable};
+use super::solid_keys::SolidTable;
 use super::solids::SolidKeys;
 use super::source::Source;
 use super::transform::GREATEST_ENTRY;
 use super::values::{Keys, NumberOrList, Whole};
 use crate::for_each_solid;
-
-/// Reads a scene file and the files that it names, and validates them.
-///
-/// `docs/scene-file.md` describes the file. Paths in it are relative to its
-/// folder.
-///
-/// # Errors
-/// If a file cannot be read, or differs from that description. The message names
-/// the file, the line and the value, and states what would be right.
-pub fn load(path: &Path) -> Result<Scene, SceneError> {
-    SceneFile::read(path)?.load()
-}
 
 /// Turns the keys of a scene file into the scene.
 pub(super) fn lower(
@@ -232,7 +220,7 @@ impl Loader<'_> {
         tables: &[Keys<K>],
     ) -> Result<(), SceneError> {
         for Keys(keys) in tables {
-            let solid = keys.solid(self.source)?;
+            let solid = pose::solid(self.source, keys)?;
             let material = self.materials.find(self.source, keys.material())?;
             self.number(solids, keys.primitive())?;
             let pushed = solids.push_any(&solid, material);

@@ -5,16 +5,16 @@
 //! 1. `document` contains the keys as written, with their places.
 //! 2. The entries are turned into solids, placements and settings, one kind in each
 //!    file: `solids` with their `pose`, `set_operations`, the `formats` of files,
-//!    `placing`, `scatter`, `camera` and `settings`. Rows of tables are streamed;
+//!    `placing`, `scatter`, `camera`, `materials` and `settings`. Rows of tables are streamed;
 //!    `named_table` opens the tables and `table` reads them. `solid_collector` collects
 //!    and numbers the solids of a prototype.
 //! 3. `graph` checks how prototypes place each other.
 //!
 //! `scene_file` is the state after the first step; `contents` counts what loading will
-//! make, so that a scene that is too large is rejected early. `cylinder_list` stores
-//! cylinders in f64 or f32, and `solid_lists` the other kinds; `aimed_camera` aims the
-//! camera. The result is a [`Scene`] that needs no further checks and does not depend on
-//! files. [`save`] writes it as such files.
+//! make, so that a scene that is too large is rejected early. `record` is what is stored of
+//! a solid; `cylinder_list` stores cylinders in f64 or f32, and `solid_lists` the other
+//! kinds; `aimed_camera` aims the camera. The result is a [`Scene`] that needs no further
+//! checks and does not depend on files. [`save`] writes it as such files.
 //!
 //! `number_table` and `hit_table` read other tables: rays, points, and the hits of another
 //! program.
@@ -34,13 +34,16 @@ mod instance_rows;
 mod limits;
 mod lines;
 mod load;
+mod materials;
 mod named_table;
 mod names;
 mod number_table;
 mod origins;
 mod placing;
 mod pose;
+mod record;
 mod regular_file;
+mod rigid_motion;
 mod save;
 mod scatter;
 mod scene_file;
@@ -61,22 +64,24 @@ mod view_volume;
 pub use aimed_camera::AimedCamera;
 pub use contents::{ExpectedCounts, ExpectedSolids, PlacedCount};
 pub(crate) use cylinder_list::SharedRecords;
-pub use cylinder_list::{CylinderList, CylinderRecord32, Iter as CylinderIter, Records};
+pub use cylinder_list::{CylinderList, Iter as CylinderIter};
 pub use description::{
-    Camera, CylinderRecord, Film, Frame, Integrator, Material, MaterialIndex, Placement,
-    Projection, Prototype, PrototypeIndex, RenderSettings, Scene, Sky, Sun,
+    Camera, Film, Frame, Integrator, Material, Placement, Projection, Prototype, PrototypeIndex,
+    RenderSettings, Scene, Sky, Sun,
 };
 pub use error::{SceneError, Statement};
 pub use formats::{SOLID_FORMATS, SolidFormatInfo, beams_of_model, check_swc};
 pub use hit_table::{GivenHit, GivenHits};
 pub use limits::*;
-pub use load::load;
 pub use number_table::{NumberColumns, NumberRow, NumberTable};
 pub use origins::{Origin, Origins};
+pub use record::{
+    CompositionRecord, CylinderRecord, CylinderRecord32, MaterialIndex, Records, SolidRecord,
+};
 pub use save::{SaveError, save};
-pub use scene_file::SceneFile;
+pub use scene_file::{SceneFile, load};
 pub use scene_stats::SceneStats;
-pub use solid_lists::{CompositionRecord, Listed, SolidList, SolidRecord, Solids, Stored};
+pub use solid_lists::{Listed, SolidList, Solids, Stored};
 pub use table::{
     Block, Column, ColumnKey, Decimal, Delimiter, Fault, Layout, Row, Rows, Table, TableFormat,
 };

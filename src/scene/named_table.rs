@@ -6,11 +6,11 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::document::ThreeColumns;
 use super::error::SceneError;
 use super::lines::lines;
 use super::source::Source;
 use super::table::{Column, ColumnKey, Decimal, Delimiter, Row, Rows, Table, TableFormat, input};
+use super::values::ThreeColumns;
 
 /// The data that all tables of a scene file share.
 pub(super) struct Tables<'a> {

@@ -14,10 +14,9 @@ use super::instance_rows::Layout;
 use super::named_table::{TableKeys, Tables};
 use super::pose;
 use super::scatter::Scatter;
-use super::settings::vector;
 use super::source::Source;
 use super::transform::{Reach, checked};
-use super::values::{Keys, NumberOrList};
+use super::values::{Keys, NumberOrList, vector};
 use crate::math::{rotation, sin_cos_degrees};
 
 /// The placements of one prototype.

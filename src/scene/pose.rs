@@ -11,11 +11,11 @@ use glam::DVec3;
 use toml::Spanned;
 
 use super::error::SceneError;
-use super::settings::vector;
+use super::rigid_motion::RigidMotion;
 use super::solid_keys::{PoseKeys, RotationKeys};
-use super::solids::SceneSolid;
+use super::solids::{SceneSolid, SolidKeys};
 use super::source::Source;
-use super::values::{Keys, Number};
+use super::values::{Keys, Number, vector};
 use crate::math::{Orientation, unit};
 use crate::solid::{AnySolid, Composition};
 use crate::with_solid;
@@ -43,6 +43,16 @@ pub(super) fn axis(source: &Source, turn: &RotationKeys) -> Result<DVec3, SceneE
             "the rotation axis is zero: it must be a direction, of any length",
         )
     })
+}
+
+/// The solid of a table in its pose.
+pub(super) fn solid<K: SolidKeys + ?Sized>(
+    source: &Source,
+    keys: &K,
+) -> Result<AnySolid, SceneError> {
+    let unmoved = keys.unmoved(source)?;
+    let motion = Motion::new(source, &keys.pose(), keys.place())?;
+    motion.of_solid(&unmoved, unmoved.center())
 }
 
 impl<'a> Motion<'a> {
@@ -100,32 +110,5 @@ impl<'a> Motion<'a> {
                     .error(place, format!("after the solid is rotated and translated, {error}"))
             })
         })
-    }
-}
-
-/// A rotation about a center and a translation. A missing part changes no bit.
-pub(super) struct RigidMotion {
-    turn: Option<Orientation>,
-    center: DVec3,
-    translation: Option<DVec3>,
-}
-
-impl RigidMotion {
-    /// Moves a point.
-    pub fn point(&self, point: DVec3) -> DVec3 {
-        let turned = self.turn.map_or(point, |turn| {
-            self.center + turn.to_world(point - self.center)
-        });
-        self.translation.map_or(turned, |by| turned + by)
-    }
-
-    /// Rotates a direction.
-    pub fn direction(&self, direction: DVec3) -> DVec3 {
-        self.turn.map_or(direction, |turn| turn.to_world(direction))
-    }
-
-    /// The new orientation of an object, given the one before.
-    pub fn orientation(&self, before: Orientation) -> Orientation {
-        self.turn.map_or(before, |turn| before.then(turn))
     }
 }

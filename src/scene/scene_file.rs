@@ -6,16 +6,29 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 
 use super::contents::{ExpectedCounts, ExpectedSolids, mark_used, placed_counts};
-use super::cylinder_list::Records;
 use super::description::{PrototypeIndex, Scene};
 use super::document::{Body, Document};
 use super::error::SceneError;
 use super::formats::{self, SolidFile};
 use super::load::{lower, records};
 use super::named_table::table_rows;
+use super::record::Records;
 use super::set_operations::operand_count;
 use super::source::Source;
+use super::toml_message::toml_error;
 use super::values::Keys;
+
+/// Reads a scene file and the files that it names, and validates them.
+///
+/// `docs/scene-file.md` describes the file. Paths in it are relative to its
+/// folder.
+///
+/// # Errors
+/// If a file cannot be read, or differs from that description. The message names
+/// the file, the line and the value, and states what would be right.
+pub fn load(path: &Path) -> Result<Scene, SceneError> {
+    SceneFile::read(path)?.load()
+}
 
 /// A scene file that has been read; the files that it names have not.
 pub struct SceneFile {
@@ -38,7 +51,8 @@ impl SceneFile {
 
     fn read_toml(path: &Path) -> Result<Self, SceneError> {
         let source = Source::read(path)?;
-        let document = toml::from_str(source.text()).map_err(|error| source.toml_error(&error))?;
+        let document =
+            toml::from_str(source.text()).map_err(|error| toml_error(&source, &error))?;
         Ok(Self { source, document })
     }
 

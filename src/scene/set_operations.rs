@@ -1,15 +1,60 @@
-//! Set operations: turns the keys of a table into the tree of its solids.
+//! Set operations: the keys of their tables, and the tree of solids that they state.
 
 use glam::DVec3;
+use serde::Deserialize;
 use toml::Spanned;
 
 use super::error::SceneError;
-use super::pose::Motion;
-use super::solid_keys::{CompositionKeys, OperandKeys, SolidTable};
-use super::solids::SolidKeys;
+use super::pose::{self, Motion};
+use super::solid_keys::{SolidTable, solid_table};
+use super::solids::{SceneSolid, SolidKeys};
 use super::source::Source;
 use super::values::Keys;
+use crate::for_each_solid;
 use crate::solid::{AnySolid, Composition, SolidKind};
+
+solid_table! {
+    /// `[[union]]`, `[[intersection]]`, `[[difference]]`
+    CompositionKeys {
+        of: Operands,
+    }
+}
+
+/// The operands of a set operation.
+pub(super) type Operands = Spanned<Vec<Spanned<Keys<OperandKeys>>>>;
+
+impl CompositionKeys {
+    pub fn of(&self) -> &Operands {
+        &self.of
+    }
+}
+
+macro_rules! operand_keys {
+    ($({ $type:ident $name:ident $($rest:tt)* })*) => {
+        /// An operand of a set operation: exactly one of these keys.
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub(super) struct OperandKeys {
+            $($name: Option<Spanned<Keys<<crate::solid::$type as SceneSolid>::Keys>>>,)*
+            pub union: Option<Keys<CompositionKeys>>,
+            pub intersection: Option<Keys<CompositionKeys>>,
+            pub difference: Option<Keys<CompositionKeys>>,
+        }
+
+        impl OperandKeys {
+            /// The solids among the keys, each with its place.
+            pub fn solids(&self) -> impl Iterator<Item = Spanned<&dyn SolidKeys>> {
+                let all = [$(self.$name.as_ref().map(|stated| {
+                    let Keys(keys) = stated.get_ref();
+                    Spanned::new(stated.span(), keys as &dyn SolidKeys)
+                })),*];
+                all.into_iter().flatten()
+            }
+        }
+    };
+}
+
+for_each_solid!(operand_keys);
 
 /// The set operation of a table.
 #[derive(Clone, Copy)]
@@ -120,7 +165,7 @@ enum Stated<'a> {
 fn closed(source: &Source, stated: &Spanned<&dyn SolidKeys>) -> Result<Composition, SceneError> {
     let keys = *stated.get_ref();
     check_part(source, keys)?;
-    let solid = keys.solid(source)?;
+    let solid = pose::solid(source, keys)?;
     if solid.is_closed() {
         return Ok(Composition::Solid(solid));
     }

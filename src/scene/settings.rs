@@ -1,18 +1,15 @@
-//! The picture's settings in a scene file: film, lights and materials.
-
-use std::collections::HashMap;
+//! The picture's settings in a scene file: film, lights and what `render` computes.
 
 use glam::DVec3;
 use toml::Spanned;
 
 use super::defaults;
-use super::description::{Film, Integrator, Material, MaterialIndex, RenderSettings, Sky, Sun};
-use super::document::{FilmKeys, MaterialKeys, RenderKeys, SkyKeys, SunKeys, Triple};
+use super::description::{Film, Integrator, RenderSettings, Sky, Sun};
+use super::document::{FilmKeys, RenderKeys, SkyKeys, SunKeys};
 use super::error::SceneError;
 use super::limits::{GREATEST_PIXELS, GREATEST_SAMPLES};
-use super::names::{quoted, suggestion};
 use super::source::Source;
-use super::values::{Keys, Number, Whole};
+use super::values::{Number, Triple, Whole, vector};
 use crate::math::{power_of_two, sin_cos_degrees, unit};
 
 /// Most pixels across and down.
@@ -164,104 +161,6 @@ fn count(
     }
 }
 
-/// The materials of a scene and their names.
-pub(super) struct Materials {
-    pub list: Vec<Material>,
-    index: HashMap<String, MaterialIndex>,
-}
-
-impl Materials {
-    /// The default material and all `[[material]]`s.
-    pub fn new(source: &Source, entries: &[Keys<MaterialKeys>]) -> Result<Self, SceneError> {
-        let mut materials = Self {
-            list: vec![defaults::material()],
-            index: HashMap::new(),
-        };
-        check_names(
-            source,
-            "material",
-            entries.iter().map(|Keys(keys)| &keys.name),
-        )?;
-        for Keys(keys) in entries {
-            materials.add(source, keys)?;
-        }
-        Ok(materials)
-    }
-
-    fn add(&mut self, source: &Source, keys: &MaterialKeys) -> Result<(), SceneError> {
-        let name = keys.name.get_ref();
-        if let Some(kind) = &keys.kind {
-            source.choose("kind", kind, &[("diffuse", ())])?;
-        }
-        let color = vector(&keys.color);
-        if !(color.cmpge(DVec3::ZERO) & color.cmple(DVec3::ONE)).all() {
-            return Err(source.error(
-                keys.color.span(),
-                format!(
-                    "color is [{}, {}, {}]: a material's components must be in [0, 1]",
-                    color.x, color.y, color.z
-                ),
-            ));
-        }
-        let index = u16::try_from(self.list.len()).map_err(|_| {
-            source.error(
-                keys.name.span(),
-                format!("a scene can contain at most {} materials", u16::MAX),
-            )
-        })?;
-        self.index.insert(name.clone(), MaterialIndex(index));
-        self.list.push(Material {
-            name: name.clone(),
-            color,
-        });
-        Ok(())
-    }
-
-    /// The material of a name, or the default material without a name.
-    pub fn find(
-        &self,
-        source: &Source,
-        name: Option<&Spanned<String>>,
-    ) -> Result<MaterialIndex, SceneError> {
-        let Some(name) = name else {
-            return Ok(MaterialIndex::default());
-        };
-        self.index.get(name.get_ref()).copied().ok_or_else(|| {
-            let names = self.list[1..].iter().map(|material| material.name.as_str());
-            source.error_with_help(
-                name.span(),
-                format!("unknown material {}", quoted(name.get_ref())),
-                suggestion(name.get_ref(), names, "materials"),
-            )
-        })
-    }
-}
-
-/// Checks that no name is empty and that names are unique.
-pub(super) fn check_names<'n>(
-    source: &Source,
-    what: &str,
-    names: impl Iterator<Item = &'n Spanned<String>>,
-) -> Result<(), SceneError> {
-    let mut lines = HashMap::new();
-    for name in names {
-        if name.get_ref().is_empty() {
-            return Err(source.error(name.span(), format!("the name of a {what} is empty")));
-        }
-        if let Some(first) = lines.insert(name.get_ref(), name.span()) {
-            return Err(source.error(
-                name.span(),
-                format!(
-                    "the {what} {} is already defined on line {}: names must differ",
-                    quoted(name.get_ref()),
-                    source.line(&first)
-                ),
-            ));
-        }
-    }
-    Ok(())
-}
-
 /// The linear RGB of a light, which must not be negative.
 fn color(source: &Source, key: Option<&Triple>, default: DVec3) -> Result<DVec3, SceneError> {
     let Some(key) = key else {
@@ -297,9 +196,4 @@ fn strength(
 
 fn number(key: Option<&Spanned<Number>>, default: f64) -> f64 {
     key.map_or(default, |key| key.get_ref().0)
-}
-
-/// The three numbers of a key.
-pub(super) fn vector(triple: &Triple) -> DVec3 {
-    DVec3::from(triple.get_ref().0.map(|number| number.0))
 }

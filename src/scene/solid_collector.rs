@@ -6,11 +6,11 @@ use std::sync::Arc;
 
 use toml::Spanned;
 
-use super::cylinder_list::{CylinderList, Records};
-use super::description::MaterialIndex;
+use super::cylinder_list::CylinderList;
 use super::error::SceneError;
 use super::origins::Origins;
-use super::solid_lists::{Listed, SolidList, SolidRecord, Solids};
+use super::record::{MaterialIndex, Records, SolidRecord};
+use super::solid_lists::{Listed, SolidList, Solids};
 use super::source::Source;
 use crate::math::Bounds;
 use crate::solid::{

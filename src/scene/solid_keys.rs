@@ -1,12 +1,10 @@
-//! The keys of solids in a scene file, as written.
+//! The keys that the tables of all solids have, as written.
 
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::document::Triple;
-use super::solids::{SceneSolid, SolidKeys};
-use super::values::{Keys, Number, Whole};
-use crate::for_each_solid;
+use super::values::{Keys, Number, Triple, Whole};
+use crate::solid::Caps;
 
 /// The keys of a solid's rotations and translation.
 #[derive(Clone, Copy)]
@@ -24,6 +22,14 @@ pub(super) struct RotationKeys {
     pub axis: Triple,
     pub degrees: Number,
 }
+
+/// The names of closed ends.
+pub(super) const CAPS: [(&str, Caps); 4] = [
+    ("none", Caps::None),
+    ("p0", Caps::P0),
+    ("p1", Caps::P1),
+    ("both", Caps::Both),
+];
 
 /// The keys that every solid's table has.
 pub(super) trait SolidTable {
@@ -47,7 +53,7 @@ macro_rules! solid_table {
             rotate_y: Option<$crate::scene::values::Number>,
             rotate_z: Option<$crate::scene::values::Number>,
             rotate: Option<Vec<$crate::scene::values::Keys<$crate::scene::solid_keys::RotationKeys>>>,
-            translate: Option<$crate::scene::document::Triple>,
+            translate: Option<$crate::scene::values::Triple>,
         }
 
         impl $crate::scene::solid_keys::SolidTable for $name {
@@ -71,46 +77,3 @@ macro_rules! solid_table {
 }
 
 pub(super) use solid_table;
-
-solid_table! {
-    /// `[[union]]`, `[[intersection]]`, `[[difference]]`
-    CompositionKeys {
-        of: Operands,
-    }
-}
-
-/// The operands of a set operation.
-pub(super) type Operands = Spanned<Vec<Spanned<Keys<OperandKeys>>>>;
-
-impl CompositionKeys {
-    pub fn of(&self) -> &Operands {
-        &self.of
-    }
-}
-
-macro_rules! operand_keys {
-    ($({ $type:ident $name:ident $($rest:tt)* })*) => {
-        /// An operand of a set operation: exactly one of these keys.
-        #[derive(Deserialize)]
-        #[serde(deny_unknown_fields)]
-        pub(super) struct OperandKeys {
-            $($name: Option<Spanned<Keys<<crate::solid::$type as SceneSolid>::Keys>>>,)*
-            pub union: Option<Keys<CompositionKeys>>,
-            pub intersection: Option<Keys<CompositionKeys>>,
-            pub difference: Option<Keys<CompositionKeys>>,
-        }
-
-        impl OperandKeys {
-            /// The solids among the keys, each with its place.
-            pub fn solids(&self) -> impl Iterator<Item = Spanned<&dyn SolidKeys>> {
-                let all = [$(self.$name.as_ref().map(|stated| {
-                    let Keys(keys) = stated.get_ref();
-                    Spanned::new(stated.span(), keys as &dyn SolidKeys)
-                })),*];
-                all.into_iter().flatten()
-            }
-        }
-    };
-}
-
-for_each_solid!(operand_keys);

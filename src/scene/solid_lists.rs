@@ -5,37 +5,10 @@ use std::fmt::Debug;
 
 use rayon::prelude::*;
 
-use super::cylinder_list::Records;
-use super::description::{CylinderRecord, MaterialIndex};
+use super::record::{CompositionRecord, CylinderRecord, MaterialIndex, Records, SolidRecord};
 use crate::math::Bounds;
 use crate::solid::{AnySolid, Composition, ConvexSolid, SolidCounts, SolidKind};
 use crate::{for_each_solid, with_solid, with_solid_kind};
-
-/// A solid with its number and material.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SolidRecord<S> {
-    /// The solid.
-    pub solid: S,
-    /// The number within the prototype, as `trace` reports it.
-    pub primitive: u32,
-    /// The material.
-    pub material: MaterialIndex,
-}
-
-impl<S> SolidRecord<S> {
-    /// The record of a solid. `primitive` is its number within its prototype.
-    #[must_use]
-    pub fn new(solid: S, primitive: u32, material: MaterialIndex) -> Self {
-        Self {
-            solid,
-            primitive,
-            material,
-        }
-    }
-}
-
-/// A composed solid with its number and material.
-pub type CompositionRecord = SolidRecord<Composition>;
 
 /// A list of the solids of one kind, each with its number and material.
 pub trait SolidList: Clone + Debug + Default + Send + Sync {

@@ -9,7 +9,6 @@ use super::error::{Excerpt, SceneError, Statement};
 use super::limits::GREATEST_SCENE_BYTES;
 use super::names::{quoted, suggestion};
 use super::regular_file::read_regular;
-use super::toml_message;
 
 /// The longest line that an error shows, in bytes. For a longer line, the message gives
 /// only the place.
@@ -83,15 +82,6 @@ impl Source {
         self.statement(place, message.into(), Some(help.into()))
     }
 
-    /// The error of the TOML parser or of a value's type.
-    pub fn toml_error(&self, error: &toml::de::Error) -> SceneError {
-        let place = error.span().unwrap_or(0..0);
-        let (_, _, line_start) = locate(&self.text, place.start.min(self.text.len()));
-        let line = self.text[line_start..].lines().next().unwrap_or_default();
-        let (message, help) = toml_message::explain(error.message(), line);
-        self.statement(place, message, help)
-    }
-
     /// The error that a file named in the scene cannot be opened.
     pub fn unreadable(&self, file: &Spanned<String>, error: SceneError) -> SceneError {
         match error {
@@ -120,6 +110,12 @@ impl Source {
                 suggestion(text, choices.iter().map(|(name, _)| *name), "values"),
             )),
         }
+    }
+
+    /// The text of the line that contains a byte.
+    pub fn line_text(&self, byte: usize) -> &str {
+        let (_, _, line_start) = locate(&self.text, byte.min(self.text.len()));
+        self.text[line_start..].lines().next().unwrap_or_default()
     }
 
     /// The line of a place, from 1.

@@ -1,7 +1,9 @@
 //! Translates messages of the TOML parser for users, with advice.
 
+use super::error::SceneError;
 use super::formats;
 use super::names::{quoted, suggestion};
+use super::source::Source;
 use crate::solid::SolidKind;
 
 /// The top-level keys for arrays of tables, `[[...]]`, besides those of solids and of their
@@ -25,9 +27,19 @@ fn is_list(key: &str) -> bool {
 /// which may repeat keys and values of any length.
 const LONGEST_PART: usize = 300;
 
+/// The error of the TOML parser or of a value's type.
+pub(super) fn toml_error(source: &Source, error: &toml::de::Error) -> SceneError {
+    let place = error.span().unwrap_or(0..0);
+    let (message, help) = explain(error.message(), source.line_text(place.start));
+    match help {
+        Some(help) => source.error_with_help(place, message, help),
+        None => source.error(place, message),
+    }
+}
+
 /// The message for users, and advice if possible, for a message of the parser about a place
 /// in `line`.
-pub(super) fn explain(message: &str, line: &str) -> (String, Option<String>) {
+fn explain(message: &str, line: &str) -> (String, Option<String>) {
     if message.contains("max recursion depth met") {
         return ("the values are nested too deeply".to_owned(), None);
     }

@@ -7,8 +7,10 @@
 use std::fmt;
 use std::marker::PhantomData;
 
+use glam::DVec3;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use toml::Spanned;
 
 use super::table::ColumnKey;
 
@@ -41,6 +43,17 @@ pub(super) enum ColumnOrList<const N: usize> {
 /// A TOML table with the keys of `T` and no others.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Keys<T>(pub T);
+
+/// Three numbers with their place.
+pub(super) type Triple = Spanned<List<Number, 3>>;
+
+/// Three columns, each with its place.
+pub(super) type ThreeColumns = List<Spanned<ColumnKey>, 3>;
+
+/// The three numbers of a key.
+pub(super) fn vector(triple: &Triple) -> DVec3 {
+    DVec3::from(triple.get_ref().0.map(|number| number.0))
+}
 
 /// Rejects numbers that are not finite, for all number types.
 fn finite<E: Error>(number: f64) -> Result<f64, E> {

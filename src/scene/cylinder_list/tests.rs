@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::math::{Random, power_of_two};
+use crate::solid::Caps;
 
 fn record(random: &mut Random, primitive: u32) -> CylinderRecord {
     let p0 = random.direction() * random.log_uniform(1e-3, 1e3);

@@ -7,15 +7,13 @@ use toml::Spanned;
 use super::{Context, SolidFile, SolidFormat};
 use crate::math::unit;
 use crate::scene::contents::ExpectedSolids;
-use crate::scene::cylinder_list::Records;
-use crate::scene::description::CylinderRecord;
-use crate::scene::document::ThreeColumns;
 use crate::scene::error::SceneError;
 use crate::scene::named_table::{NamedTable, TableKeys, keys_of, table_rows};
+use crate::scene::record::{CylinderRecord, Records};
 use crate::scene::solid_collector::{Degenerate, SKIP_HELP, SolidCollector, is_degenerate};
 use crate::scene::source::Source;
 use crate::scene::table::{Column, ColumnKey, Fault, Row};
-use crate::scene::values::Keys;
+use crate::scene::values::{Keys, ThreeColumns};
 use crate::solid::{Caps, Cylinder, CylinderError, SolidKind};
 
 /// `[[cylinder_table]]`

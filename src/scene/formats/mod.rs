@@ -13,14 +13,13 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 
 use super::contents::ExpectedSolids;
-use super::cylinder_list::Records;
 use super::error::SceneError;
+use super::materials::Materials;
 use super::named_table::Tables;
-use super::settings::Materials;
+use super::record::{MaterialIndex, Records};
 use super::solid_collector::{Degenerate, Look, SolidCollector};
 use super::solids::caps;
 use super::source::Source;
-use crate::scene::description::MaterialIndex;
 
 pub(super) use beam_lattice::BeamLatticeKeys;
 pub use beam_lattice::beams_of_model;

@@ -9,7 +9,7 @@ use super::solids::{Numbers, numbered};
 use super::tables::push_cells;
 use super::{SaveError, Saver};
 use crate::scene::cylinder_list::CylinderList;
-use crate::scene::description::MaterialIndex;
+use crate::scene::record::MaterialIndex;
 use crate::solid::{Caps, Cylinder};
 
 /// Most cylinders of a prototype that a scene file states one by one.

@@ -27,8 +27,8 @@ pub(super) use text::Entry;
 
 use self::tables::Tables;
 use self::text::Text;
-use super::cylinder_list::Records;
-use super::description::{MaterialIndex, Prototype, PrototypeIndex, Scene};
+use super::description::{Prototype, PrototypeIndex, Scene};
+use super::record::{MaterialIndex, Records};
 
 /// What is being written.
 struct Saver<'a, W> {

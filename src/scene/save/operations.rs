@@ -5,7 +5,7 @@ use std::io::Write;
 use super::solids::Numbers;
 use super::text::Entry;
 use super::{SaveError, Saver};
-use crate::scene::solid_lists::CompositionRecord;
+use crate::scene::record::CompositionRecord;
 use crate::scene::solids::SceneSolid;
 use crate::solid::{Composition, SolidKind};
 use crate::with_solid;

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::SaveError;
 use crate::scene::limits::GREATEST_SCENE_BYTES;
-use crate::scene::solids::CAPS;
+use crate::scene::solid_keys::CAPS;
 use crate::solid::Caps;
 
 /// The text of a scene file that is being written.

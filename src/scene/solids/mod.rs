@@ -15,9 +15,9 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 
 use super::error::SceneError;
-use super::pose::{Motion, RigidMotion};
+use super::rigid_motion::RigidMotion;
 use super::save::Entry;
-use super::solid_keys::SolidTable;
+use super::solid_keys::{CAPS, SolidTable};
 use super::source::Source;
 use crate::solid::{AnySolid, Caps, ConvexSolid};
 
@@ -48,22 +48,7 @@ pub(super) trait SolidKeys: SolidTable {
 
     /// The solid before its pose is applied.
     fn unmoved(&self, source: &Source) -> Result<AnySolid, SceneError>;
-
-    /// The solid in its pose.
-    fn solid(&self, source: &Source) -> Result<AnySolid, SceneError> {
-        let unmoved = self.unmoved(source)?;
-        let motion = Motion::new(source, &self.pose(), self.place())?;
-        motion.of_solid(&unmoved, unmoved.center())
-    }
 }
-
-/// The names of closed ends.
-pub(super) const CAPS: [(&str, Caps); 4] = [
-    ("none", Caps::None),
-    ("p0", Caps::P0),
-    ("p1", Caps::P1),
-    ("both", Caps::Both),
-];
 
 /// The closed ends of a solid.
 pub(super) fn caps(source: &Source, word: Option<&Spanned<String>>) -> Result<Caps, SceneError> {

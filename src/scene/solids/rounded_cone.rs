@@ -6,15 +6,14 @@ use toml::Spanned;
 
 use super::cone::ConePlaces;
 use super::{SceneSolid, SolidKeys, with_span};
-use crate::scene::document::Triple;
 use crate::scene::error::SceneError;
-use crate::scene::pose::RigidMotion;
+use crate::scene::record::SolidRecord;
+use crate::scene::rigid_motion::RigidMotion;
 use crate::scene::save::Entry;
-use crate::scene::settings::vector;
 use crate::scene::solid_keys::solid_table;
-use crate::scene::solid_lists::{SolidRecord, Stored};
+use crate::scene::solid_lists::Stored;
 use crate::scene::source::Source;
-use crate::scene::values::Number;
+use crate::scene::values::{Number, Triple, vector};
 use crate::solid::{AnySolid, RoundedCone, RoundedConeError};
 
 solid_table! {

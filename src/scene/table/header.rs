@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use super::cells::{Cells, Splitter};
 use super::format::{Decimal, Delimiter, TableFormat, of_names, of_numbers};
-use super::row::{is_missing, number_of};
+use super::numbers::{is_missing, number_of};
 use crate::scene::error::SceneError;
 use crate::scene::names::{quoted, suggestion};
 

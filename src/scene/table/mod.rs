@@ -3,13 +3,14 @@
 //!
 //! `input` opens files and pipes; `records` finds the rows in the text and enforces the
 //! limits of `scene::limits`; `format` defines delimiters and decimal separators; `header`
-//! detects the columns; `cells` splits a row, and `row` reads its numbers.
+//! detects the columns; `cells` splits a row, and `row` reads its `numbers`.
 //! `docs/formats.md` describes the formats to users.
 
 mod cells;
 mod format;
 mod header;
 pub(super) mod input;
+mod numbers;
 mod records;
 mod row;
 
@@ -27,7 +28,7 @@ pub use row::{Fault, Row};
 pub(super) use {
     cells::{Cells, Splitter},
     format::of_names as delimiter_of,
-    row::number_of,
+    numbers::number_of,
 };
 
 use self::header::Beginning;

@@ -8,7 +8,7 @@ use toml::Spanned;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-use super::package::Part;
+use super::part::Part;
 use crate::scene::error::SceneError;
 use crate::scene::limits::MOST_PART_BYTES;
 use crate::scene::names::quoted;

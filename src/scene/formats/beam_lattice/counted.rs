@@ -11,9 +11,10 @@ use super::element::Element;
 use super::lattice::{End, Lattice};
 use super::model::Model;
 use super::package;
+use super::part::parsed;
 use crate::scene::contents::ExpectedSolids;
-use crate::scene::cylinder_list::Records;
 use crate::scene::error::SceneError;
+use crate::scene::record::Records;
 use crate::scene::source::Source;
 use crate::solid::SolidKind;
 
@@ -26,7 +27,7 @@ pub(super) fn count(
     solids: &mut ExpectedSolids,
 ) -> Result<(), SceneError> {
     let part = package::model_part(source, file)?;
-    let document = package::parsed(&part)?;
+    let document = parsed(&part)?;
     // Meshes add no solids, whether they are an error or not.
     let model = Model::new(&Element::root(&part.path, &document), true)?;
     for placed in &model.placed {

@@ -27,6 +27,7 @@ mod limits;
 mod model;
 mod notes;
 mod package;
+mod part;
 
 use std::collections::BTreeMap;
 
@@ -38,11 +39,11 @@ use self::counted::count;
 use self::element::{Element, Similarity};
 use self::lattice::{Beam, End, Lattice};
 use self::model::{Model, UNITS};
+use self::part::{Part, parsed};
 use super::{Context, SolidFile, SolidFormat};
 use crate::scene::contents::ExpectedSolids;
-use crate::scene::cylinder_list::Records;
-use crate::scene::description::MaterialIndex;
 use crate::scene::error::SceneError;
+use crate::scene::record::{MaterialIndex, Records};
 use crate::scene::solid_collector::{
     Degenerate, Refusal, SKIP_HELP, SolidCollector, is_degenerate, is_degenerate_cone,
 };
@@ -89,7 +90,7 @@ impl SolidFile for BeamLatticeKeys {
         let (source, file) = (context.source, &self.file);
         let keys = self.stated(context)?;
         let part = package::model_part(source, file)?;
-        let document = package::parsed(&part)?;
+        let document = parsed(&part)?;
         let root = Element::root(&part.path, &document);
         let model = Model::new(&root, keys.skips_meshes)?;
         for note in &model.notes {
@@ -136,11 +137,11 @@ impl BeamLatticeKeys {
 /// # Errors
 /// The same as [`scene::load`](crate::scene::load()) for such a file.
 pub fn beams_of_model(text: &str) -> Result<u64, SceneError> {
-    let part = package::Part {
+    let part = Part {
         path: "model".into(),
         text: text.to_owned(),
     };
-    let document = package::parsed(&part)?;
+    let document = parsed(&part)?;
     let model = Model::new(&Element::root(&part.path, &document), true)?;
     let beams = model.placed.iter();
     let beams = beams.map(|placed| (placed.lattice.beams.len() * placed.places.len()) as u64);

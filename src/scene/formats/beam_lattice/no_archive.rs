@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 use toml::Spanned;
 
-use super::package::Part;
+use super::part::Part;
 use crate::scene::error::SceneError;
 use crate::scene::source::Source;
 

@@ -19,10 +19,9 @@ use toml::Spanned;
 
 use super::{Context, SolidFile, SolidFormat};
 use crate::scene::contents::ExpectedSolids;
-use crate::scene::cylinder_list::Records;
-use crate::scene::description::CylinderRecord;
 use crate::scene::error::SceneError;
 use crate::scene::named_table::{Tables, rows};
+use crate::scene::record::{CylinderRecord, Records};
 use crate::scene::solid_collector::{
     Degenerate, Look, SKIP_HELP, SolidCollector, is_degenerate, is_degenerate_cone,
 };
