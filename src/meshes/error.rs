@@ -4,7 +4,6 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
-use super::Format;
 use crate::solid::tessellation::{GREATEST_SEGMENTS, LEAST_SEGMENTS};
 
 /// Where something is wrong.
@@ -59,10 +58,12 @@ impl fmt::Display for MeshError {
 #[derive(Debug, thiserror::Error)]
 pub enum MeshReadError {
     /// The extension is that of no mesh format.
-    #[error("{}: the name of a mesh must end in {}", path.display(), Format::endings(Format::ALL.iter().copied()))]
+    #[error("{}: the name of a mesh must end in {endings}", path.display())]
     Extension {
         /// The file.
         path: PathBuf,
+        /// The extensions of the formats.
+        endings: String,
     },
     /// The file cannot be read.
     #[error("cannot read {}", path.display())]
@@ -94,22 +95,20 @@ pub enum MeshReadError {
 #[derive(Debug, thiserror::Error)]
 pub enum MeshFileError {
     /// The extension is that of no format that can be written.
-    #[error(
-        "cannot write {path:?}: the name of a mesh must end in {}",
-        written_endings()
-    )]
+    #[error("cannot write {path:?}: the name of a mesh must end in {endings}")]
     Format {
         /// The file as requested.
         path: PathBuf,
+        /// The extensions of the formats that can be written.
+        endings: String,
     },
     /// The format is only read.
-    #[error(
-        "{name} files can be read but not written: write {}",
-        written_endings()
-    )]
+    #[error("{name} files can be read but not written: write {endings}")]
     NotWritten {
         /// The name of the format.
         name: &'static str,
+        /// The extensions of the formats that can be written.
+        endings: String,
     },
     /// The number of segments is out of range.
     #[error(
@@ -150,10 +149,4 @@ pub enum MeshFileError {
     /// The system reports an error.
     #[error(transparent)]
     Write(#[from] io::Error),
-}
-
-/// The extensions of the formats that can be written.
-fn written_endings() -> String {
-    let all = Format::ALL.iter().copied();
-    Format::endings(all.filter(|format| format.is_written()))
 }

@@ -24,7 +24,10 @@ pub fn read_mesh(path: &Path) -> Result<MeshFile, MeshReadError> {
 /// See [`read_mesh`].
 pub fn read_mesh_within(path: &Path, most_bytes: u64) -> Result<MeshFile, MeshReadError> {
     let format = Format::of(path);
-    let format = format.ok_or_else(|| MeshReadError::Extension { path: path.into() })?;
+    let format = format.ok_or_else(|| MeshReadError::Extension {
+        path: path.into(),
+        endings: Format::all_endings(),
+    })?;
     let most_bytes = most_bytes.min(MOST_MESH_BYTES);
     let bytes = read_bytes(path, most_bytes).map_err(|source| MeshReadError::Read {
         path: path.into(),

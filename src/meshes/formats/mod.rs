@@ -113,7 +113,10 @@ impl Format {
     /// If no format with this extension can be written.
     pub fn to_write(path: &Path) -> Result<Self, MeshFileError> {
         let format = Self::of(path).filter(|format| format.is_written());
-        format.ok_or_else(|| MeshFileError::Format { path: path.into() })
+        format.ok_or_else(|| MeshFileError::Format {
+            path: path.into(),
+            endings: Self::written_endings(),
+        })
     }
 
     /// Whether the format can be written; all formats can be read.
@@ -169,12 +172,25 @@ impl Format {
     }
 
     fn writer_or_error(self) -> Result<&'static Writer, MeshFileError> {
-        let name = self.name();
-        self.writer().ok_or(MeshFileError::NotWritten { name })
+        self.writer().ok_or_else(|| MeshFileError::NotWritten {
+            name: self.name(),
+            endings: Self::written_endings(),
+        })
+    }
+
+    /// The extensions of all formats, for a message.
+    pub(super) fn all_endings() -> String {
+        Self::endings(Self::ALL.iter().copied())
+    }
+
+    /// The extensions of the formats that can be written.
+    fn written_endings() -> String {
+        let all = Self::ALL.iter().copied();
+        Self::endings(all.filter(|format| format.is_written()))
     }
 
     /// The extensions of formats for a message: `.obj, .ply or .stl`.
-    pub(super) fn endings(formats: impl Iterator<Item = Self>) -> String {
+    fn endings(formats: impl Iterator<Item = Self>) -> String {
         let endings: Vec<_> = formats.map(|one| format!(".{}", one.extension())).collect();
         match endings.split_last() {
             Some((last, [])) => last.clone(),
