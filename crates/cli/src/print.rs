@@ -3,8 +3,6 @@
 use std::fmt;
 use std::io::{self, Write};
 
-use super::arguments::Common;
-
 /// Standard output cannot be written to.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot write to standard output: {0}")]
@@ -28,8 +26,8 @@ pub fn print(text: &str) -> anyhow::Result<()> {
 }
 
 /// Writes a note to standard error, unless the command is quiet.
-pub fn note(common: &Common, note: &str) {
-    if !common.quiet {
+pub fn note(is_quiet: bool, note: &str) {
+    if !is_quiet {
         let _ = writeln!(io::stderr(), "note: {note}");
     }
 }

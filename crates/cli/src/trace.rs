@@ -242,7 +242,7 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         let trace = start.elapsed().as_secs_f64();
         bar.finish_and_clear();
         if let Some(note) = &note {
-            print::note(common, note);
+            print::note(common.quiet, note);
         }
         Ok(Traced {
             tracer,

@@ -4,7 +4,7 @@
 //! line of least squares through the logarithms,
 //! `Σ (x - mean x)(y - mean y) / Σ (x - mean x)²`.
 
-use super::measure::{Figures, Row};
+use super::measure::{Figures, Row, Scale, Series};
 
 /// The exponents by which a series grows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +33,14 @@ impl Fits {
             rays_per_s: fit(|found| found.rays_per_s),
             incoherent_rays_per_s: fit(|found| found.incoherent_rays_per_s),
         }
+    }
+}
+
+impl Scale {
+    /// How a series grows.
+    #[must_use]
+    pub fn fits(&self, series: Series) -> Fits {
+        Fits::of(self.of(series))
     }
 }
 

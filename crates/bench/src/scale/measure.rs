@@ -5,7 +5,6 @@ use std::time::Instant;
 
 use glam::{DAffine3, DQuat, DVec3};
 
-use super::growth::Fits;
 use crate::timing::Timer;
 use crate::traversal::{
     Kind, Rays, Sample, Workers, camera_rays, interleave, random_rays, run_ours, sticks,
@@ -210,12 +209,6 @@ impl Scale {
             Series::Cylinders => &self.rows[0],
             Series::Placements => &self.rows[1],
         }
-    }
-
-    /// How a series grows.
-    #[must_use]
-    pub fn fits(&self, series: Series) -> Fits {
-        Fits::of(self.of(series))
     }
 }
 

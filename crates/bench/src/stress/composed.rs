@@ -6,10 +6,9 @@
 
 use cyltrace::math::{DoubleDouble, Ray};
 use cyltrace::solid::{ComposedIntersection, Composition, Location, Part};
-use cyltrace_oracle::cases::{ComposedCase, ComposedFamily, Inputs};
+use cyltrace_oracle::cases::ComposedCase;
 use cyltrace_oracle::{ComposedHit, ComposedTruth, Face};
 
-use super::cell::Figures;
 use super::witness::TrueAnswer;
 
 /// How far along the ray an answer may be from the true point and still be meant for it,
@@ -37,22 +36,6 @@ impl ComposedWitness {
             locations: points.map(|point| truth.locate(*point)).collect(),
         }
     }
-}
-
-/// The figures of some cases of a family.
-pub(super) fn run_block(
-    family: ComposedFamily,
-    inputs: Inputs,
-    seed: u64,
-    indices: std::ops::Range<u64>,
-) -> Figures {
-    let mut figures = Figures::default();
-    for index in indices {
-        let case = family.case(seed, index, inputs);
-        let verdict = Verdict::of(&case, &ComposedWitness::new(&case));
-        figures.count(&verdict, index);
-    }
-    figures
 }
 
 /// Which of the solver's answers to a case are wrong.

@@ -71,7 +71,7 @@ impl ExternalInput {
         let GivenHits { hits, unread } =
             GivenHits::open(path, format, rays.len()).map_err(|error| anyhow!("{error}"))?;
         if let Some(note) = unread {
-            print::note(&arguments.common, &note);
+            print::note(arguments.common.quiet, &note);
         }
         if hits.is_empty() {
             bail!(
@@ -134,7 +134,7 @@ impl ExternalInput {
                 };
                 let is_local = matches!(deviation, Deviation::Tessellated { .. });
                 if arguments.deviation.is_none() && file.made.is_some() && !is_local {
-                    print::note(&arguments.common, NOT_AS_STATED);
+                    print::note(arguments.common.quiet, NOT_AS_STATED);
                 }
                 let off = (deviation, file.rounding);
                 compare_mesh(tracer, &mesh, rays, off, MOST_LISTED, progress)
@@ -165,7 +165,7 @@ fn given_rays(arguments: &CheckArguments) -> anyhow::Result<Option<Vec<Ray>>> {
         Ok(())
     })?;
     if let Some(note) = note {
-        print::note(&arguments.common, &note);
+        print::note(arguments.common.quiet, &note);
     }
     Ok(Some(rays))
 }

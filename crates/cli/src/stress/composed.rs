@@ -5,8 +5,8 @@ use cyltrace_bench::stress::{ComposedWitness, Verdict};
 use cyltrace_oracle::cases::ComposedCase;
 use cyltrace_oracle::to_f64;
 use cyltrace_output::Table;
+use glam::DVec3;
 
-use super::replay::row_of;
 use crate::print::print;
 
 /// Prints the case, all true crossings with the faces that an answer may name, and those of
@@ -81,4 +81,9 @@ fn tree(composition: &Composition, depth: usize, leaf: &mut u32) -> String {
     };
     let parts = parts.iter().map(|part| tree(part, depth + 1, leaf));
     format!("{indent}{name}\n{}", parts.collect::<String>())
+}
+
+/// A line with the digits of a vector.
+pub(super) fn row_of(name: &str, vector: DVec3) -> String {
+    format!("{name:<10}{:?} {:?} {:?}\n", vector.x, vector.y, vector.z)
 }

@@ -7,7 +7,7 @@ use cyltrace_oracle::cases::Case;
 use cyltrace_output::Table;
 use glam::DVec3;
 
-use super::composed;
+use super::composed::{self, row_of};
 use crate::print::print;
 
 /// Prints the case of a word and the answers to it.
@@ -70,9 +70,4 @@ pub fn run(word: &str, contenders: &[Contender]) -> anyhow::Result<()> {
         table.push(row(contender.name(), contender.precision().name(), found));
     }
     print(&format!("{text}{table}"))
-}
-
-/// A line with the digits of a vector.
-pub(super) fn row_of(name: &str, vector: DVec3) -> String {
-    format!("{name:<10}{:?} {:?} {:?}\n", vector.x, vector.y, vector.z)
 }

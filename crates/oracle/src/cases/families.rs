@@ -10,6 +10,7 @@ use super::Problem;
 use super::aiming::{Aim, Target, sign, whole, whole_frame, whole_ray_through};
 use super::any::HardCases;
 use super::shapes::{Offset, Shape};
+use super::unknown_family::{UnknownFamily, family_named};
 use cyltrace::math::{Random, Ray, power_of_two};
 use cyltrace::solid::{Caps, Cylinder};
 use glam::DVec3;
@@ -64,34 +65,6 @@ pub enum Family {
     /// Rays exactly through the edge of a disk, in whole numbers, with `t` that no binary
     /// number is. With f64 inputs all lengths are times a number of 28 bits.
     ExactRim,
-}
-
-/// A name that is no family's.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no family {name:?}; the families are {}", known.join(", "))]
-pub struct UnknownFamily {
-    /// The name as given.
-    pub name: String,
-    /// The names that there are.
-    pub known: Vec<String>,
-}
-
-/// Finds the family with a name among all of its type.
-pub fn family_named<F: Copy>(
-    name: &str,
-    all: impl IntoIterator<Item = F>,
-    name_of: impl Fn(F) -> String,
-) -> Result<F, UnknownFamily> {
-    let mut known = Vec::new();
-    for family in all {
-        let one = name_of(family);
-        if one == name {
-            return Ok(family);
-        }
-        known.push(one);
-    }
-    let name = name.to_owned();
-    Err(UnknownFamily { name, known })
 }
 
 impl FromStr for Family {

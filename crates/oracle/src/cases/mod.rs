@@ -16,15 +16,17 @@ mod problem;
 mod shapes;
 mod spheres;
 mod tapers;
+mod unknown_family;
 
 pub use any::{AnyFamily, Case, HardCases};
 pub use composed::{ComposedCase, ComposedFamily};
 pub use cuboids::CuboidFamily;
 pub use disks::DiskFamily;
-pub use families::{Family, UnknownFamily, family_named};
+pub use families::Family;
 pub use problem::Problem;
 pub use spheres::SphereFamily;
 pub use tapers::{TaperCase, TaperFamily, TaperSolid};
+pub use unknown_family::{UnknownFamily, family_named};
 
 use any::with_hyphens;
 use glam::DVec3;

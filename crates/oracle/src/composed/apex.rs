@@ -16,8 +16,8 @@ use std::f64::consts::TAU;
 
 use crate::number::{ExactVector, exact, to_f64};
 
-use super::around::{Active, Curve, Survey};
 use super::ring::Vector;
+use super::survey::{Active, Curve, Survey};
 
 /// Steps around a cone in which crossings are looked for.
 const STEPS: usize = 360;

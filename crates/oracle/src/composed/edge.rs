@@ -19,8 +19,8 @@
 
 use crate::number::exact;
 
-use super::around::{Curve, Survey};
 use super::ring::{Number, Vector};
+use super::survey::{Curve, Survey};
 
 /// How far beside an edge witnesses are, as a share of its length.
 const BESIDE: [f64; 4] = [1e-2, 1e-4, 1e-7, 1e-10];

@@ -31,6 +31,7 @@ mod place;
 mod ring;
 mod sheet;
 mod smooth;
+mod survey;
 
 pub(crate) use leaf::{Leaf, TrueOperand};
 pub(crate) use sheet::Sheet;

@@ -28,9 +28,9 @@ use std::f64::consts::TAU;
 use crate::number::{Exact, exact, to_f64};
 use cyltrace::math::power_of_two;
 
-use super::around::{Curve, Survey};
 use super::edge;
 use super::ring::{Number, Vector};
+use super::survey::{Curve, Survey};
 
 /// Sectors of less are taken for none. Where numbers are whole and below 2^10, lines
 /// in a plane that differ do so by more than 2^-30.
