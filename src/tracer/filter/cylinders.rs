@@ -76,7 +76,7 @@
 use glam::DVec3;
 
 use super::cell::{dot, greater, less};
-use super::{Cell, Filter, FilterOf, NearRay, Sheath, Sheathed};
+use super::{Cell, Filter, Filtered, NearRay, Sheath, Sheathed};
 use crate::math::LANES;
 use crate::tracer::frame::Frame;
 
@@ -108,10 +108,12 @@ pub(crate) struct CylinderFilter {
 
 const _: () = assert!(size_of::<CylinderFilter>() == 64);
 
-impl<S: Sheathed> FilterOf<S> for CylinderFilter {
-    fn new(solids: &[S], frame: &Frame, share: f64) -> Self {
+impl<S: Sheathed> Filtered for S {
+    type Filter = CylinderFilter;
+
+    fn filter(solids: &[S], frame: &Frame, share: f64) -> CylinderFilter {
         let cell = Cell::around(solids.iter().map(S::bounds), frame);
-        let mut filter = Self {
+        let mut filter = CylinderFilter {
             cell,
             c: [[0; LANES]; 3],
             b: [[0; LANES]; 3],

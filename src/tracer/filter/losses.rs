@@ -1,11 +1,10 @@
 //! The losses of filters, for tests with random solids and rays.
 
-use super::{FilterOf, survivors};
+use super::{Filtered, survivors};
 use crate::for_each_solid;
 use crate::math::{Bounds, LANES, Ray};
 use crate::solid::AnySolid;
 use crate::tracer::frame::{Frame, LocalRay};
-use crate::tracer::kinds::TracedKind;
 
 /// The hits of rays with the solids of a block, solved in f64, compared with the block's
 /// filter.
@@ -45,9 +44,9 @@ impl FilterLosses {
         for_each_solid!(of_kinds)
     }
 
-    fn of_kind<S: TracedKind>(solids: &[S], whole: &Bounds, rays: &[Ray], share: f64) -> Self {
+    fn of_kind<S: Filtered>(solids: &[S], whole: &Bounds, rays: &[Ray], share: f64) -> Self {
         let frame = Frame::new(whole);
-        let filter = S::Filter::new(solids, &frame, share);
+        let filter = S::filter(solids, &frame, share);
         let mut losses = Self::default();
         for ray in rays {
             let (t_min, t_max) = (ray.t_min, ray.t_max);

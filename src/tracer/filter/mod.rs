@@ -62,14 +62,14 @@ mod spheres;
 mod tests;
 
 pub(crate) use cell::{Cell, NearRay};
-pub(crate) use cylinders::CylinderFilter;
 pub use losses::FilterLosses;
 pub(crate) use packet::NearPacket;
 pub(crate) use sheath::{Sheath, Sheathed};
-pub(crate) use spheres::SphereFilter;
 
 use crate::embree::Ray32;
 use crate::math::{LANES, LaneMask};
+use crate::scene::Listed;
+use crate::solid::ConvexSolid;
 use crate::tracer::frame::Frame;
 
 /// The size of every filter: a cache line.
@@ -96,11 +96,14 @@ pub(crate) trait Filter: Send + Sync + 'static {
     }
 }
 
-/// The filter of a kind of solid.
-pub(crate) trait FilterOf<S>: Filter {
+/// A kind of solid whose blocks have a filter.
+pub(crate) trait Filtered: ConvexSolid + Listed {
+    /// The filter.
+    type Filter: Filter;
+
     /// The filter of up to eight solids of a group with this frame, with a share of the
     /// required margins: less than all of them loses hits.
-    fn new(solids: &[S], frame: &Frame, share: f64) -> Self;
+    fn filter(solids: &[Self], frame: &Frame, share: f64) -> Self::Filter;
 }
 
 /// The lanes whose solids a ray may hit, as bits.

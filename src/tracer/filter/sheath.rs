@@ -12,6 +12,7 @@
 use glam::DVec3;
 
 use crate::math::power_of_two;
+use crate::scene::Listed;
 use crate::solid::ConvexSolid;
 
 /// A cylinder with the axis points `anchor + h axis` for the heights `h`, relative to the
@@ -31,7 +32,7 @@ pub(crate) struct Sheath {
 const COINCIDENT: f64 = power_of_two(-400);
 
 /// A kind of solid with a bounding cylinder.
-pub(crate) trait Sheathed: ConvexSolid {
+pub(crate) trait Sheathed: ConvexSolid + Listed {
     /// The bounding cylinder. Its roundings are far below the slack of a frame.
     fn sheath(&self) -> Sheath;
 }

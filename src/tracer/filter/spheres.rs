@@ -31,7 +31,7 @@
 //! of the lengths, for which `r` gets 2^-20. If the range is empty, either result is right.
 
 use super::cell::{LONGEST, dot, greater, less};
-use super::{Cell, Filter, FilterOf, NearRay};
+use super::{Cell, Filter, Filtered, NearRay};
 use crate::math::LANES;
 use crate::solid::{ConvexSolid, Sphere};
 use crate::tracer::frame::Frame;
@@ -58,9 +58,11 @@ pub(crate) struct SphereFilter {
 
 const _: () = assert!(size_of::<SphereFilter>() == 64);
 
-impl FilterOf<Sphere> for SphereFilter {
-    fn new(spheres: &[Sphere], frame: &Frame, share: f64) -> Self {
-        let bounds = spheres.iter().map(Sphere::bounds);
+impl Filtered for Sphere {
+    type Filter = SphereFilter;
+
+    fn filter(spheres: &[Self], frame: &Frame, share: f64) -> SphereFilter {
+        let bounds = spheres.iter().map(Self::bounds);
         let mut cell = Cell::around(bounds, frame);
         let units = f64::from(cell.units());
         let mut c = [[0; LANES]; 3];
@@ -76,7 +78,7 @@ impl FilterOf<Sphere> for SphereFilter {
             let least = (radius + off + frame.slack() * units + ROUNDED) * OUTWARD;
             radii[lane] = radius + share * (least - radius);
         }
-        Self {
+        SphereFilter {
             r: cell.keep_radii(radii, share),
             cell,
             c,

@@ -4,12 +4,11 @@ use std::array::from_fn;
 
 use glam::DVec3;
 
-use super::{Filter, FilterLosses, FilterOf, NearPacket, survivors};
+use super::{Filter, FilterLosses, Filtered, NearPacket, survivors};
 use crate::embree::{GREATEST_PACKET, RaySet, Rays32};
 use crate::math::{Bounds, LANES, Random, Ray};
 use crate::solid::{AnySolid, Caps, Cylinder, Sphere};
 use crate::tracer::frame::{Frame, LocalRay};
-use crate::tracer::kinds::TracedKind;
 
 const SEED: u64 = 20_261_129;
 
@@ -78,12 +77,12 @@ fn packets_keep_of_spheres_what_single_rays_keep() {
     assert_packets_keep(balls);
 }
 
-fn assert_packets_keep<S: TracedKind>(solids: impl Fn(&mut Random) -> Vec<S>) {
+fn assert_packets_keep<S: Filtered>(solids: impl Fn(&mut Random) -> Vec<S>) {
     let frame = Frame::new(&whole());
     let mut kept = 0;
     for index in 0..300 {
         let mut random = Random::new(SEED, index);
-        let filter = S::Filter::new(&solids(&mut random), &frame, 1.0);
+        let filter = S::filter(&solids(&mut random), &frame, 1.0);
         let mut rays = Rays32 {
             origin: [[0.0; GREATEST_PACKET]; 3],
             direction: [[1.0; GREATEST_PACKET]; 3],

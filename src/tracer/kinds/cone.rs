@@ -3,11 +3,9 @@
 
 use super::TracedKind;
 use crate::solid::Cone;
-use crate::tracer::filter::{CylinderFilter, Sheath, Sheathed};
+use crate::tracer::filter::{Sheath, Sheathed};
 
-impl TracedKind for Cone {
-    type Filter = CylinderFilter;
-}
+impl TracedKind for Cone {}
 
 impl Sheathed for Cone {
     fn sheath(&self) -> Sheath {

@@ -5,11 +5,9 @@
 use super::TracedKind;
 use crate::math::UNIT_ROUNDOFF;
 use crate::solid::Cuboid;
-use crate::tracer::filter::{CylinderFilter, Sheath, Sheathed};
+use crate::tracer::filter::{Sheath, Sheathed};
 
-impl TracedKind for Cuboid {
-    type Filter = CylinderFilter;
-}
+impl TracedKind for Cuboid {}
 
 impl Sheathed for Cuboid {
     /// The cylinder of least area about one of its axes.

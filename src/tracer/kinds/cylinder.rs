@@ -8,13 +8,11 @@ use super::TracedKind;
 use crate::embree::{self, prefetch};
 use crate::scene::{CylinderList, SharedRecords};
 use crate::solid::{Caps, Cylinder};
-use crate::tracer::filter::{CylinderFilter, Sheath, Sheathed};
+use crate::tracer::filter::{Sheath, Sheathed};
 use crate::tracer::prototype::{Attaching, Numbers, PrototypeRef, Records};
 use crate::tracer::query::Query;
 
 impl TracedKind for Cylinder {
-    type Filter = CylinderFilter;
-
     fn attach(numbers: &Numbers, to: &mut Attaching) -> Result<(), embree::Error> {
         let list = &to.prototype_ref.prototype().solids.cylinders;
         match common_caps(list) {

@@ -3,11 +3,9 @@
 
 use super::TracedKind;
 use crate::solid::Disk;
-use crate::tracer::filter::{CylinderFilter, Sheath, Sheathed};
+use crate::tracer::filter::{Sheath, Sheathed};
 
-impl TracedKind for Disk {
-    type Filter = CylinderFilter;
-}
+impl TracedKind for Disk {}
 
 impl Sheathed for Disk {
     fn sheath(&self) -> Sheath {

@@ -4,11 +4,9 @@
 
 use super::TracedKind;
 use crate::solid::RoundedCone;
-use crate::tracer::filter::{CylinderFilter, Sheath, Sheathed};
+use crate::tracer::filter::{Sheath, Sheathed};
 
-impl TracedKind for RoundedCone {
-    type Filter = CylinderFilter;
-}
+impl TracedKind for RoundedCone {}
 
 impl Sheathed for RoundedCone {
     fn sheath(&self) -> Sheath {

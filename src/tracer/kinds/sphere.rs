@@ -1,9 +1,6 @@
-//! Spheres have a filter of their own.
+//! Spheres have a filter of their own (`filter/spheres.rs`).
 
 use super::TracedKind;
 use crate::solid::Sphere;
-use crate::tracer::filter::SphereFilter;
 
-impl TracedKind for Sphere {
-    type Filter = SphereFilter;
-}
+impl TracedKind for Sphere {}

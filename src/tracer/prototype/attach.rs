@@ -1,16 +1,14 @@
-//! Attaches the solids of a group to its Embree scene: one user geometry per kind.
+//! Attaches solids of one kind in a group to its Embree scene, as a user geometry.
 
 use super::blocks::{Blocked, block_bytes};
-use super::group_solids::{GroupSolids, InPrototype, Records, Single};
+use super::group_solids::{GroupSolids, Records, Single};
 use super::members::Members;
 use super::numbers::Numbers;
 use super::prototype_ref::PrototypeRef;
 use crate::embree::{self, SceneBuilder};
-use crate::solid::Composition;
-use crate::tracer::kinds::TracedKind;
+use crate::tracer::filter::Filtered;
 use crate::tracer::options::Layout;
 use crate::tracer::query::Query;
-use crate::with_solid_kind;
 
 /// The scene that solids are attached to, and its options.
 pub(crate) struct Attaching<'a> {
@@ -22,19 +20,8 @@ pub(crate) struct Attaching<'a> {
 }
 
 impl Attaching<'_> {
-    /// Attaches all solids of a group.
-    ///
-    /// Set operations are a primitive each: a few bytes of a copy could represent only the box,
-    /// which Embree tests as well.
-    pub fn attach_all(&mut self, members: &Members) -> Result<(), embree::Error> {
-        for (kind, numbers) in members.solids() {
-            with_solid_kind!(kind, S => S::attach(numbers, self))?;
-        }
-        Ok(())
-    }
-
     /// Attaches solids of a convex kind.
-    pub fn attach<R: Records<Solid: TracedKind>>(
+    pub fn attach<R: Records<Solid: Filtered>>(
         &mut self,
         numbers: &Numbers,
         records: R,
@@ -46,18 +33,6 @@ impl Attaching<'_> {
             self.builder.attach_user(Single(solids))
         };
         attached.map(drop)
-    }
-}
-
-/// As [`TracedKind::attach`].
-trait AttachComposed {
-    fn attach(numbers: &Numbers, to: &mut Attaching) -> Result<(), embree::Error>;
-}
-
-impl AttachComposed for Composition {
-    fn attach(numbers: &Numbers, to: &mut Attaching) -> Result<(), embree::Error> {
-        let solids = GroupSolids::new(to.prototype_ref, numbers, InPrototype::<Self>::new());
-        to.builder.attach_user(Single(solids)).map(drop)
     }
 }
 

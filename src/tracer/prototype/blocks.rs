@@ -9,8 +9,7 @@ use super::clusters::{Item, cluster};
 use super::group_solids::{GroupSolids, Records};
 use crate::embree::{Box32, GREATEST_PACKET, Ray32, RaySet, Rays32, Reached, UserGeometry};
 use crate::math::LANES;
-use crate::tracer::filter::{FILTER_BYTES, Filter, NearPacket, survivors};
-use crate::tracer::kinds::TracedKind;
+use crate::tracer::filter::{FILTER_BYTES, Filter, Filtered, NearPacket, survivors};
 use crate::tracer::query::{Packet, Query};
 
 /// The greatest number of rays of a packet that are tested one by one against all solids of a
@@ -26,17 +25,17 @@ pub(crate) fn block_bytes(solids: u64) -> u64 {
 }
 
 /// The filter of a block.
-type FilterOf<R> = <<R as Records>::Solid as TracedKind>::Filter;
+type FilterOf<R> = <<R as Records>::Solid as Filtered>::Filter;
 
 /// A user geometry with a primitive for each block.
-pub(super) struct Blocked<R: Records<Solid: TracedKind>> {
+pub(super) struct Blocked<R: Records<Solid: Filtered>> {
     solids: GroupSolids<R>,
     filters: Vec<FilterOf<R>>,
     /// The records in the order of blocks, [`LANES`] for each except the last.
     records: Vec<u32>,
 }
 
-impl<R: Records<Solid: TracedKind>> Blocked<R> {
+impl<R: Records<Solid: Filtered>> Blocked<R> {
     /// Puts the solids into blocks, on up to `threads` threads.
     pub fn new(solids: GroupSolids<R>, threads: usize) -> Self {
         const { assert!(size_of::<FilterOf<R>>() == FILTER_BYTES, "a cache line") };
@@ -104,7 +103,7 @@ impl<R: Records<Solid: TracedKind>> Blocked<R> {
 const LEAST_FOR_THREADS: usize = 1 << 11;
 
 /// The filters of records in the order of blocks.
-fn filters<R: Records<Solid: TracedKind>>(
+fn filters<R: Records<Solid: Filtered>>(
     solids: &GroupSolids<R>,
     records: &[u32],
     threads: usize,
@@ -154,7 +153,7 @@ impl Iterator for Near<'_> {
     }
 }
 
-impl<R: Records<Solid: TracedKind>> UserGeometry for Blocked<R> {
+impl<R: Records<Solid: Filtered>> UserGeometry for Blocked<R> {
     type Query = Query;
 
     fn primitive_count(&self) -> u32 {

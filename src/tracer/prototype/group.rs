@@ -19,6 +19,7 @@ use crate::embree::{self, Coherence, GREATEST_PACKET, JointCommit, RaySet, Scene
 use crate::math::Bounds;
 use crate::scene::{Listed, PrototypeIndex, Scene, SolidList};
 use crate::tracer::frame::{Frame, LocalRay, PacketEntry};
+use crate::tracer::kinds::attach_all;
 use crate::tracer::query::{Packet, Query};
 use crate::with_solid_kind;
 
@@ -171,7 +172,7 @@ impl Group {
             threads: self.context.threads,
             builder: &mut builder,
         };
-        to.attach_all(&self.members)?;
+        attach_all(&self.members, &mut to)?;
         for placements in &self.placements {
             if placements.reached.called_back.len() > 0 {
                 builder.attach_user(Arc::clone(placements))?;

@@ -13,8 +13,7 @@ use crate::embree::{
 };
 use crate::math::LANES;
 use crate::scene::SolidList;
-use crate::tracer::filter::FilterOf;
-use crate::tracer::kinds::TracedKind;
+use crate::tracer::filter::Filtered;
 use crate::tracer::query::{Packet, Query};
 use crate::tracer::traced::TracedSolid;
 
@@ -162,12 +161,12 @@ impl<R: Records> GroupSolids<R> {
     }
 }
 
-impl<R: Records<Solid: TracedKind>> GroupSolids<R> {
+impl<R: Records<Solid: Filtered>> GroupSolids<R> {
     /// The filter of up to eight solids, in lanes of this order.
-    pub fn filter(&self, records: &[u32]) -> <R::Solid as TracedKind>::Filter {
+    pub fn filter(&self, records: &[u32]) -> <R::Solid as Filtered>::Filter {
         let solids = records.iter().map(|&record| *self.solid(record).borrow());
         let solids: SmallVec<[R::Solid; LANES]> = solids.collect();
-        FilterOf::new(&solids, self.prototype_ref.frame(), 1.0)
+        R::Solid::filter(&solids, self.prototype_ref.frame(), 1.0)
     }
 }
 
