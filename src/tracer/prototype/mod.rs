@@ -82,7 +82,9 @@ impl BuildContext {
 /// Whether rays that entered a prototype continue as a packet.
 #[inline]
 fn stays_packet(entered: RaySet, packet: &Packet) -> bool {
-    packet.is_together && entered.len() >= LEAST_PACKET && packet.path.len() < GREATEST_PACKET_DEPTH
+    packet.is_together
+        && entered.len() >= LEAST_PACKET
+        && packet.position.path.len() < GREATEST_PACKET_DEPTH
 }
 
 /// A prototype that can be traced.

@@ -134,12 +134,12 @@ impl Placements {
             return T::default();
         };
         counters::passed_on(1);
-        query.leave_instance();
+        query.position.leave_instance();
         let child_from_parent = ChildFromParent::new(&placement.parent_from_child);
         let ray = query.ray().in_child(&child_from_parent);
-        query.path.push(index);
+        query.position.path.push(index);
         let answer = trace(child, &ray, query);
-        query.path.pop();
+        query.position.path.pop();
         answer
     }
 
@@ -157,9 +157,9 @@ impl Placements {
         };
         counters::passed_on(rays.len() as u32);
         packet.arrive_through(&ChildFromParent::new(&placement.parent_from_child));
-        packet.path.push(index);
+        packet.position.path.push(index);
         let answer = trace(child, packet);
-        packet.path.pop();
+        packet.position.path.pop();
         answer
     }
 }

@@ -7,6 +7,7 @@
 mod found;
 mod levels;
 mod packet;
+mod position;
 mod row;
 mod single;
 

@@ -5,11 +5,12 @@
 //! single queries, bit for bit: the arithmetic is the same in every lane, and no ray's result
 //! depends on another's.
 
-use super::found::{InstancePath, Nearest, QueryMode, SolidRef, SolidSlot};
+use super::found::{InstancePath, Nearest, QueryMode, SolidSlot};
 use super::levels::Levels;
+use super::position::Position;
 use super::row;
 use super::single::Query;
-use crate::embree::{GREATEST_PACKET, GeometryId, Instructions, RaySet};
+use crate::embree::{self, GREATEST_PACKET, GeometryId, Instructions, RaySet};
 use crate::math::{ChildFromParent, LANES, LaneMask, Lanes};
 use crate::scene::PrototypeIndex;
 use crate::tracer::counters;
@@ -30,21 +31,19 @@ pub(crate) struct Packet {
     nearest: [Option<Nearest>; GREATEST_PACKET],
     /// Whether Embree traverses the rays as a packet, or one by one.
     pub is_together: bool,
-    /// The placements from the root, with those of the instance.
-    pub path: InstancePath,
+    pub position: Position,
     levels: Levels,
-    /// The prototype that is being traced.
-    prototype: PrototypeIndex,
-    /// The instance of the last callback, the length of the path outside of it, and the rays
-    /// inside.
-    instance: Option<GeometryId>,
-    outside: usize,
+    /// The rays in the instance of the last callback.
     in_instance: PacketRays,
     /// The rays in an opened prototype.
     between: PacketRays,
     instructions: Instructions,
     /// The number of callbacks, the measure of its cost.
     pub callbacks: u32,
+}
+
+impl embree::Query for Query {
+    type Packet = Packet;
 }
 
 impl Packet {
@@ -58,11 +57,8 @@ impl Packet {
             bound: nowhere,
             nearest: [const { None }; GREATEST_PACKET],
             is_together: true,
-            path: InstancePath::new(),
+            position: Position::new(InstancePath::new()),
             levels: Levels::new(),
-            prototype: PrototypeIndex::ROOT,
-            instance: None,
-            outside: 0,
             in_instance: PacketRays::NOWHERE,
             between: PacketRays::NOWHERE,
             instructions,
@@ -91,7 +87,7 @@ impl Packet {
 
     /// Maps the rays into a child, through a placement in the current prototype.
     pub fn arrive_through(&mut self, child_from_parent: &ChildFromParent) {
-        self.leave_instance();
+        self.position.leave_instance();
         let (level, next) = self.levels.current_and_next();
         self.instructions.run(IntoChild {
             rays: &level.rays,
@@ -117,54 +113,42 @@ impl Packet {
         prototype: PrototypeIndex,
         trace: impl FnOnce(&mut Self) -> T,
     ) -> T {
-        debug_assert_eq!(self.instance, None, "instances contain solids alone");
+        let outer = self.position.enter(prototype);
         self.levels.descend();
-        let outer = std::mem::replace(&mut self.prototype, prototype);
         let answer = trace(self);
-        self.leave_instance();
         self.levels.ascend();
-        self.prototype = outer;
+        self.position.return_to(outer);
         answer
     }
 
     /// As [`Query::reach`].
     #[inline(always)]
     pub fn reach(&mut self, instance: Option<GeometryId>, prototype_ref: &PrototypeRef) {
-        if instance != self.instance {
+        if instance != self.position.instance() {
             self.change_instance(instance, prototype_ref);
         }
     }
 
     #[inline(never)]
     fn change_instance(&mut self, instance: Option<GeometryId>, prototype_ref: &PrototypeRef) {
-        self.leave_instance();
-        let Some(GeometryId(number)) = instance else {
-            return;
+        let mut is_first = true;
+        let step = |child_from_parent: &ChildFromParent, frame: &Frame| {
+            if !is_first {
+                self.between.clone_from(&self.in_instance);
+            }
+            self.instructions.run(IntoInstance {
+                rays: if is_first {
+                    &self.levels.current().rays
+                } else {
+                    &self.between
+                },
+                child_from_parent,
+                frame,
+                in_child: &mut self.in_instance,
+            });
+            is_first = false;
         };
-        counters::passed_on(1);
-        self.outside = self.path.len();
-        prototype_ref.along_instance(
-            self.prototype,
-            number,
-            |placement, child_from_parent, frame| {
-                let is_first = self.path.len() == self.outside;
-                if !is_first {
-                    self.between.clone_from(&self.in_instance);
-                }
-                self.instructions.run(IntoInstance {
-                    rays: if is_first {
-                        &self.levels.current().rays
-                    } else {
-                        &self.between
-                    },
-                    child_from_parent,
-                    frame,
-                    in_child: &mut self.in_instance,
-                });
-                self.path.push(placement);
-            },
-        );
-        self.instance = instance;
+        self.position.change_instance(instance, prototype_ref, step);
     }
 
     /// Counts a callback.
@@ -172,14 +156,6 @@ impl Packet {
     pub fn called_back(&mut self) {
         counters::called_back();
         self.callbacks += 1;
-    }
-
-    /// Returns from the instance to the prototype that is being traced.
-    #[inline(always)]
-    pub fn leave_instance(&mut self) {
-        if self.instance.take().is_some() {
-            self.path.truncate(self.outside);
-        }
     }
 
     /// Runs `trace` with a query of one ray of the packet in the prototype that it has entered,
@@ -192,7 +168,7 @@ impl Packet {
     ) -> T {
         let (t_min, t_max) = (lane(&self.t_min, ray), lane(&self.t_max, ray));
         let level = self.levels.next().of_ray(ray);
-        let path = std::mem::take(&mut self.path);
+        let path = std::mem::take(&mut self.position.path);
         let mut query = Query::new(
             [t_min, t_max],
             self.decisions,
@@ -207,14 +183,14 @@ impl Packet {
             }
             self.nearest[ray] = nearest;
         }
-        self.path = query.path;
+        self.position.path = query.position.path;
         answer
     }
 
     /// The rays in the space of the current callback.
     #[inline(always)]
     fn rays(&self) -> &PacketRays {
-        match self.instance {
+        match self.position.instance() {
             None => &self.levels.current().rays,
             Some(_) => &self.in_instance,
         }
@@ -328,15 +304,9 @@ impl Packet {
         prototype_ref: &PrototypeRef,
         member: SolidSlot,
     ) -> bool {
-        let (nearest, path) = (&mut self.nearest[ray], &self.path);
-        let is_first = nearest.as_ref().is_none_or(|known| {
-            known.is_after(t, path, member, |member| prototype_ref.primitive(member))
-        });
+        let nearest = &mut self.nearest[ray];
+        let is_first = self.position.offer(nearest, t, (prototype_ref, member));
         if is_first {
-            *nearest = Some(Nearest {
-                t,
-                place: SolidRef::new(prototype_ref.index(), member, path),
-            });
             set_lane(&mut self.bound, ray, t);
         }
         is_first

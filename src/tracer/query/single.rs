@@ -5,8 +5,9 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 
 use super::found::{Found, InstancePath, Nearest, Next, QueryMode, SolidRef, SolidSlot};
-use crate::embree::{self, GeometryId, Ray32};
-use crate::math::Ray;
+use super::position::Position;
+use crate::embree::{GeometryId, Ray32};
+use crate::math::{ChildFromParent, Ray};
 use crate::scene::PrototypeIndex;
 use crate::tracer::counters;
 use crate::tracer::decisions::Decisions;
@@ -22,22 +23,12 @@ pub(crate) struct Query {
     decisions: Decisions,
     /// The ray in the prototype that is being traced.
     level: Option<Level>,
-    /// That prototype.
-    prototype: PrototypeIndex,
-    /// The instance of the last callback, the length of the path outside of it, and the ray
-    /// inside.
-    instance: Option<GeometryId>,
-    outside: usize,
+    /// The ray in the instance of the last callback.
     in_instance: LocalRay,
-    /// The placements from the root, with those of the instance.
-    pub path: InstancePath,
+    pub position: Position,
     pub mode: QueryMode,
     /// The number of callbacks, the measure of its cost.
     pub callbacks: u32,
-}
-
-impl embree::Query for Query {
-    type Packet = super::Packet;
 }
 
 impl Query {
@@ -59,11 +50,8 @@ impl Query {
             t_max,
             decisions,
             level: None,
-            prototype: PrototypeIndex::ROOT,
-            instance: None,
-            outside: 0,
             in_instance: LocalRay::default(),
-            path,
+            position: Position::new(path),
             mode: QueryMode::First(nearest),
             callbacks: 0,
         }
@@ -119,12 +107,10 @@ impl Query {
         level: Level,
         trace: impl FnOnce(&mut Self) -> T,
     ) -> T {
-        debug_assert_eq!(self.instance, None, "instances contain solids alone");
-        let outer = (self.level.replace(level), self.prototype);
-        self.prototype = prototype;
+        let outer = (self.level.replace(level), self.position.enter(prototype));
         let answer = trace(self);
-        self.leave_instance();
-        (self.level, self.prototype) = outer;
+        self.level = outer.0;
+        self.position.return_to(outer.1);
         answer
     }
 
@@ -132,7 +118,7 @@ impl Query {
     /// uses the ray or the path.
     #[inline(always)]
     pub fn reach(&mut self, instance: Option<GeometryId>, prototype_ref: &PrototypeRef) {
-        if instance != self.instance {
+        if instance != self.position.instance() {
             self.change_instance(instance, prototype_ref);
         }
     }
@@ -141,22 +127,11 @@ impl Query {
     /// only boxes of an instance.
     #[inline(never)]
     fn change_instance(&mut self, instance: Option<GeometryId>, prototype_ref: &PrototypeRef) {
-        self.leave_instance();
-        let Some(GeometryId(number)) = instance else {
-            return;
-        };
-        counters::passed_on(1);
-        self.outside = self.path.len();
         self.in_instance = self.level().ray;
-        prototype_ref.along_instance(
-            self.prototype,
-            number,
-            |placement, child_from_parent, frame| {
-                self.in_instance = frame.approach(&self.in_instance.in_child(child_from_parent));
-                self.path.push(placement);
-            },
-        );
-        self.instance = instance;
+        let step = |child_from_parent: &ChildFromParent, frame: &Frame| {
+            self.in_instance = frame.approach(&self.in_instance.in_child(child_from_parent));
+        };
+        self.position.change_instance(instance, prototype_ref, step);
     }
 
     /// Counts a callback.
@@ -164,14 +139,6 @@ impl Query {
     pub fn called_back(&mut self) {
         counters::called_back();
         self.callbacks += 1;
-    }
-
-    /// Returns from the instance to the prototype that is being traced.
-    #[inline(always)]
-    pub fn leave_instance(&mut self) {
-        if self.instance.take().is_some() {
-            self.path.truncate(self.outside);
-        }
     }
 
     /// The level of the current callbacks.
@@ -185,7 +152,7 @@ impl Query {
     /// The ray in the space of the current callback.
     #[inline(always)]
     pub fn ray(&self) -> &LocalRay {
-        match self.instance {
+        match self.position.instance() {
             None => &self.level().ray,
             Some(_) => &self.in_instance,
         }
@@ -246,7 +213,11 @@ impl Query {
             return;
         }
         if let QueryMode::Containing(places) = &mut self.mode {
-            places.push(SolidRef::new(prototype_ref.index(), member, &self.path));
+            places.push(SolidRef::new(
+                prototype_ref.index(),
+                member,
+                &self.position.path,
+            ));
         }
     }
 
@@ -257,7 +228,7 @@ impl Query {
         member: SolidSlot,
     ) -> impl FnMut(SurfaceHit) {
         let (prototype, primitive) = (prototype_ref.index(), prototype_ref.primitive(member));
-        let (mode, path) = (&mut self.mode, &self.path);
+        let (mode, path) = (&mut self.mode, &self.position.path);
         move |hit| {
             if let QueryMode::Next(next) = mode {
                 let place = || SolidRef::new(prototype, member, path);
@@ -269,18 +240,8 @@ impl Query {
     /// Keeps a first hit if it is before the known one.
     #[inline(always)]
     fn offer(&mut self, t: f64, prototype_ref: &PrototypeRef, member: SolidSlot) {
-        let QueryMode::First(nearest) = &mut self.mode else {
-            return;
-        };
-        let path = &self.path;
-        let is_first = nearest.as_ref().is_none_or(|known| {
-            known.is_after(t, path, member, |member| prototype_ref.primitive(member))
-        });
-        if is_first {
-            *nearest = Some(Nearest {
-                t,
-                place: SolidRef::new(prototype_ref.index(), member, path),
-            });
+        if let QueryMode::First(nearest) = &mut self.mode {
+            self.position.offer(nearest, t, (prototype_ref, member));
         }
     }
 
