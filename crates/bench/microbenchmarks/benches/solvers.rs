@@ -1,7 +1,7 @@
 //! Time per ray of every formulation, by criterion: hits and misses apart; and
 //! time per pair of eight lanes, under the target features of the build.
 //!
-//! `cargo bench --bench solvers`; a name as argument picks formulations. The
+//! `cargo bench -p microbenchmarks --bench solvers`; a name as argument picks formulations. The
 //! cases are ordinary ones, so this says what a formulation costs and nothing
 //! of what it gets wrong: that is `cyltrace bench accuracy`.
 

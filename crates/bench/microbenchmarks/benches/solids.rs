@@ -2,7 +2,7 @@
 //! criterion, for rays of ordinary cases, of cases from afar and of origins on the
 //! surface.
 //!
-//! `cargo bench --bench solids`; a kind as argument picks one. What a solver gets right
+//! `cargo bench -p microbenchmarks --bench solids`; a kind as argument picks one. What a solver gets right
 //! is measured by `cyltrace stress`.
 
 use std::hint::black_box;
