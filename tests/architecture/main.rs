@@ -12,7 +12,6 @@ mod tokens;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use circles::{Folder, circle};
 use layers::layers;
 use tokens::tokens;
 
@@ -131,43 +130,6 @@ fn layers_planted_uses_are_found() {
         layers,
         "src/scene/load.rs",
         "use super::tracer_names;\nuse super::math;",
-    );
-}
-
-#[test]
-fn files_of_embree_import_each_other_in_no_circle() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/embree");
-    let entries = fs::read_dir(folder).expect("a folder of the repository can be read");
-    let paths = entries.map(|entry| entry.expect("its entries too").path());
-    let sources = paths.filter(|path| path.extension().is_some_and(|ext| ext == "rs"));
-    let files: Folder = sources
-        .map(|path| {
-            let name = path.file_stem().expect("a file has a name");
-            let text = fs::read_to_string(&path).expect("a Rust file is UTF-8");
-            (name.to_string_lossy().into_owned(), text)
-        })
-        .collect();
-    assert!(files.len() > 10);
-    assert_eq!(circle(&files), None);
-}
-
-#[test]
-fn files_planted_in_a_circle_are_found() {
-    let folder = |texts: &[(&str, &str)]| -> Folder {
-        let texts = texts.iter();
-        texts
-            .map(|&(name, text)| (name.into(), text.into()))
-            .collect()
-    };
-    let a = ("a", "use super::b::B;");
-    let b = ("b", "use super::c::{C, D};\nuse super::other;");
-    let mod_file = ("mod", "mod a;\nmod b;\nmod c;");
-    let chain = folder(&[a, b, ("c", "// super::a\nfn c() {}"), mod_file]);
-    assert_eq!(circle(&chain), None);
-    let closed = folder(&[a, b, ("c", "fn c() { super::a::f() }"), mod_file]);
-    assert_eq!(
-        circle(&closed),
-        Some(vec!["a".into(), "b".into(), "c".into()])
     );
 }
 
@@ -340,34 +302,47 @@ fn length(file: &str, source: &str) -> Vec<String> {
     }
 }
 
+/// The folders of sources of the library and of the other crates.
+fn members() -> Vec<String> {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates");
+    let members = fs::read_dir(crates).expect("the folder of the other crates");
+    let names = members.map(|member| member.expect("a crate").file_name());
+    let others = names.map(|name| format!("crates/{}/src", name.to_string_lossy()));
+    std::iter::once("src".into()).chain(others).collect()
+}
+
 /// Applies a rule to the sources of the library and of the other crates.
 fn hold_in_sources(rule: Rule) {
-    hold("src", rule);
-    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates");
-    for member in fs::read_dir(crates).expect("the folder of the other crates") {
-        let member = member.expect("a crate").file_name();
-        hold(&format!("crates/{}/src", member.to_string_lossy()), rule);
+    for folder in members() {
+        hold(&folder, rule);
     }
 }
 
 /// Applies a rule to every Rust file of a folder (or to one file).
 fn hold(start: &str, rule: Rule) {
+    let complaints = sources(start).into_iter();
+    let complaints: Vec<String> = complaints
+        .flat_map(|(name, source)| rule(&name, &source))
+        .collect();
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+/// The names and texts of all Rust files of a folder (or of one file).
+fn sources(start: &str) -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut complaints = Vec::new();
+    let mut found = Vec::new();
     let mut open = vec![root.join(start)];
-    let mut read = 0;
     while let Some(path) = open.pop() {
         if path.is_dir() {
             let entries = fs::read_dir(&path).expect("a folder of the repository can be read");
             open.extend(entries.map(|entry| entry.expect("its entries too").path()));
         } else if path.extension().is_some_and(|extension| extension == "rs") {
             let source = fs::read_to_string(&path).expect("a Rust file is UTF-8");
-            complaints.extend(rule(&name(root, &path), &source));
-            read += 1;
+            found.push((name(root, &path), source));
         }
     }
-    assert!(read > 0, "no Rust file under {start}");
-    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+    assert!(!found.is_empty(), "no Rust file under {start}");
+    found
 }
 
 /// The path from the repository's root, with forward slashes.
