@@ -20,7 +20,7 @@ pub use figure::{Figure, Mark, Series, Symbol};
 pub use film::Film;
 pub use html::Page;
 pub use new_file::{FileError, NewFile, followed};
-pub use picture::{Format, Output, OutputError, film_png_bytes, png_bytes};
+pub use picture::{Bands, Format, Output, OutputError, film_png_bytes, png_bytes};
 pub use size::{parse_size, readable};
 pub use srgb::encode as srgb_encode;
 pub use table::{Table, figure};

@@ -158,6 +158,19 @@ impl NewFile {
     /// # Errors
     /// When writing or renaming fails.
     pub fn finish(self) -> Result<(), FileError> {
+        self.finish_with(|_| Ok(()))
+    }
+
+    /// As [`NewFile::finish`], and the file is on the disk when it gets its name: after a
+    /// crash of the machine it is whole or absent.
+    ///
+    /// # Errors
+    /// When writing, syncing or renaming fails.
+    pub fn finish_synced(self) -> Result<(), FileError> {
+        self.finish_with(|file| file.sync_all())
+    }
+
+    fn finish_with(self, ready: impl Fn(&File) -> io::Result<()>) -> Result<(), FileError> {
         let Self {
             path,
             target,
@@ -165,7 +178,9 @@ impl NewFile {
         } = self;
         let sink = writer.into_inner().map_err(io::IntoInnerError::into_error);
         let renamed = match sink {
-            Ok(Sink::Temporary(file)) => file.persist(&target),
+            Ok(Sink::Temporary(mut file)) => {
+                ready(file.file()).and_then(|()| file.persist(&target))
+            }
             Ok(Sink::Device(_)) => Ok(()),
             Err(error) => Err(error),
         };

@@ -1,11 +1,18 @@
 //! Pictures as files: 8-bit sRGB PNG and linear f32 EXR.
+//!
+//! A picture is written row by row, whether it is in memory as a [`Film`] or comes in bands
+//! of rows ([`Output::write_bands`]). Equal pixels give equal files: the encoders get the
+//! same rows in the same order.
 
-use std::io::Cursor;
+mod exr;
+mod png;
+
+use std::io;
 use std::path::{Path, PathBuf};
 
-use image::{ImageBuffer, ImageError, ImageFormat, Rgb, Rgba};
+use super::{FileError, Film, NewFile};
 
-use super::{FileError, Film, NewFile, srgb};
+pub use self::png::{film_png_bytes, png_bytes};
 
 /// Why a picture cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -25,8 +32,8 @@ pub enum OutputError {
     Encoding {
         /// The path as given.
         path: PathBuf,
-        /// The encoder's error.
-        source: image::ImageError,
+        /// The error of the encoder, the system or the source of the rows.
+        source: io::Error,
     },
 }
 
@@ -54,6 +61,12 @@ impl Format {
         }
     }
 }
+
+/// The rows of a picture from the top, some at a time, each row from the left. The vector is
+/// empty when it is called, and gets at least one row and only whole ones.
+pub trait Bands: FnMut(&mut Vec<[f32; 3]>) -> io::Result<()> + Send {}
+
+impl<F: FnMut(&mut Vec<[f32; 3]>) -> io::Result<()> + Send> Bands for F {}
 
 /// A file that a picture will replace or create, see [`NewFile`].
 #[derive(Debug)]
@@ -91,11 +104,34 @@ impl Output {
     /// # Errors
     /// If encoding, writing or renaming fails. Then no file is left behind.
     pub fn write(mut self, film: &Film) -> Result<(), OutputError> {
-        let encoded = match self.format {
-            Format::Png => png(film).write_to(&mut self.file, ImageFormat::Png),
-            Format::Exr => exr(film).write_to(&mut self.file, ImageFormat::OpenExr),
+        let written = match self.format {
+            Format::Png => png::write_film(&mut self.file, film),
+            Format::Exr => exr::write_film(&mut self.file, film),
         };
-        encoded.map_err(|source| OutputError::Encoding {
+        self.finish(written)
+    }
+
+    /// Writes a picture of `width` by `height` pixels, at least one, whose rows come in bands,
+    /// and moves it to its place. A PNG takes the memory of one band, an EXR that of 64 rows
+    /// and a band.
+    ///
+    /// # Errors
+    /// If a band cannot be read, or encoding, writing or renaming fails. Then no file is left
+    /// behind.
+    pub fn write_bands(
+        mut self,
+        (width, height): (u32, u32),
+        bands: impl Bands,
+    ) -> Result<(), OutputError> {
+        let written = match self.format {
+            Format::Png => png::write_bands(&mut self.file, (width, height), bands),
+            Format::Exr => exr::write_bands(&mut self.file, (width, height), bands),
+        };
+        self.finish(written)
+    }
+
+    fn finish(self, written: io::Result<()>) -> Result<(), OutputError> {
+        written.map_err(|source| OutputError::Encoding {
             path: self.path,
             source,
         })?;
@@ -103,53 +139,10 @@ impl Output {
     }
 }
 
-/// The bytes of a PNG file of red, green, blue and opacity.
-///
-/// # Errors
-/// If the encoder fails.
-///
-/// # Panics
-/// When there is not one colour a pixel.
-pub fn png_bytes(width: u32, height: u32, pixels: &[[u8; 4]]) -> Result<Vec<u8>, ImageError> {
-    let picture: ImageBuffer<Rgba<u8>, Vec<u8>> =
-        ImageBuffer::from_raw(width, height, pixels.as_flattened().to_vec())
-            .expect("there is one color per pixel");
-    let mut bytes = Vec::new();
-    picture.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png)?;
-    Ok(bytes)
-}
-
-/// The bytes of the PNG file that [`Output`] writes of a film.
-///
-/// # Errors
-/// If the encoder fails.
-pub fn film_png_bytes(film: &Film) -> Result<Vec<u8>, ImageError> {
-    let mut bytes = Vec::new();
-    png(film).write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png)?;
-    Ok(bytes)
-}
-
-fn png(film: &Film) -> ImageBuffer<Rgb<u8>, Vec<u8>> {
-    let codes = film.pixels().iter().flatten().map(|&v| srgb::encode(v));
-    ImageBuffer::from_raw(film.width(), film.height(), codes.collect())
-        .expect("a film has one color per pixel")
-}
-
-/// The blocks of the file come in order, so that equal films give equal
-/// files: `image` is built without its `rayon` feature, with which the EXR
-/// encoder would write blocks as its threads finish them.
-fn exr(film: &Film) -> ImageBuffer<Rgb<f32>, Vec<f32>> {
-    ImageBuffer::from_raw(
-        film.width(),
-        film.height(),
-        film.pixels().as_flattened().to_vec(),
-    )
-    .expect("a film has one color per pixel")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::srgb;
     use cyltrace::math::Random;
 
     /// A film of hard values: noise, and what a clamp or a rounding may lose.
@@ -193,6 +186,57 @@ mod tests {
         {
             assert_eq!(*code, srgb::encode(value), "channel {n}: {value:e}");
         }
+    }
+
+    #[test]
+    fn picture_in_bands_has_the_bytes_of_the_film() {
+        let directory = tempfile::tempdir().expect("directory");
+        let film = film();
+        let size = (film.width(), film.height());
+        for name in ["film.png", "film.exr"] {
+            let path = directory.path().join(name);
+            let output = || Output::create(&path).expect("created");
+            output().write(&film).expect("written");
+            let whole = std::fs::read(&path).expect("read");
+            for rows in [1, 16, 65, 70] {
+                let mut bands = film.pixels().chunks(rows * film.width() as usize);
+                let next = |band: &mut Vec<[f32; 3]>| {
+                    band.extend_from_slice(bands.next().expect("no more bands than rows"));
+                    Ok(())
+                };
+                output().write_bands(size, next).expect("written");
+                let written = std::fs::read(&path).expect("read");
+                assert!(written == whole, "{name} in bands of {rows} rows");
+            }
+        }
+    }
+
+    #[test]
+    fn error_of_a_band_is_reported_and_leaves_no_file() {
+        let directory = tempfile::tempdir().expect("directory");
+        for name in ["film.png", "film.exr"] {
+            let path = directory.path().join(name);
+            let mut rows = 0;
+            let next = |band: &mut Vec<[f32; 3]>| {
+                rows += 1;
+                if rows == 30 {
+                    return Err(io::Error::other("a part cannot be read"));
+                }
+                band.resize(130, [0.5; 3]);
+                Ok(())
+            };
+            let output = Output::create(&path).expect("created");
+            let error = output.write_bands((130, 200), next).expect_err(name);
+            let source = std::error::Error::source(&error).expect("a source");
+            assert!(
+                source.to_string().contains("a part cannot be read"),
+                "{source}"
+            );
+        }
+        let left = std::fs::read_dir(directory.path())
+            .expect("readable")
+            .count();
+        assert_eq!(left, 0);
     }
 
     #[test]
