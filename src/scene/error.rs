@@ -72,6 +72,14 @@ impl SceneError {
             help: None,
         }
     }
+
+    /// The error with the number of its line increased.
+    pub(super) fn lines_later(mut self, lines: u64) -> Self {
+        if let Self::Row { line, .. } | Self::Encoding { line, .. } = &mut self {
+            *line += lines;
+        }
+        self
+    }
 }
 
 /// A wrong place in a scene file.

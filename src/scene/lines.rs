@@ -1,4 +1,4 @@
-//! Counts the lines of a file before it is parsed.
+//! Counts the lines of a file without parsing it.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -11,12 +11,20 @@ pub(super) fn lines(path: &Path) -> io::Result<u64> {
     if !fs::metadata(path)?.is_file() {
         return Ok(0);
     }
-    let mut file = File::open(path)?;
+    Ok(1 + line_ends(File::open(path)?)?)
+}
+
+/// The number of lines in the first bytes of a file, of which the last ends there.
+pub(super) fn lines_before(path: &Path, place: u64) -> io::Result<u64> {
+    line_ends(File::open(path)?.take(place))
+}
+
+fn line_ends(mut input: impl Read) -> io::Result<u64> {
     let mut bytes = vec![0; 1 << 16];
     // Lines end with LF, CR LF or CR; one file may contain all three.
-    let (mut lines, mut is_after_return) = (1, false);
+    let (mut lines, mut is_after_return) = (0, false);
     loop {
-        match file.read(&mut bytes) {
+        match input.read(&mut bytes) {
             Ok(0) => return Ok(lines),
             Ok(read) => {
                 let bytes = &bytes[..read];

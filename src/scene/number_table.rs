@@ -4,13 +4,15 @@
 //! A table is read in blocks of rows, so that many threads can parse blocks and a table of
 //! any length needs little memory.
 
-use std::io::{self, Read};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::marker::PhantomData;
+use std::ops::Range;
 use std::path::Path;
 
 use glam::DVec3;
 
 use super::error::SceneError;
+use super::lines::lines_before;
 use super::table::{Block, Column, ColumnKey, Layout, Row, Table, TableFormat, input};
 use crate::math::Ray;
 
@@ -80,6 +82,8 @@ const MOST_NUMBERS: usize = 8;
 pub struct NumberTable<R, I = Box<dyn Read>> {
     table: Table<I>,
     columns: NumberColumns<R>,
+    /// The place, in bytes, of the line that errors call line 2; see [`NumberTable::located`].
+    second_line: Option<u64>,
 }
 
 /// The columns of a table that contain the numbers.
@@ -102,6 +106,41 @@ impl<R: NumberRow> NumberTable<R> {
             return Self::new(Box::new(io::stdin()), name, format, columns);
         }
         Self::new(Box::new(input::open(path)?), path, format, columns)
+    }
+
+    /// As [`NumberTable::open`], only the rows that begin in a range of a regular file, in bytes
+    /// from its beginning. Ranges that follow one another contain each row once. Each row must
+    /// be on one line.
+    ///
+    /// # Errors
+    /// Those of [`NumberTable::open`].
+    pub fn open_range(
+        path: &Path,
+        format: TableFormat,
+        columns: &[u64],
+        range: Range<u64>,
+    ) -> Result<Self, SceneError> {
+        let mut table = Self::open(path, format, columns)?;
+        table.second_line = table.table.restrict(range, |place| {
+            let mut file = input::open(path)?;
+            let moved = file.seek(SeekFrom::Start(place));
+            moved.map_err(|source| SceneError::Unreadable {
+                path: path.to_owned(),
+                source,
+            })?;
+            Ok(Box::new(file))
+        })?;
+        Ok(table)
+    }
+
+    /// An error of this table with its line in the whole file. The lines before a range are
+    /// counted here, as they are of use only in messages.
+    #[must_use]
+    pub fn located(&self, path: &Path, error: SceneError) -> SceneError {
+        let lines = self.second_line.map(|place| lines_before(path, place));
+        // A file that cannot be read any more: its lines are those of the range.
+        let lines = lines.and_then(Result::ok).unwrap_or(1);
+        error.lines_later(lines.saturating_sub(1))
     }
 }
 
@@ -147,7 +186,11 @@ impl<R: NumberRow, I: Read> NumberTable<R, I> {
             columns: found,
             row: PhantomData,
         };
-        Ok(Self { table, columns })
+        Ok(Self {
+            table,
+            columns,
+            second_line: None,
+        })
     }
 
     /// The next rows, or `None` at the end.

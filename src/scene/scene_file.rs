@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 
 use super::contents::{ExpectedCounts, ExpectedSolids, mark_used, placed_counts};
-use super::description::{PrototypeIndex, Scene};
+use super::description::{Film, PrototypeIndex, RenderSettings, Scene};
 use super::document::{Body, Document};
 use super::error::SceneError;
 use super::formats::{self, SolidFile};
@@ -14,6 +14,7 @@ use super::load::{lower, records};
 use super::named_table::table_rows;
 use super::record::Records;
 use super::set_operations::operand_count;
+use super::settings::{film, render};
 use super::source::Source;
 use super::toml_message::toml_error;
 use super::values::Keys;
@@ -72,6 +73,20 @@ impl SceneFile {
         }
         let paths = names.iter().map(|name| self.source.resolve(name.get_ref()));
         paths.collect()
+    }
+
+    /// The size of the picture, and how it is rendered.
+    ///
+    /// # Errors
+    /// If a value is wrong, as when the scene is loaded.
+    pub fn picture(&self) -> Result<(Film, RenderSettings), SceneError> {
+        let (film_keys, render_keys) = (&self.document.film, &self.document.render);
+        let film_keys = film_keys.as_ref().map(|Keys(keys)| keys);
+        let render_keys = render_keys.as_ref().map(|Keys(keys)| keys);
+        Ok((
+            film(&self.source, film_keys.unwrap_or(&Default::default()))?,
+            render(&self.source, render_keys.unwrap_or(&Default::default()))?,
+        ))
     }
 
     /// Upper bounds of the contents of the prototypes, in their order. Tables are counted by

@@ -18,6 +18,7 @@ mod row;
 mod tests;
 
 use std::io::Read;
+use std::ops::Range;
 use std::path::Path;
 
 pub use format::{Decimal, Delimiter, TableFormat};
@@ -32,6 +33,7 @@ pub(super) use {
 };
 
 use self::header::Beginning;
+use self::records::ROW_OF_LINES;
 use super::error::SceneError;
 use super::limits::MOST_COLUMNS;
 
@@ -103,6 +105,35 @@ impl<I: Read> Table<I> {
             layout,
             first: Some(first).filter(|first| !first.is_empty()),
         })
+    }
+
+    /// Restricts the table, of which nothing has been read, to the rows that begin in `range`,
+    /// in bytes from its beginning. `reopened` opens the table at a place. Returns the place of
+    /// the line that errors call line 2, or `None` if they number the lines of the whole table.
+    ///
+    /// # Errors
+    /// If the table cannot be read.
+    pub fn restrict(
+        &mut self,
+        range: Range<u64>,
+        reopened: impl FnOnce(u64) -> Result<I, SceneError>,
+    ) -> Result<Option<u64>, SceneError> {
+        let first_row = self.records.row_start();
+        if self.first.is_none() || range.start <= first_row {
+            self.records.end_at(range.end);
+            self.first = self.first.take().filter(|_| first_row < range.end);
+            if let Some(first) = &self.first {
+                let (text, line) = first.text(&self.layout.path, 0)?;
+                if text.contains('\n') {
+                    return Err(SceneError::row(&self.layout.path, line, ROW_OF_LINES));
+                }
+            }
+            return Ok(None);
+        }
+        let before = range.start - 1;
+        self.first = None;
+        self.records = Records::within(reopened(before)?, &self.layout.path, range)?;
+        Ok(Some(self.records.row_start()))
     }
 
     /// The layout of the table.

@@ -7,6 +7,7 @@
 
 use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::format::Delimiter;
@@ -17,6 +18,10 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// The marks that begin a comment.
 const COMMENT_MARKS: [&[u8]; 2] = [b"#", b"//"];
+
+/// The error in a row of several lines in a range of a table: where they begin is not known
+/// to a reader that begins between them.
+pub(super) const ROW_OF_LINES: &str = "the row continues on the next line, within quotes: a table that is read in parts must have each row on one line";
 
 /// Bytes of a block, about 1000 rows: large enough to pass to a thread at negligible cost,
 /// small enough to share the work evenly.
@@ -48,7 +53,12 @@ pub(in crate::scene) struct Records<R> {
     input: BufReader<R>,
     /// The number of lines read.
     line: u64,
+    /// The place in the table, in bytes from its beginning.
     bytes: u64,
+    /// Rows that begin here or later are not read.
+    end: u64,
+    /// The place where the last row began.
+    row_start: u64,
     /// Whether the last line ended with CR, so that a following LF belongs to it.
     after_return: bool,
     /// The comments before the first row.
@@ -105,9 +115,39 @@ impl<R: Read> Records<R> {
             input: BufReader::with_capacity(BLOCK_BYTES, input),
             line: 0,
             bytes: 0,
+            end: u64::MAX,
+            row_start: 0,
             after_return: false,
             comments: VecDeque::new(),
         }
+    }
+
+    /// Begins to read within a table: the rows that begin in `range`, in bytes from its
+    /// beginning, not at 0. `input` is at the byte before the range. The first line of the range
+    /// has number 2; its true number follows from [`Records::row_start`], where it begins.
+    pub fn within(input: R, path: &Path, range: Range<u64>) -> Result<Self, SceneError> {
+        let mut records = Self {
+            line: 1,
+            bytes: range.start - 1,
+            end: range.end,
+            ..Self::new(input, path)
+        };
+        // The rest of a line that begins before the range, at least its end.
+        records.next_line(&mut Vec::new(), 0)?;
+        records.line = 1;
+        records.row_start = records.line_start()?;
+        Ok(records)
+    }
+
+    /// Leaves out the rows that begin at `end` or later.
+    pub fn end_at(&mut self, end: u64) {
+        self.end = end;
+    }
+
+    /// The place where the last row began, or the first will, in bytes from the table's
+    /// beginning.
+    pub fn row_start(&self) -> u64 {
+        self.row_start
     }
 
     /// The number of lines read.
@@ -134,7 +174,8 @@ impl<R: Read> Records<R> {
     ) -> Result<bool, SceneError> {
         let start = block.text.len();
         loop {
-            if !self.next_line(&mut block.text, start)? {
+            self.row_start = self.line_start()?;
+            if self.row_start >= self.end || !self.next_line(&mut block.text, start)? {
                 return Ok(false);
             }
             let content = block.text[start..].trim_ascii();
@@ -149,6 +190,9 @@ impl<R: Read> Records<R> {
         let mut quotes = Quotes::new(delimiter);
         let mut fed = start;
         while quotes.are_open_after(&block.text[fed..]) {
+            if self.end != u64::MAX {
+                return Err(self.error(line, ROW_OF_LINES));
+            }
             block.text.push(b'\n');
             fed = block.text.len();
             if !self.next_line(&mut block.text, start)? {
@@ -165,23 +209,11 @@ impl<R: Read> Records<R> {
     fn next_line(&mut self, text: &mut Vec<u8>, start: usize) -> Result<bool, SceneError> {
         let line_start = text.len();
         let mut is_ended = false;
+        self.line_start()?;
         while !is_ended {
-            let buffer = match self.input.fill_buf() {
-                Ok(buffer) => buffer,
-                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-                Err(source) => {
-                    return Err(SceneError::Unreadable {
-                        path: self.path.clone(),
-                        source,
-                    });
-                }
-            };
+            let buffer = fill(&mut self.input, &self.path)?;
             if buffer.is_empty() {
                 break;
-            }
-            if std::mem::take(&mut self.after_return) && buffer[0] == b'\n' {
-                self.input.consume(1);
-                continue;
             }
             let end = memchr::memchr2(b'\n', b'\r', buffer);
             let piece = &buffer[..end.unwrap_or(buffer.len())];
@@ -211,6 +243,17 @@ impl<R: Read> Records<R> {
             self.strip_mark(text)?;
         }
         Ok(true)
+    }
+
+    /// The place where the next line begins: after the LF that belongs to a CR.
+    fn line_start(&mut self) -> Result<u64, SceneError> {
+        if std::mem::take(&mut self.after_return)
+            && fill(&mut self.input, &self.path)?.first() == Some(&b'\n')
+        {
+            self.input.consume(1);
+            self.bytes += 1;
+        }
+        Ok(self.bytes)
     }
 
     /// Removes the byte order mark from the first line.
@@ -253,6 +296,23 @@ impl<R: Read> Records<R> {
     fn error(&self, line: u64, message: &str) -> SceneError {
         SceneError::row(&self.path, line, message)
     }
+}
+
+/// The bytes that are read next; none at the end.
+fn fill<'a, R: Read>(input: &'a mut BufReader<R>, path: &Path) -> Result<&'a [u8], SceneError> {
+    while input.buffer().is_empty() {
+        match input.fill_buf() {
+            Ok(_) => break,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(source) => {
+                return Err(SceneError::Unreadable {
+                    path: path.to_owned(),
+                    source,
+                });
+            }
+        }
+    }
+    Ok(input.buffer())
 }
 
 /// Tracks from line to line of a row whether quotes are open. As in `csv-core`, a quote
