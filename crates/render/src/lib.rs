@@ -2,13 +2,15 @@
 //!
 //! [`render()`] makes a [`Film`] of linear colors, [`cyltrace_output::Output`] writes it. The
 //! same scene, settings and seed give the same bytes for any number of
-//! threads.
+//! threads. [`render_tiles()`] renders a part of a picture, so that several processes can share
+//! it: [`Tiles`] numbers its tiles.
 
 mod integrator;
 mod lights;
 mod sampler;
 mod tiles;
 
+use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
 use cyltrace_output::Film;
@@ -17,8 +19,9 @@ use rayon::ThreadPool;
 pub use cyltrace::scene::GREATEST_PIXELS;
 pub use integrator::RayCounts;
 pub use lights::{Lights, SunLight};
+pub use tiles::Tiles;
 
-use cyltrace::scene::{self, AimedCamera, Integrator, Scene, ViewVolume};
+use cyltrace::scene::{self, AimedCamera, Integrator, RenderSettings, Scene, ViewVolume};
 use cyltrace::tracer::Tracer;
 use integrator::View;
 
@@ -40,10 +43,16 @@ impl Settings {
     /// The settings of the scene, with seed 0.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
+        Self::new((scene.film, scene.render))
+    }
+
+    /// These settings of a scene, with seed 0.
+    #[must_use]
+    pub fn new((film, render): (scene::Film, RenderSettings)) -> Self {
         Self {
-            film: scene.film,
-            spp: scene.render.spp,
-            integrator: scene.render.integrator,
+            film,
+            spp: render.spp,
+            integrator: render.integrator,
             seed: 0,
         }
     }
@@ -110,6 +119,30 @@ pub enum RenderError {
     Cancelled,
 }
 
+/// Some tiles of a picture and what they took.
+#[derive(Clone, Debug)]
+pub struct RenderedTiles {
+    /// The colours of the tiles in their order, those of a tile row by row.
+    pub pixels: Vec<[f32; 3]>,
+    /// The rays traced.
+    pub rays: RayCounts,
+    /// Work that the scene did not need.
+    pub skipped: Vec<String>,
+}
+
+impl RenderedTiles {
+    /// The picture of this size of which these are all tiles.
+    ///
+    /// # Panics
+    /// If they are not.
+    #[must_use]
+    pub fn film(&self, size: scene::Film) -> Film {
+        let mut pixels = Vec::new();
+        Tiles::of(size).arrange(0, &self.pixels, &mut pixels);
+        Film::new(size.width, size.height, pixels)
+    }
+}
+
 /// Renders the scene of `tracer` on the threads of `workers` (see
 /// [`cyltrace::tracer::workers`]).
 ///
@@ -128,6 +161,35 @@ pub fn render(
     cancelled: &AtomicBool,
 ) -> Result<Picture, RenderError> {
     settings.check()?;
+    let tiles = Tiles::of(settings.film);
+    let all = 0..tiles.count();
+    let rendered = render_tiles(tracer, settings, all, workers, progress, cancelled)?;
+    Ok(Picture {
+        film: rendered.film(settings.film),
+        rays: rendered.rays,
+        skipped: rendered.skipped,
+    })
+}
+
+/// As [`render()`], only the tiles with the numbers `tiles` of [`Tiles`]. They are the same
+/// pixels as in the whole picture.
+///
+/// # Errors
+/// Those of [`render()`].
+///
+/// # Panics
+/// If there are not as many tiles.
+pub fn render_tiles(
+    tracer: &Tracer,
+    settings: &Settings,
+    tiles: Range<u64>,
+    workers: &ThreadPool,
+    progress: &(dyn Fn(u64) + Sync),
+    cancelled: &AtomicBool,
+) -> Result<RenderedTiles, RenderError> {
+    settings.check()?;
+    let count = Tiles::of(settings.film).count();
+    assert!(tiles.end <= count, "tiles {tiles:?} of {count}");
     let scene = tracer.scene();
     let view = View {
         tracer,
@@ -136,9 +198,10 @@ pub fn render(
         lights: Lights::of(scene),
         integrator: settings.integrator,
     };
-    let (film, rays) = workers.install(|| tiles::render(&view, settings, progress, cancelled))?;
-    Ok(Picture {
-        film,
+    let (pixels, rays) =
+        workers.install(|| tiles::render(&view, settings, tiles, progress, cancelled))?;
+    Ok(RenderedTiles {
+        pixels,
         rays,
         skipped: skipped(settings.integrator, &view.lights),
     })

@@ -3,6 +3,7 @@
 //! A pixel is a pure function of its index, so the picture does not depend on
 //! which thread computes what, or when.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
@@ -11,7 +12,7 @@ use rayon::prelude::*;
 use super::integrator::{Batch, Sample, View};
 use super::sampler::PixelSampler;
 use super::{RayCounts, RenderError, Settings};
-use cyltrace_output::Film;
+use cyltrace::scene;
 
 /// Edge of a tile in pixels: near rays share what they read, and even a small
 /// picture has tiles for many threads.
@@ -30,47 +31,126 @@ struct Tile {
     height: u32,
 }
 
-/// Renders all tiles on the rayon pool that this is called in.
-pub(super) fn render(
-    view: &View,
-    settings: &Settings,
-    progress: &(dyn Fn(u64) + Sync),
-    cancelled: &AtomicBool,
-) -> Result<(Film, RayCounts), RenderError> {
-    let size = settings.film;
-    let across = size.width.div_ceil(TILE);
-    let count = u64::from(across) * u64::from(size.height.div_ceil(TILE));
-    let tile = |number: u64| {
-        let x = (number % u64::from(across)) as u32 * TILE;
-        let y = (number / u64::from(across)) as u32 * TILE;
+/// The tiles of a picture, row by row from the top, each row from the left.
+#[derive(Clone, Copy, Debug)]
+pub struct Tiles {
+    size: scene::Film,
+}
+
+impl Tiles {
+    /// The tiles of a picture of this size, at least 1 x 1.
+    #[must_use]
+    pub fn of(size: scene::Film) -> Self {
+        Self { size }
+    }
+
+    /// The number of tiles.
+    #[must_use]
+    pub fn count(self) -> u64 {
+        let down = self.size.height.div_ceil(TILE);
+        u64::from(self.across()) * u64::from(down)
+    }
+
+    /// The number of pixels of some tiles.
+    #[must_use]
+    pub fn pixels(self, tiles: Range<u64>) -> u64 {
+        // Whole rows of tiles, and then the tiles of a last row.
+        let before = |tile: u64| {
+            let (row, column) = self.row_and_column(tile);
+            let top = u64::from((row * TILE).min(self.size.height));
+            let height = u64::from(TILE.min(self.size.height - top as u32));
+            let left = u64::from((column * TILE).min(self.size.width));
+            top * u64::from(self.size.width) + height * left
+        };
+        before(tiles.end) - before(tiles.start)
+    }
+
+    /// Puts the pixels of whole rows of tiles, tile by tile, in the order of a picture: row by
+    /// row. The pixels must be those of the tiles from the left of `first_row`, a row of tiles,
+    /// on; `pixels` of whole rows of tiles.
+    ///
+    /// # Panics
+    /// If the pixels are not those of whole rows of tiles.
+    pub fn arrange(self, first_row: u64, pixels: &[[f32; 3]], arranged: &mut Vec<[f32; 3]>) {
+        let width = self.size.width as usize;
+        arranged.clear();
+        arranged.resize(pixels.len(), [0.0; 3]);
+        let first = first_row * u64::from(self.across());
+        let top = first_row as usize * TILE as usize;
+        let mut rest = pixels;
+        for number in first.. {
+            if rest.is_empty() {
+                break;
+            }
+            let tile = self.tile(number);
+            let (colors, later) = rest.split_at((tile.width * tile.height) as usize);
+            for (row, colors) in colors.chunks_exact(tile.width as usize).enumerate() {
+                let start = (tile.y as usize - top + row) * width + tile.x as usize;
+                arranged[start..start + colors.len()].copy_from_slice(colors);
+            }
+            rest = later;
+        }
+    }
+
+    /// The number of rows of tiles.
+    #[must_use]
+    pub fn rows(self) -> u64 {
+        u64::from(self.size.height.div_ceil(TILE))
+    }
+
+    /// The tiles of a row of tiles.
+    #[must_use]
+    pub fn row(self, row: u64) -> Range<u64> {
+        let across = u64::from(self.across());
+        row * across..(row + 1) * across
+    }
+
+    fn across(self) -> u32 {
+        self.size.width.div_ceil(TILE)
+    }
+
+    fn row_and_column(self, tile: u64) -> (u32, u32) {
+        let across = u64::from(self.across());
+        ((tile / across) as u32, (tile % across) as u32)
+    }
+
+    fn tile(self, number: u64) -> Tile {
+        let (row, column) = self.row_and_column(number);
+        let (x, y) = (column * TILE, row * TILE);
         Tile {
             x,
             y,
-            width: TILE.min(size.width - x),
-            height: TILE.min(size.height - y),
+            width: TILE.min(self.size.width - x),
+            height: TILE.min(self.size.height - y),
         }
-    };
-    let rendered: Vec<_> = (0..count)
+    }
+}
+
+/// Renders some tiles on the rayon pool that this is called in. The pixels are in the order of
+/// the tiles, those of a tile row by row.
+pub(super) fn render(
+    view: &View,
+    settings: &Settings,
+    numbers: Range<u64>,
+    progress: &(dyn Fn(u64) + Sync),
+    cancelled: &AtomicBool,
+) -> Result<(Vec<[f32; 3]>, RayCounts), RenderError> {
+    let tiles = Tiles::of(settings.film);
+    let rendered: Vec<_> = numbers
         .into_par_iter()
         .map(|number| {
-            let rendered = render_tile(view, settings, &tile(number), cancelled)?;
+            let rendered = render_tile(view, settings, &tiles.tile(number), cancelled)?;
             progress(rendered.0.len() as u64);
             Ok(rendered)
         })
         .collect::<Result<_, RenderError>>()?;
-
-    let width = size.width as usize;
-    let mut pixels = vec![[0.0; 3]; width * size.height as usize];
+    let mut pixels = Vec::with_capacity(rendered.iter().map(|(colors, _)| colors.len()).sum());
     let mut rays = RayCounts::default();
-    for (number, (colors, tile_rays)) in (0..).zip(rendered) {
+    for (colors, tile_rays) in rendered {
         rays = rays + tile_rays;
-        let tile = tile(number);
-        for (row, colors) in colors.chunks_exact(tile.width as usize).enumerate() {
-            let start = (tile.y as usize + row) * width + tile.x as usize;
-            pixels[start..start + colors.len()].copy_from_slice(colors);
-        }
+        pixels.extend(colors);
     }
-    Ok((Film::new(size.width, size.height, pixels), rays))
+    Ok((pixels, rays))
 }
 
 /// The pixels of a tile, row by row, and the rays they took.
@@ -135,4 +215,44 @@ impl Tile {
 /// The number whose bits are bits 0, 2, 4 and 6.
 fn every_second_bit(bits: u32) -> u32 {
     bits & 1 | bits >> 1 & 2 | bits >> 2 & 4 | bits >> 3 & 8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_are_counted_by_their_pixels_and_arranged_in_place() {
+        for (width, height) in [(1, 1), (16, 16), (17, 33), (75, 50), (32, 15)] {
+            let size = scene::Film { width, height };
+            let tiles = Tiles::of(size);
+            // Pixels that contain their own place, in the order of the tiles.
+            let mut pixels = Vec::new();
+            for number in 0..tiles.count() {
+                let tile = tiles.tile(number);
+                let start = pixels.len() as u64;
+                assert_eq!(tiles.pixels(0..number), start, "{width}x{height}");
+                for y in tile.y..tile.y + tile.height {
+                    let row = tile.x..tile.x + tile.width;
+                    pixels.extend(row.map(|x| [x as f32, y as f32, 0.0]));
+                }
+            }
+            assert_eq!(pixels.len() as u32, width * height);
+            let mut arranged = Vec::new();
+            let mut rows = Vec::new();
+            for row in 0..tiles.rows() {
+                let range = tiles.row(row);
+                let start = tiles.pixels(0..range.start) as usize;
+                let count = tiles.pixels(range) as usize;
+                tiles.arrange(row, &pixels[start..start + count], &mut rows);
+                arranged.append(&mut rows);
+            }
+            let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+            for (pixel, (x, y)) in arranged.into_iter().zip(places) {
+                assert_eq!(pixel, [x as f32, y as f32, 0.0], "{width}x{height}");
+            }
+            tiles.arrange(0, &pixels, &mut rows);
+            assert_eq!(rows.len(), pixels.len());
+        }
+    }
 }
