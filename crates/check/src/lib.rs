@@ -30,6 +30,7 @@
 mod bounding_meshes;
 mod external;
 mod outcome;
+mod partial_outcome;
 mod rays;
 mod replay;
 mod report;
@@ -47,13 +48,14 @@ pub use external::traced_mesh::{TracedMesh, TriangleHit};
 pub use outcome::{
     Convergence, Expected, Outcome, Row, RowTolerance, Shortfall, Violation, Witness,
 };
+pub use partial_outcome::{NotTheseTallies, PartialOutcome};
 pub use rays::around::rays_around;
 pub use replay::Replay;
 pub use report::page::{Checked, page};
 pub use report::pictures::PicturesError;
 pub use report::text::{summary, verdict, violation_text};
 pub use reported_hit::{Intersector, Place, ReportedHit};
-pub use run::compare::{compare, compare_with};
+pub use run::compare::{compare, compare_rays, compare_with};
 pub use run::plan::{Plan, plan};
 pub use run::replay::{Replayed, replay};
 pub use settings::{CheckError, Class, Settings};

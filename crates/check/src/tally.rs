@@ -56,22 +56,23 @@ impl Tally {
     }
 }
 
-/// Tallies the rays `0..count` of a row in blocks of `size`, on the threads of the rayon pool
+/// Tallies the rays `range` of a row in blocks of `size`, on the threads of the rayon pool
 /// that this is called in. The outcome is the same for any number of threads. `progress` gets
 /// the number of rays of each block; `None` if it breaks off.
 pub(crate) fn in_blocks<S: Default>(
     row: &Row,
-    (count, size): (u64, u64),
+    (range, size): (Range<u64>, u64),
     most_listed: usize,
     progress: impl Fn(u64) -> ControlFlow<()> + Sync,
     block: impl Fn(Range<u64>, &mut S, &mut Tally) + Sync,
 ) -> Option<Tally> {
+    let count = range.end - range.start;
     let blocks: Option<Vec<Tally>> = (0..count.div_ceil(size))
         .into_par_iter()
         .map_init(S::default, |scratch, number| {
             let mut tally = Tally::new(row.clone());
-            let range = number * size..count.min((number + 1) * size);
-            block(range, scratch, &mut tally);
+            let start = range.start + number * size;
+            block(start..range.end.min(start + size), scratch, &mut tally);
             progress(tally.row.rays).is_continue().then_some(tally)
         })
         .collect();

@@ -114,7 +114,7 @@ impl<'a> Comparison<'a> {
                 self.add(tally, index, ray, reported(index as usize));
             }
         };
-        let tally = in_blocks(&row, (count, BLOCK), self.most_listed, progress, block)?;
+        let tally = in_blocks(&row, (0..count, BLOCK), self.most_listed, progress, block)?;
         let Tally {
             mut row, listed, ..
         } = tally;

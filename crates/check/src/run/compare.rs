@@ -14,7 +14,8 @@ use super::plan::chosen_windows;
 use super::subject::Subject;
 use crate::bounding_meshes::mesh_frame::MeshFrame;
 use crate::bounding_meshes::meshes::Meshes;
-use crate::outcome::{Expected, Outcome, Row, Violation, Witness};
+use crate::outcome::{Expected, Outcome, Row, Violation};
+use crate::partial_outcome::{PartialOutcome, WindowOutcome, rows};
 use crate::report::words::{truth_text, window_text, wrong_text};
 use crate::reported_hit::{Intersector, ReportedHit};
 use crate::settings::{CheckError, Class, Settings};
@@ -54,6 +55,23 @@ pub fn compare_with(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Outcome, CheckError> {
+    let all = 0..settings.rays;
+    let outcome = compare_rays(scene, intersector, settings, all, progress)?;
+    Ok(Outcome::of_parts(settings, [outcome]))
+}
+
+/// As [`compare_with`], only the rays of each class with the numbers `rays`. The outcomes of
+/// ranges that follow one another make up that of all rays, [`Outcome::of_parts`].
+///
+/// # Errors
+/// As [`compare_with`].
+pub fn compare_rays(
+    scene: &Scene,
+    intersector: &impl Intersector,
+    settings: &Settings,
+    rays: Range<u64>,
+    progress: &Progress,
+) -> Result<PartialOutcome, CheckError> {
     let windows = chosen_windows(scene, settings)?;
     let classes = settings.classes.len() as u64;
     let run = Run {
@@ -61,33 +79,18 @@ pub fn compare_with(
         settings,
         windows: windows.len() as u64,
         device: Device::new(&settings.device)?,
-        total: settings.segments.len() as u64 * settings.rays * classes,
+        total: settings.segments.len() as u64 * (rays.end - rays.start) * classes,
+        rays,
         done: AtomicU64::new(0),
         progress,
     };
-    let witnesses = settings.segments.iter().map(|&sides| Some(sides));
-    let mut tallies: Vec<Tally> = witnesses
-        .chain([None])
-        .flat_map(|segments| {
-            let witness = segments.map_or(Witness::Oracle, |_| Witness::Prisms);
-            let classes = settings.classes.iter();
-            classes.map(move |class| Tally::new(Row::new(class.name(), witness, segments)))
-        })
-        .collect();
-    let mut outcome = Outcome::default();
+    let mut outcome = PartialOutcome::default();
     for window in (0..).zip(&windows) {
         let frame = MeshFrame::new(window.1);
         let subject = Subject::new(scene, window, &frame, settings.seed);
-        outcome.windows.push(run.window(&subject, &mut tallies)?);
-    }
-    for mut tally in tallies {
-        if let Some(segments) = tally.row.segments
-            && tally.row.class == Class::Sphere.name()
-        {
-            outcome.convergence.push(tally.convergence(segments));
-        }
-        outcome.rows.push(tally.row);
-        outcome.violations.append(&mut tally.listed);
+        let mut tallies: Vec<Tally> = rows(settings).map(Tally::new).collect();
+        let text = run.window(&subject, &mut tallies)?;
+        outcome.windows.push(WindowOutcome { text, tallies });
     }
     Ok(outcome)
 }
@@ -98,6 +101,8 @@ struct Run<'a, I> {
     settings: &'a Settings,
     windows: u64,
     device: Device,
+    /// The numbers of the rays of each class.
+    rays: Range<u64>,
     total: u64,
     done: AtomicU64,
     progress: &'a Progress<'a>,
@@ -131,7 +136,8 @@ impl<I: Intersector> Run<'_, I> {
         }
         for (&class, row) in self.settings.classes.iter().zip(oracle) {
             self.trace(subject, row, TRUTHS * RAYS_A_TRUTH, |range, (), tally| {
-                let numbers = range.step_by(RAYS_A_TRUTH as usize);
+                let first = range.start.next_multiple_of(RAYS_A_TRUTH);
+                let numbers = (first..range.end).step_by(RAYS_A_TRUTH as usize);
                 for shot in self.shoot(subject, class, numbers) {
                     self.judge_by_oracle(subject, &shot, tally);
                 }
@@ -141,7 +147,8 @@ impl<I: Intersector> Run<'_, I> {
         Ok(window_text(window, number, self.windows, &missing))
     }
 
-    /// Adds the rays of a window to a row. `block` gets ranges of the window's own count.
+    /// Adds the rays of a window to a row. `block` gets ranges of the window's own count: its
+    /// ray `i` is ray `i * windows + window` of the class.
     fn trace<S: Default>(
         &self,
         subject: &Subject,
@@ -149,12 +156,12 @@ impl<I: Intersector> Run<'_, I> {
         block_size: u64,
         block: impl Fn(Range<u64>, &mut S, &mut Tally) + Sync,
     ) -> Result<(), CheckError> {
-        let later = (self.windows - 1 - subject.number) + self.settings.rays;
-        let count = (later / self.windows, block_size);
+        let before = |ray: u64| (ray + self.windows - 1 - subject.number) / self.windows;
+        let range = before(self.rays.start)..before(self.rays.end);
         let most_listed = self.settings.most_listed;
         let empty = Row::new(row.row.class, row.row.witness, row.row.segments);
         let progress = |rays| self.advance(rays);
-        let tally = in_blocks(&empty, count, most_listed, progress, block);
+        let tally = in_blocks(&empty, (range, block_size), most_listed, progress, block);
         row.add(tally.ok_or(CheckError::Interrupted)?, most_listed);
         Ok(())
     }
