@@ -1,0 +1,351 @@
+//! The file of a part.
+//!
+//! ```text
+//! #cyltrace-part {"format":1,"version":"0.1.0","command":"render","part":3,"of":16,...}
+//! the payload
+//! #end {"payload_bytes":...,"summary":{...}} sha256:0123...
+//! ```
+//!
+//! The first line is the [`Header`] as JSON. The payload is what the command writes: text for
+//! a table, bytes for a picture. The last line has the length of the payload, a summary of the
+//! run, and the SHA-256 of all bytes before ` sha256:`. A file that was cut off has no such
+//! line, and one with any changed byte has another hash.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Take, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use cyltrace_output::{FileError, NewFile};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+
+use super::error::PartError;
+use super::fingerprint::{digits, hash};
+use super::number::PartNumber;
+
+/// The format of parts that this program reads and writes.
+const FORMAT: u32 = 1;
+
+const BEGIN: &str = "#cyltrace-part ";
+const END: &[u8] = b"\n#end ";
+const CHECKSUM: &str = " sha256:";
+
+/// Most bytes of the first and the last line. Both are some kilobytes of JSON.
+const LONGEST_LINE: u64 = 1 << 22;
+
+/// What a part is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    /// The version of cyltrace that wrote the part.
+    pub version: String,
+    /// The command: `render`, `trace` or `check`.
+    pub command: String,
+    /// The number of the part, from 1, and of all parts.
+    #[serde(flatten)]
+    pub number: PartNumber,
+    /// What the range counts, such as `tiles`.
+    pub unit: String,
+    /// The part's range of units.
+    pub range: Range<u64>,
+    /// The number of all units.
+    pub whole: u64,
+    /// The settings that determine the result.
+    pub settings: Value,
+    /// The hash of the settings and of the files that determine the result.
+    pub fingerprint: String,
+}
+
+/// A header with the format, which is read first.
+#[derive(Serialize, Deserialize)]
+struct FirstLine<H> {
+    format: u32,
+    #[serde(flatten)]
+    header: H,
+}
+
+/// The last line without its checksum.
+#[derive(Serialize, Deserialize)]
+struct LastLine<S> {
+    payload_bytes: u64,
+    summary: S,
+}
+
+/// A part that is being written. Its file appears when it is complete.
+pub struct PartWriter {
+    path: PathBuf,
+    file: NewFile,
+    hasher: Sha256,
+    payload_bytes: u64,
+}
+
+impl PartWriter {
+    /// Begins to write a part.
+    ///
+    /// # Errors
+    /// If no file can be created beside `path`, or it cannot be written to.
+    pub fn create(path: &Path, header: &Header) -> Result<Self, FileError> {
+        let mut writer = Self {
+            path: path.into(),
+            file: NewFile::create(path)?,
+            hasher: Sha256::new(),
+            payload_bytes: 0,
+        };
+        let line = FirstLine {
+            format: FORMAT,
+            header,
+        };
+        let line = format!("{BEGIN}{}\n", json(&line));
+        let written = writer.write_all(line.as_bytes());
+        writer.payload_bytes = 0;
+        written.map_err(|source| writer.unwritten(source))?;
+        Ok(writer)
+    }
+
+    /// Writes the last line, syncs the file and moves it to its place.
+    ///
+    /// # Errors
+    /// If writing, syncing or renaming fails. Then no file is left behind.
+    pub fn finish(mut self, summary: &Value) -> Result<(), FileError> {
+        let line = LastLine {
+            payload_bytes: self.payload_bytes,
+            summary,
+        };
+        let mut end = END.to_vec();
+        end.extend(json(&line).bytes());
+        let hasher = self.hasher.clone().chain_update(&end);
+        end.extend(format!("{CHECKSUM}{}\n", digits(hasher)).bytes());
+        let written = self.file.write_all(&end);
+        written.map_err(|source| self.unwritten(source))?;
+        self.file.finish_synced()
+    }
+
+    fn unwritten(&self, source: io::Error) -> FileError {
+        FileError::System {
+            path: self.path.clone(),
+            source,
+        }
+    }
+}
+
+/// Writes to the payload.
+impl Write for PartWriter {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.file.write(bytes)?;
+        self.hasher.update(&bytes[..count]);
+        self.payload_bytes += count as u64;
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+fn json(value: &impl Serialize) -> String {
+    serde_json::to_string(value).expect("keys are texts and writing to a string cannot fail")
+}
+
+/// A part whose checksum was right when it was read.
+#[derive(Clone, Debug)]
+pub struct PartFile {
+    path: PathBuf,
+    header: Header,
+    /// The bytes of the payload in the file.
+    payload: Range<u64>,
+    summary: Value,
+}
+
+/// The payload of a part.
+pub type Payload = BufReader<Take<File>>;
+
+impl PartFile {
+    /// Reads a part and verifies its checksum.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is not a part, has another format, or is damaged.
+    pub fn read(path: &Path) -> Result<Self, PartError> {
+        let unreadable = |source| PartError::Unreadable {
+            path: path.into(),
+            source,
+        };
+        let damaged = |what| PartError::Damaged {
+            path: path.into(),
+            what,
+        };
+        let mut file = File::open(path).map_err(unreadable)?;
+        let length = file.metadata().map_err(unreadable)?.len();
+
+        let mut first = Vec::new();
+        let mut beginning = BufReader::new(&mut file).take(LONGEST_LINE);
+        beginning
+            .read_until(b'\n', &mut first)
+            .map_err(unreadable)?;
+        let not_a_part = || PartError::NotAPart { path: path.into() };
+        let text = first
+            .strip_prefix(BEGIN.as_bytes())
+            .ok_or_else(not_a_part)?;
+        let line: FirstLine<Value> =
+            serde_json::from_slice(text).map_err(|_| damaged("its first line is not JSON"))?;
+        if line.format != FORMAT {
+            return Err(PartError::Format {
+                path: path.into(),
+                format: line.format,
+                own: FORMAT,
+                version: line.header["version"].as_str().unwrap_or("?").into(),
+            });
+        }
+        let header = serde_json::from_value(line.header)
+            .map_err(|_| damaged("its first line lacks a value"))?;
+
+        let end_start = length
+            .saturating_sub(LONGEST_LINE)
+            .max(first.len() as u64 - 1);
+        let mut end = Vec::new();
+        file.seek(SeekFrom::Start(end_start)).map_err(unreadable)?;
+        file.read_to_end(&mut end).map_err(unreadable)?;
+        let cut_off = || damaged("its last line is missing, as of a file that was cut off");
+        let last = end.windows(END.len()).rposition(|bytes| bytes == END);
+        let last = last.ok_or_else(cut_off)?;
+        let line = std::str::from_utf8(&end[last + END.len()..]).map_err(|_| cut_off())?;
+        let (line, checksum) = line.rsplit_once(CHECKSUM).ok_or_else(cut_off)?;
+        let hashed = end_start + (last + END.len() + line.len()) as u64;
+        file.rewind().map_err(unreadable)?;
+        let hasher = hash(&mut file.take(hashed), Sha256::new()).map_err(unreadable)?;
+        if checksum.strip_suffix('\n') != Some(&digits(hasher)) {
+            return Err(damaged("its checksum is wrong"));
+        }
+        let line: LastLine<Value> = serde_json::from_str(line).map_err(|_| cut_off())?;
+        let payload = first.len() as u64..end_start + last as u64;
+        if payload.end.checked_sub(payload.start) != Some(line.payload_bytes) {
+            return Err(damaged("its length is wrong"));
+        }
+        Ok(Self {
+            path: path.into(),
+            header,
+            payload,
+            summary: line.summary,
+        })
+    }
+
+    /// The path that the part was read from.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What the part is.
+    #[must_use]
+    pub fn header(&self) -> &Header {
+        &self.header
+    }
+
+    /// The summary of the run.
+    #[must_use]
+    pub fn summary(&self) -> &Value {
+        &self.summary
+    }
+
+    /// Reads the payload.
+    ///
+    /// # Errors
+    /// If the file cannot be read.
+    pub fn payload(&self) -> Result<Payload, PartError> {
+        let unreadable = |source| PartError::Unreadable {
+            path: self.path.clone(),
+            source,
+        };
+        let mut file = File::open(&self.path).map_err(unreadable)?;
+        let start = SeekFrom::Start(self.payload.start);
+        file.seek(start).map_err(unreadable)?;
+        let length = self.payload.end - self.payload.start;
+        Ok(BufReader::with_capacity(1 << 16, file.take(length)))
+    }
+
+    /// Whether there is a valid part with this header at `path`.
+    #[must_use]
+    pub fn is_there(path: &Path, header: &Header) -> bool {
+        Self::read(path).is_ok_and(|part| part.header == *header)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+    use std::fs;
+
+    fn header() -> Header {
+        Header {
+            version: "0.1.0".into(),
+            command: "render".into(),
+            number: PartNumber::new(3, 16).expect("valid"),
+            unit: "tiles".into(),
+            range: 20..30,
+            whole: 160,
+            settings: json!({ "spp": 4, "text": "a\nb" }),
+            fingerprint: "00ff".into(),
+        }
+    }
+
+    /// A part whose payload contains what looks like its last line.
+    fn written(path: &Path) -> Vec<u8> {
+        let payload = [b"row\n#end {}", &[0, 159, 146, 150][..], b"\n"].concat();
+        let mut writer = PartWriter::create(path, &header()).expect("created");
+        writer.write_all(&payload).expect("written");
+        writer.finish(&json!({ "seconds": 0.5 })).expect("finished");
+        payload
+    }
+
+    #[test]
+    fn part_read_back() {
+        let directory = tempfile::tempdir().expect("directory");
+        let path = directory.path().join("part");
+        let payload = written(&path);
+        let part = PartFile::read(&path).expect("valid");
+        assert_eq!(part.header(), &header());
+        assert_eq!(part.summary(), &json!({ "seconds": 0.5 }));
+        let mut read = Vec::new();
+        let mut reader = part.payload().expect("readable");
+        reader.read_to_end(&mut read).expect("read");
+        assert_eq!(read, payload);
+        assert!(PartFile::is_there(&path, &header()));
+    }
+
+    #[test]
+    fn checksum_is_that_of_other_programs() {
+        let directory = tempfile::tempdir().expect("directory");
+        let path = directory.path().join("part");
+        written(&path);
+        let bytes = fs::read(&path).expect("read");
+        let at = bytes.len() - "0".repeat(64).len() - 1 - CHECKSUM.len();
+        let other = Sha256::digest(&bytes[..at]);
+        let end = String::from_utf8(bytes[at..].to_vec()).expect("text");
+        let digits: String = other.iter().map(|byte| format!("{byte:02x}")).collect();
+        assert_eq!(end, format!("{CHECKSUM}{digits}\n"));
+    }
+
+    #[test]
+    fn every_changed_byte_and_every_cut_is_noticed() {
+        let directory = tempfile::tempdir().expect("directory");
+        let path = directory.path().join("part");
+        written(&path);
+        let bytes = fs::read(&path).expect("read");
+        for at in 0..bytes.len() {
+            let mut changed = bytes.clone();
+            changed[at] ^= 1;
+            fs::write(&path, &changed).expect("written");
+            let error = PartFile::read(&path).expect_err("a changed byte");
+            let message = error.to_string();
+            let is_named = ["is damaged", "is not a part", "has format"]
+                .iter()
+                .any(|words| message.contains(words));
+            assert!(is_named, "byte {at}: {message}");
+            fs::write(&path, &bytes[..at]).expect("written");
+            assert!(PartFile::read(&path).is_err(), "cut at {at}");
+        }
+        fs::write(&path, [&bytes[..], b"\n"].concat()).expect("written");
+        assert!(PartFile::read(&path).is_err(), "a byte more");
+    }
+}
