@@ -1,8 +1,6 @@
 //! Numbers on the command line. The program's own functions read them, from its own files:
 //! a library has no use for them.
 
-use std::num::NonZeroUsize;
-
 use cyltrace::scene::{GREATEST_PIXELS, GREATEST_THREADS};
 use cyltrace::solid::tessellation::{GREATEST_SEGMENTS, LEAST_SEGMENTS};
 
@@ -26,10 +24,9 @@ pub fn numbers(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;
     };
-    let threads = numbers::count_up_to::<NonZeroUsize>(GREATEST_THREADS as u64);
-    if let Some(count) = judged(threads(text)) {
+    if let Some(count) = judged(numbers::parse_threads(text)) {
         assert!(count.get() <= GREATEST_THREADS, "{count}");
-        assert_eq!(threads(&count.to_string()), Ok(count));
+        assert_eq!(numbers::parse_threads(&count.to_string()), Ok(count));
     }
     if let Some(seed) = judged(numbers::parse_seed(text)) {
         assert_eq!(numbers::parse_seed(&seed.to_string()), Ok(seed));

@@ -9,21 +9,24 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{
-    Decimal, Delimiter, Film, GREATEST_CASES, GREATEST_SAMPLES, GREATEST_THREADS, Integrator,
-    TableFormat,
+    Decimal, Delimiter, Film, GREATEST_CASES, GREATEST_SAMPLES, Integrator, TableFormat,
 };
 use cyltrace_bench::stress::{Contender, StressFamily};
 use cyltrace_oracle::cases::{Family, Inputs};
 
 mod bench;
 mod check;
+mod farm;
 mod names;
 mod numbers;
+mod parts;
 
 pub use bench::{AccuracyArguments, Bench, BenchArguments, ScaleArguments, TraversalArguments};
 pub use check::{CheckArguments, Rays};
+pub use farm::{Farm, FarmArguments, SlurmScriptArguments};
 use names::one_of;
-use numbers::{count_up_to, parse_seed, parse_segments, parse_size};
+use numbers::{count_up_to, parse_seed, parse_segments, parse_size, parse_threads};
+pub use parts::{MergeArguments, PartArguments, PartsArguments, WorkerArguments};
 
 use super::exit_codes;
 use super::limit::MemoryArguments;
@@ -53,6 +56,9 @@ pub enum Command {
     Bench(BenchArguments),
     Stress(StressArguments),
     Check(CheckArguments),
+    Merge(MergeArguments),
+    Parts(PartsArguments),
+    Farm(FarmArguments),
     Completions(CompletionsArguments),
     Man(ManArguments),
 }
@@ -69,7 +75,7 @@ pub struct Common {
     pub quiet: bool,
     /// Use N threads, 1 to 1024; results do not depend on the number [default: all of the
     /// machine]
-    #[arg(long, value_name = "N", value_parser = count_up_to::<NonZeroUsize>(GREATEST_THREADS as u64), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true)]
     pub threads: Option<NonZeroUsize>,
     /// Restrict Embree to an instruction set: `sse2`, `sse4.2`, `avx`, `avx2` or `avx512`;
     /// results do not depend on it [default: the best of the machine]
@@ -119,6 +125,10 @@ pub struct RenderArguments {
     )]
     pub seed: u64,
     #[command(flatten)]
+    pub part: PartArguments,
+    #[command(flatten)]
+    pub workers: WorkerArguments,
+    #[command(flatten)]
     pub memory: MemoryArguments,
     #[command(flatten)]
     pub decisions: DecisionArguments,
@@ -143,6 +153,8 @@ pub struct TraceArguments {
     /// List every hit of a ray in the order of `t`, not only the first
     #[arg(long, conflicts_with = "points")]
     pub all: bool,
+    #[command(flatten)]
+    pub part: PartArguments,
     #[command(flatten)]
     pub memory: MemoryArguments,
     #[command(flatten)]

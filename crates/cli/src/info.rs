@@ -20,6 +20,7 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
     let limit = MemoryLimit::of(&arguments.memory);
     let file = scene::read(&arguments.scene, limit)?;
     files.check_with(&file)?;
+    let read = file.files();
     let scene = scene::load(common, file, Need::Records, limit)?;
     let load = start.elapsed().as_secs_f64();
     let workers = scene::workers(common)?;
@@ -50,6 +51,7 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
         &arguments.common,
         &json!({
             "scene": arguments.scene,
+            "files": read,
             "load_s": load,
             "prototypes": { "all": scene_stats.prototypes, "placed": scene_stats.prototypes_used },
             "placements": scene_stats.placements,

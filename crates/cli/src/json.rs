@@ -25,9 +25,14 @@ pub fn write(common: &Common, figures: &Value) -> anyhow::Result<()> {
         return Ok(());
     };
     let mut target = OutputSink::create(path)?;
-    serde_json::to_writer_pretty(&mut target, figures)?;
-    writeln!(target)?;
+    write_to(&mut target, figures)?;
     target.finish()
+}
+
+/// Writes figures as every file of `--json` has them.
+pub fn write_to(target: &mut impl Write, figures: &Value) -> anyhow::Result<()> {
+    serde_json::to_writer_pretty(&mut *target, figures)?;
+    Ok(writeln!(target)?)
 }
 
 /// A count: beyond u64 a float, since JSON readers round it anyway, and beyond u128 null.

@@ -8,6 +8,7 @@ mod bench;
 mod check;
 mod ending;
 mod exit_codes;
+mod farm;
 mod hit_table;
 mod info;
 mod interrupt;
@@ -15,9 +16,11 @@ mod json;
 mod limit;
 mod manual;
 mod memory;
+mod number_rows;
 mod outliers;
 mod output_sink;
 mod outputs;
+mod parts;
 mod print;
 mod progress;
 #[cfg(test)]
@@ -87,6 +90,9 @@ fn run_command(arguments: &Arguments) -> anyhow::Result<u8> {
         Command::Stress(arguments) => stress::run(arguments),
         Command::Bench(arguments) => bench::run(arguments),
         Command::Check(arguments) => check::run(arguments),
+        Command::Merge(arguments) => parts::merge::run(arguments),
+        Command::Parts(arguments) => parts::list::run(arguments),
+        Command::Farm(arguments) => farm::run(arguments).map(|()| GOOD),
         Command::Completions(arguments) => manual::completions(arguments).map(|()| GOOD),
         Command::Man(arguments) => manual::man(arguments).map(|()| GOOD),
     }

@@ -3,14 +3,18 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use anyhow::anyhow;
+use cyltrace::scene::SceneFile;
 use cyltrace::tracer::{Options, Tracer};
 use cyltrace_output::Output;
-use cyltrace_render::{Picture, RenderError, Settings};
-use serde_json::json;
+use cyltrace_parts::{Header, PartWriter};
+use cyltrace_render::{RayCounts, RenderError, Settings, Tiles};
+use serde_json::{Value, json};
 
 use super::arguments::{RenderArguments, integrator_name};
 use super::limit::{MemoryLimit, Need};
 use super::outputs::Files;
+use super::parts::{self, Work};
 use super::{interrupt, json, memory, print, progress, scene, text};
 
 /// The times of the command's parts, in seconds.
@@ -20,32 +24,42 @@ struct Times {
     render: f64,
 }
 
-/// Renders the scene into the picture.
+impl Times {
+    fn all(&self) -> f64 {
+        self.load + self.build + self.render
+    }
+}
+
+/// Renders the scene into the picture, or a part of it into a file of its own.
 pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
+    if arguments.workers.workers.is_some() {
+        return parts::workers::run(arguments);
+    }
     let common = &arguments.common;
-    let files =
-        Files::new(&arguments.scene, common.json.as_deref()).output("-o", &arguments.output);
+    let files = output_files(arguments);
     files.check()?;
-    Output::check(&arguments.output)?;
+    parts::check(&arguments.part, &arguments.output)?;
+    if arguments.part.part.is_none() {
+        Output::check(&arguments.output)?;
+    }
     json::check(common)?;
 
     let start = Instant::now();
     let limit = MemoryLimit::of(&arguments.memory);
     let file = scene::read(&arguments.scene, limit)?;
     files.check_with(&file)?;
+    let settings = settings(arguments, &file)?;
+    let header = arguments.part.part.map(|number| {
+        let work = work(arguments, &settings, &file);
+        work.header(number)
+    });
+    let header = header.transpose()?;
+    if let Some(header) = &header
+        && parts::is_done(&arguments.part, common, &arguments.output, header)?
+    {
+        return Ok(());
+    }
     let scene = Arc::new(scene::load(common, file, Need::Build, limit)?);
-    let mut settings = Settings::of(&scene);
-    settings.seed = arguments.seed;
-    if let Some(size) = arguments.size {
-        settings.film = size;
-    }
-    if let Some(spp) = arguments.spp {
-        settings.spp = spp.get();
-    }
-    if let Some(integrator) = arguments.integrator {
-        settings.integrator = integrator.into();
-    }
-    settings.check()?;
     let load = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
@@ -59,57 +73,139 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let build = start.elapsed().as_secs_f64();
 
     let cancelled = interrupt::end_in_order();
-    let output = Output::create(&arguments.output)?;
+    let target = match &header {
+        Some(header) => Target::Part(parts::create(&arguments.output, header)?),
+        None => Target::Picture(Output::create(&arguments.output)?),
+    };
     let workers = scene::workers(common)?;
-    let threads = workers.current_num_threads();
-    let film = settings.film;
-    let bar = progress::bar(
-        common,
-        u64::from(film.width) * u64::from(film.height),
-        "pixels",
-    );
+    let all = Tiles::of(settings.film);
+    let tiles = header
+        .as_ref()
+        .map_or(0..all.count(), |header| header.range.clone());
+    let bar = progress::bar(common, all.pixels(tiles.clone()), "pixels");
     let start = Instant::now();
-    let rendered = cyltrace_render::render(
+    let rendered = cyltrace_render::render_tiles(
         &tracer,
         &settings,
+        tiles,
         &workers,
         &|pixels| bar.inc(pixels),
         cancelled,
     );
-    let render = start.elapsed().as_secs_f64();
+    let times = Times {
+        load,
+        build,
+        render: start.elapsed().as_secs_f64(),
+    };
     bar.finish_and_clear();
-    let picture = match rendered {
+    let rendered = match rendered {
         Err(RenderError::Cancelled) => return Err(interrupt::Interrupted::NothingWritten.into()),
         other => other?,
     };
     interrupt::check()?;
-    output.write(&picture.film)?;
-
-    let times = Times {
-        load,
-        build,
-        render,
+    let run = Run {
+        arguments,
+        settings: &settings,
+        tracer: &tracer,
+        rays: rendered.rays,
+        skipped: &rendered.skipped,
+        times,
+        threads: workers.current_num_threads(),
+        header: header.as_ref(),
     };
-    report(arguments, &settings, &tracer, &picture, &times, threads)
+    let figures = run.figures();
+    match target {
+        Target::Picture(output) => output.write(&rendered.film(settings.film))?,
+        Target::Part(mut part) => {
+            parts::render::write(&mut part, &rendered.pixels)?;
+            part.finish(&json!({ "figures": figures, "seconds": run.times.all() }))?;
+        }
+    }
+    json::write(common, &figures)?;
+    match common.prints() {
+        true => print(&run.text()),
+        false => Ok(()),
+    }
 }
 
-/// Writes the JSON of `--json`, and prints the figures.
-fn report(
+/// What a run writes to.
+enum Target {
+    Picture(Output),
+    Part(PartWriter),
+}
+
+/// The files that are read and written.
+pub fn output_files(arguments: &RenderArguments) -> Files<'_> {
+    Files::new(&arguments.scene, arguments.common.json.as_deref()).output("-o", &arguments.output)
+}
+
+/// The settings of the command line, and of the scene where that leaves a choice.
+pub fn settings(arguments: &RenderArguments, file: &SceneFile) -> anyhow::Result<Settings> {
+    // The error's text is the whole message; its source would repeat a part.
+    let stated = file.picture().map_err(|error| anyhow!("{error}"))?;
+    let mut settings = Settings::new(stated);
+    settings.seed = arguments.seed;
+    if let Some(size) = arguments.size {
+        settings.film = size;
+    }
+    if let Some(spp) = arguments.spp {
+        settings.spp = spp.get();
+    }
+    if let Some(integrator) = arguments.integrator {
+        settings.integrator = integrator.into();
+    }
+    settings.check()?;
+    Ok(settings)
+}
+
+/// What parts of the picture are parts of.
+pub fn work<'a>(
     arguments: &RenderArguments,
     settings: &Settings,
-    tracer: &Tracer,
-    picture: &Picture,
-    times: &Times,
+    scene: &'a SceneFile,
+) -> Work<'a> {
+    Work {
+        command: "render",
+        unit: "tiles",
+        whole: Tiles::of(settings.film).count(),
+        settings: parts::render::settings(settings, arguments.decisions.exact),
+        scene,
+        long_table: None,
+    }
+}
+
+/// A rendering that is complete.
+struct Run<'a> {
+    arguments: &'a RenderArguments,
+    settings: &'a Settings,
+    tracer: &'a Tracer,
+    rays: RayCounts,
+    skipped: &'a [String],
+    times: Times,
     threads: usize,
-) -> anyhow::Result<()> {
-    let statistics = &tracer.statistics();
-    let skipped_rows = tracer.scene().skipped_rows;
-    let rays = picture.rays;
-    let rays_per_s = rays.total() as f64 / times.render;
-    let skipped: Vec<_> = picture.skipped.iter().chain(&statistics.skipped).collect();
-    json::write(
-        &arguments.common,
-        &json!({
+    /// The part that it is.
+    header: Option<&'a Header>,
+}
+
+impl Run<'_> {
+    /// The rays per second.
+    fn rate(&self) -> f64 {
+        self.rays.total() as f64 / self.times.render
+    }
+
+    /// Work that the scene did not need.
+    fn skipped(&self) -> Vec<String> {
+        let of_tracer = self.tracer.statistics().skipped;
+        self.skipped.iter().cloned().chain(of_tracer).collect()
+    }
+
+    /// The JSON of `--json`.
+    fn figures(&self) -> Value {
+        let (arguments, settings, times) = (self.arguments, self.settings, &self.times);
+        let statistics = &self.tracer.statistics();
+        let scene = self.tracer.scene();
+        let rays = self.rays;
+        let mut figures = json!({
             "scene": arguments.scene,
             "output": arguments.output,
             "size": [settings.film.width, settings.film.height],
@@ -120,52 +216,64 @@ fn report(
             "build_s": times.build,
             "render_s": times.render,
             "rays": { "camera": rays.camera, "shadow": rays.shadow, "ao": rays.ao },
-            "rays_per_s": rays_per_s,
+            "rays_per_s": self.rate(),
             "solids": json::Solids::of(statistics).by_kind(),
             "cylinders": json::Solids::of(statistics).cylinders(),
             "instances": json::count(statistics.instances),
             "memory": json::memory(statistics),
-            "skipped": skipped,
-            "skipped_rows": skipped_rows,
-            "notes": tracer.scene().notes,
+            "skipped": self.skipped(),
+            "skipped_rows": scene.skipped_rows,
+            "notes": scene.notes,
             "embree": statistics.embree_version,
             "isa": statistics.isa,
-            "threads": threads,
-            "records": json::records(tracer.scene()),
-        }),
-    )?;
-    if !arguments.common.prints() {
-        return Ok(());
+            "threads": self.threads,
+            "records": json::records(scene),
+        });
+        if let Some(header) = self.header {
+            figures["part"] = json!(header.number.to_string());
+        }
+        figures
     }
-    let mut text = format!(
-        "{}: {}x{}, {} samples per pixel, {}\n{}",
-        arguments.output.display(),
-        settings.film.width,
-        settings.film.height,
-        settings.spp,
-        integrator_name(settings.integrator),
-        text::solids(statistics),
-    );
-    text += &format!(
-        "memory: {} of records, {} in Embree {} ({})\n",
-        memory::readable(statistics.records_bytes as u64),
-        memory::readable(statistics.embree_bytes as u64),
-        statistics.embree_version,
-        statistics.isa
-    );
-    text += &text::records(tracer.scene());
-    text += &format!(
-        "time: load {:.2} s, build {:.2} s, render {:.2} s on {threads} threads\n",
-        times.load, times.build, times.render
-    );
-    text += &format!(
-        "rays: {}, {:.2} million per second\n",
-        rays.total(),
-        rays_per_s / 1e6
-    );
-    for reason in &skipped {
-        text += &format!("skipped: {reason}\n");
+
+    /// The figures for people.
+    fn text(&self) -> String {
+        let (arguments, settings, times) = (self.arguments, self.settings, &self.times);
+        let statistics = &self.tracer.statistics();
+        let scene = self.tracer.scene();
+        let of_whole = match self.header {
+            Some(header) => parts::range_text(header) + ", ",
+            None => String::new(),
+        };
+        let mut text = format!(
+            "{}: {of_whole}{}x{}, {} samples per pixel, {}\n{}",
+            arguments.output.display(),
+            settings.film.width,
+            settings.film.height,
+            settings.spp,
+            integrator_name(settings.integrator),
+            text::solids(statistics),
+        );
+        text += &format!(
+            "memory: {} of records, {} in Embree {} ({})\n",
+            memory::readable(statistics.records_bytes as u64),
+            memory::readable(statistics.embree_bytes as u64),
+            statistics.embree_version,
+            statistics.isa
+        );
+        text += &text::records(scene);
+        text += &format!(
+            "time: load {:.2} s, build {:.2} s, render {:.2} s on {} threads\n",
+            times.load, times.build, times.render, self.threads
+        );
+        text += &format!(
+            "rays: {}, {:.2} million per second\n",
+            self.rays.total(),
+            self.rate() / 1e6
+        );
+        for reason in self.skipped() {
+            text += &format!("skipped: {reason}\n");
+        }
+        text += &text::notes(&scene.notes);
+        text
     }
-    text += &text::notes(&tracer.scene().notes);
-    print(&text)
 }

@@ -3,40 +3,32 @@
 //! Rays or points are read, traced and written in batches of a few blocks per thread, so
 //! that a table of any length needs little memory and rows stay in order.
 
+mod report;
+
 use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use anyhow::anyhow;
 use cyltrace::math::Ray;
-use cyltrace::scene::{NumberRow, NumberTable, SceneError};
+use cyltrace::scene::{NumberRow, SceneFile};
 use cyltrace::tracer::{DEFAULT_BATCH, Options, PartialHit, Tracer};
+use cyltrace_parts::{Header, PartWriter};
 use glam::DVec3;
 use rayon::prelude::*;
-use serde_json::{Value, json};
+use serde_json::json;
 
-use super::arguments::{FormatArguments, TraceArguments};
+use super::arguments::TraceArguments;
 use super::interrupt::Interrupted;
 use super::limit::{MemoryLimit, Need};
+use super::number_rows::NumberRows;
 use super::output_sink::{OutputSink, is_standard_stream};
 use super::outputs::Files;
-use super::print::{self, print};
-use super::{hit_table, interrupt, json, progress, scene, text};
-
-/// Blocks per thread in each batch: enough to even out slow ones.
-const BLOCKS_PER_THREAD: usize = 4;
-
-/// Counts of rows and results.
-#[derive(Clone, Copy, Default)]
-struct Totals {
-    /// Rays, or points.
-    rows: u64,
-    /// Rays with a hit, or points inside a solid.
-    hit_rows: u64,
-    /// Hits, or solids that contain a point; a row may have many.
-    hits: u64,
-}
+use super::parts::trace::Totals;
+use super::parts::{self, Work};
+use super::print;
+use super::{hit_table, interrupt, json, progress, scene};
+use report::Traced;
 
 /// A table and the query of its rows.
 struct Task<'a, R> {
@@ -53,20 +45,6 @@ struct Task<'a, R> {
 /// See [`Task::answer`].
 type Answer<'a, R> = &'a (dyn Fn(&Tracer, &mut String, u64, &R) -> u64 + Sync);
 
-/// The outcome of a command.
-struct Traced {
-    tracer: Tracer,
-    items: &'static str,
-    totals: Totals,
-    check: f64,
-    load: f64,
-    build: f64,
-    trace: f64,
-    threads: usize,
-    /// The columns that are not read, as a note.
-    note: Option<String>,
-}
-
 /// Traces the rays, or locates the points.
 pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
     match (&arguments.table.rays, &arguments.table.points) {
@@ -79,7 +57,7 @@ pub fn run(arguments: &TraceArguments) -> anyhow::Result<()> {
 /// Traces the rays of a table.
 fn trace_rays(arguments: &TraceArguments, path: &Path) -> anyhow::Result<()> {
     let all = arguments.all;
-    let traced = Task::<Ray> {
+    let task = Task::<Ray> {
         path,
         what: "the table of rays",
         header: hit_table::HEADER,
@@ -103,8 +81,10 @@ fn trace_rays(arguments: &TraceArguments, path: &Path) -> anyhow::Result<()> {
             }
             hits
         },
-    }
-    .run(arguments)?;
+    };
+    let Some(traced) = task.run(arguments)? else {
+        return Ok(());
+    };
     let Totals {
         rows,
         hit_rows,
@@ -131,7 +111,7 @@ fn trace_rays(arguments: &TraceArguments, path: &Path) -> anyhow::Result<()> {
 
 /// Finds the solids that contain the points of a table.
 fn locate_points(arguments: &TraceArguments, path: &Path) -> anyhow::Result<()> {
-    let traced = Task::<DVec3> {
+    let task = Task::<DVec3> {
         path,
         what: "the table of points",
         header: hit_table::POINTS_HEADER,
@@ -146,8 +126,10 @@ fn locate_points(arguments: &TraceArguments, path: &Path) -> anyhow::Result<()> 
             }
             found.len() as u64
         },
-    }
-    .run(arguments)?;
+    };
+    let Some(traced) = task.run(arguments)? else {
+        return Ok(());
+    };
     let Totals {
         rows,
         hit_rows,
@@ -167,15 +149,37 @@ fn locate_points(arguments: &TraceArguments, path: &Path) -> anyhow::Result<()> 
     )
 }
 
+/// Where results go.
+enum Target {
+    Whole(OutputSink),
+    Part(Box<PartWriter>),
+}
+
+impl Target {
+    fn writer(&mut self) -> &mut dyn Write {
+        match self {
+            Self::Whole(sink) => sink,
+            Self::Part(part) => part,
+        }
+    }
+
+    /// Whether readers see the output before its end.
+    fn shows_parts(&self) -> bool {
+        matches!(self, Self::Whole(sink) if sink.shows_parts())
+    }
+}
+
 impl<R: NumberRow + Sync> Task<'_, R> {
-    /// Reads the table, traces its rows and writes the results.
-    fn run(&self, arguments: &TraceArguments) -> anyhow::Result<Traced> {
+    /// Reads the table, traces its rows and writes the results. `None` if the part is already
+    /// there.
+    fn run(&self, arguments: &TraceArguments) -> anyhow::Result<Option<Traced>> {
         let common = &arguments.common;
         let files = Files::new(&arguments.scene, common.json.as_deref())
             .input(self.what, self.path)
             .output("-o", &arguments.output);
         files.check()?;
         OutputSink::check(&arguments.output)?;
+        parts::check(&arguments.part, &arguments.output)?;
         json::check(common)?;
         let workers = scene::workers(common)?;
         let threads = workers.current_num_threads();
@@ -184,6 +188,12 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         let limit = MemoryLimit::of(&arguments.memory);
         let file = scene::read(&arguments.scene, limit)?;
         files.check_with(&file)?;
+        let header = self.header(arguments, &file)?;
+        if let Some(header) = &header
+            && parts::is_done(&arguments.part, common, &arguments.output, header)?
+        {
+            return Ok(None);
+        }
         let read = start.elapsed();
 
         // Invalid rows are reported before anything is traced or written. A pipe can be
@@ -191,8 +201,13 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         let start = Instant::now();
         let rereadable =
             !is_standard_stream(self.path) && self.path.metadata().is_ok_and(|file| file.is_file());
+        let table = NumberRows {
+            path: self.path,
+            format: &arguments.format,
+            range: header.as_ref().map(|header| header.range.clone()),
+        };
         let rows = if rereadable {
-            Some(workers.install(|| self.count_rows(&arguments.format))?)
+            Some(workers.install(|| count_rows::<R>(&table))?)
         } else {
             None
         };
@@ -214,19 +229,23 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         let build = start.elapsed().as_secs_f64();
 
         interrupt::end_in_order();
-        let mut target = OutputSink::create(&arguments.output)?;
+        let mut target = match &header {
+            Some(header) => Target::Part(Box::new(parts::create(&arguments.output, header)?)),
+            None => Target::Whole(OutputSink::create(&arguments.output)?),
+        };
         let bar = progress::bar(common, rows.unwrap_or(0), self.items);
         let start = Instant::now();
-        // Written after the first block is read: an empty table would look like a result.
-        let mut header = Some(self.header);
+        // Written after the first block is read: an empty table would look like a result. A
+        // part has no header.
+        let mut first_line = Some(self.header).filter(|_| header.is_none());
         let mut totals = Totals::default();
         let traced = workers.install(|| {
-            for_each_batch(self.path, &arguments.format, |blocks| {
+            table.for_each_batch(|blocks| {
                 let before = totals.rows;
-                if let Some(header) = header.take() {
-                    target.write_all(header.as_bytes())?;
+                if let Some(line) = first_line.take() {
+                    target.writer().write_all(line.as_bytes())?;
                 }
-                self.batch(&tracer, &blocks, &mut totals, &mut target)?;
+                self.batch(&tracer, &blocks, &mut totals, target.writer())?;
                 bar.inc(totals.rows - before);
                 Ok(())
             })
@@ -235,16 +254,22 @@ impl<R: NumberRow + Sync> Task<'_, R> {
             Some(_) if target.shows_parts() => Interrupted::PartWritten.into(),
             _ => error,
         })?;
-        if let Some(header) = header {
-            target.write_all(header.as_bytes())?;
+        if let Some(line) = first_line {
+            target.writer().write_all(line.as_bytes())?;
         }
-        target.finish()?;
+        let part = match target {
+            Target::Whole(sink) => {
+                sink.finish()?;
+                None
+            }
+            Target::Part(part) => header.map(|header| (header, part)),
+        };
         let trace = start.elapsed().as_secs_f64();
         bar.finish_and_clear();
         if let Some(note) = &note {
             print::note(common.quiet, note);
         }
-        Ok(Traced {
+        Ok(Some(Traced {
             tracer,
             items: self.items,
             totals,
@@ -253,18 +278,29 @@ impl<R: NumberRow + Sync> Task<'_, R> {
             build,
             trace,
             threads,
+            part,
             note,
-        })
+        }))
     }
 
-    /// Validates all rows of the table and counts them.
-    fn count_rows(&self, format: &FormatArguments) -> anyhow::Result<u64> {
-        let mut count = 0;
-        for_each_batch(self.path, format, |blocks: Vec<Vec<R>>| {
-            count += blocks.iter().map(|rows| rows.len() as u64).sum::<u64>();
-            Ok(())
-        })?;
-        Ok(count)
+    /// The header of the part that is traced, if not all is.
+    fn header(
+        &self,
+        arguments: &TraceArguments,
+        scene: &SceneFile,
+    ) -> anyhow::Result<Option<Header>> {
+        let Some(number) = arguments.part.part else {
+            return Ok(None);
+        };
+        let work = Work {
+            command: "trace",
+            unit: "bytes",
+            whole: parts::trace::table_bytes(self.path)?,
+            settings: parts::trace::settings(arguments),
+            scene,
+            long_table: Some(self.path),
+        };
+        work.header(number).map(Some)
     }
 
     /// Traces the rows of some blocks and writes the results.
@@ -273,7 +309,7 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         tracer: &Tracer,
         blocks: &[Vec<R>],
         totals: &mut Totals,
-        target: &mut OutputSink,
+        target: &mut dyn Write,
     ) -> anyhow::Result<()> {
         let numbered: Vec<_> = blocks
             .iter()
@@ -308,91 +344,12 @@ impl<R: NumberRow + Sync> Task<'_, R> {
     }
 }
 
-impl Traced {
-    /// Rows per second.
-    fn rate(&self) -> f64 {
-        self.totals.rows as f64 / self.trace
-    }
-
-    /// Writes the JSON with the task's own keys, and prints a summary.
-    fn report(&self, arguments: &TraceArguments, own: Value, summary: &str) -> anyhow::Result<()> {
-        let common = &arguments.common;
-        let statistics = &self.tracer.statistics();
-        let scene = self.tracer.scene();
-        let skipped_rows = scene.skipped_rows;
-        let notes: Vec<&String> = scene.notes.iter().chain(&self.note).collect();
-        let solids = json::Solids::of(statistics);
-        let mut figures = json!({
-            "scene": arguments.scene,
-            "output": arguments.output,
-            "check_s": self.check,
-            "load_s": self.load,
-            "build_s": self.build,
-            "trace_s": self.trace,
-            "solids": solids.by_kind(),
-            "cylinders": solids.cylinders(),
-            "other_solids": solids.others(),
-            "instances": json::count(statistics.instances),
-            "memory": json::memory(statistics),
-            "skipped": statistics.skipped,
-            "skipped_rows": skipped_rows,
-            "notes": notes,
-            "embree": statistics.embree_version,
-            "isa": statistics.isa,
-            "threads": self.threads,
-        });
-        if let (Value::Object(all), Value::Object(own)) = (&mut figures, own) {
-            all.extend(own);
-        }
-        json::write(common, &figures)?;
-        if !common.prints() || is_standard_stream(&arguments.output) {
-            return Ok(());
-        }
-        let mut text = format!("{}: {summary}\n", arguments.output.display());
-        text += &text::skipped_rows(skipped_rows);
-        text += &text::notes(notes);
-        text += &format!(
-            "time: check {:.2} s, load {:.2} s, build {:.2} s, trace {:.2} s on {} threads ({:.2} million {} per second, tables included)\n",
-            self.check,
-            self.load,
-            self.build,
-            self.trace,
-            self.threads,
-            self.rate() / 1e6,
-            self.items
-        );
-        print(&text)
-    }
-}
-
-/// Reads a table in the current rayon pool and calls `action` with the rows of some blocks
-/// at a time, in order. Returns a note if there are columns that are not read.
-pub fn for_each_batch<R: NumberRow>(
-    path: &Path,
-    format: &FormatArguments,
-    mut action: impl FnMut(Vec<Vec<R>>) -> anyhow::Result<()>,
-) -> anyhow::Result<Option<String>> {
-    // The error's text is the whole message; its source would repeat a part.
-    let message = |error: SceneError| anyhow!("{error}");
-    let table = NumberTable::<R>::open(path, format.format(), &format.columns);
-    let mut table = table.map_err(message)?;
-    let columns = table.columns();
-    loop {
-        interrupt::check()?;
-        let mut blocks = Vec::new();
-        while blocks.len() < BLOCKS_PER_THREAD * rayon::current_num_threads() {
-            let Some(block) = table.next_block().map_err(message)? else {
-                break;
-            };
-            blocks.push(block);
-        }
-        if blocks.is_empty() {
-            return Ok(columns.unread());
-        }
-        // Collected first, then searched for an error, so that the first invalid row is
-        // reported.
-        let parsed: Vec<_> = blocks.par_iter().map(|block| columns.rows(block)).collect();
-        let parsed: Result<_, _> = parsed.into_iter().collect();
-        action(parsed.map_err(message)?)?;
-    }
+/// Validates all rows of a table and counts them.
+fn count_rows<R: NumberRow>(table: &NumberRows) -> anyhow::Result<u64> {
+    let mut count = 0;
+    table.for_each_batch(|blocks: Vec<Vec<R>>| {
+        count += blocks.iter().map(|rows| rows.len() as u64).sum::<u64>();
+        Ok(())
+    })?;
+    Ok(count)
 }

@@ -7,7 +7,7 @@ use cyltrace::scene::GREATEST_RAYS;
 use cyltrace_check::{Class, Replay};
 
 use super::numbers::{parse_length, parse_seed, parse_segments};
-use super::{Common, DecisionArguments, FormatArguments};
+use super::{Common, DecisionArguments, FormatArguments, PartArguments};
 use crate::memory;
 
 /// `--columns`, which here concerns rays only.
@@ -18,7 +18,10 @@ const COLUMNS: &str = "Read a table of rays without a header: the numbers of its
 /// Exits with 1 if an answer is wrong, or if the meshes leave more than half of a class of
 /// rays without a bound.
 #[derive(Args, Debug)]
-#[command(mut_arg("columns", |arg| arg.help(COLUMNS)))]
+#[command(
+    mut_arg("columns", |arg| arg.help(COLUMNS)),
+    mut_arg("part", |arg| arg.requires("output").conflicts_with_all(["hits", "mesh", "replay", "report"])),
+)]
 pub struct CheckArguments {
     /// The scene file
     #[arg(value_name = "SCENE")]
@@ -69,6 +72,11 @@ pub struct CheckArguments {
     /// same `--seed`, `--segments` and `--max-memory`
     #[arg(long, value_name = "BITS", conflicts_with_all = ["hits", "mesh", "report"])]
     pub replay: Option<Replay>,
+    /// Write the part of `--part` to FILE
+    #[arg(long, short, value_name = "FILE", requires = "part")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub part: PartArguments,
     #[command(flatten)]
     pub decisions: DecisionArguments,
     #[command(flatten)]

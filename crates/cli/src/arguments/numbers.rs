@@ -1,9 +1,9 @@
 //! Numbers on the command line. The error of each function is a message that says what
 //! would be right; clap names the argument.
 
-use std::num::{NonZeroU32, NonZeroU64};
+use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
 
-use cyltrace::scene::{Film, GREATEST_PIXELS};
+use cyltrace::scene::{Film, GREATEST_PIXELS, GREATEST_THREADS};
 use cyltrace::solid::tessellation::{GREATEST_SEGMENTS, LEAST_SEGMENTS};
 
 /// Reads a whole number from 1 to `greatest`.
@@ -17,6 +17,11 @@ pub fn count_up_to<N: TryFrom<NonZeroU64>>(
             .and_then(|count| N::try_from(count).ok())
             .ok_or_else(|| format!("it must be a whole number from 1 to {greatest}"))
     }
+}
+
+/// A number of threads or processes.
+pub fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
+    count_up_to(GREATEST_THREADS as u64)(text)
 }
 
 /// A whole number of 64 bits.

@@ -14,8 +14,8 @@ use super::MOST_LISTED;
 use crate::arguments::{CheckArguments, Rays};
 use crate::interrupt::Interrupted;
 use crate::memory::readable;
+use crate::number_rows::NumberRows;
 use crate::print;
-use crate::trace::for_each_batch;
 
 /// At least the bytes of a triangle with its vertices and in the tree. In STL
 /// each has three vertices of its own, which are stored twice. 32 are for building the tree.
@@ -152,7 +152,12 @@ fn given_rays(arguments: &CheckArguments) -> anyhow::Result<Option<Vec<Ray>>> {
     // The rays and their hits. A growing list is in memory twice.
     let bytes = 2 * (size_of::<Ray>() + size_of::<GivenHit>()) as u64;
     let mut rays = Vec::new();
-    let note = for_each_batch(path, &arguments.format, |blocks: Vec<Vec<Ray>>| {
+    let table = NumberRows {
+        path,
+        format: &arguments.format,
+        range: None,
+    };
+    let note = table.for_each_batch(|blocks: Vec<Vec<Ray>>| {
         rays.extend(blocks.into_iter().flatten());
         if rays.len() as u64 * bytes > arguments.max_memory {
             bail!(

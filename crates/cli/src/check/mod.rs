@@ -2,6 +2,7 @@
 
 mod external_input;
 
+use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -12,6 +13,7 @@ use cyltrace::embree::DeviceOptions;
 use cyltrace::tracer::{Options, Tracer};
 use cyltrace_check::{self, Checked, Outcome, Replay, Settings};
 use cyltrace_output::{NewFile, write_text};
+use cyltrace_parts::Header;
 use serde_json::{Value, json};
 
 use super::arguments::{CheckArguments, Rays};
@@ -19,6 +21,7 @@ use super::limit::{MemoryLimit, Need};
 use super::memory::readable;
 use super::output_sink::make_directory;
 use super::outputs::Files;
+use super::parts::{self, Work};
 use super::print::print;
 use super::{CHECK_FAILED, GOOD, interrupt, json, progress, scene};
 use external_input::ExternalInput;
@@ -53,6 +56,9 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         );
     }
     json::check(common)?;
+    if let Some(output) = &arguments.output {
+        parts::check(&arguments.part, output)?;
+    }
     if let Some(directory) = &arguments.report
         && directory.is_file()
     {
@@ -85,6 +91,12 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         return workers.install(|| replay(&tracer, which, &settings));
     }
 
+    let header = part_header(arguments, &settings, &tracer)?;
+    if let (Some(header), Some(output)) = (&header, &arguments.output)
+        && parts::is_done(&arguments.part, common, output, header)?
+    {
+        return Ok(GOOD);
+    }
     if external.is_none() && common.prints() {
         let plan = workers.install(|| cyltrace_check::plan(&loaded, &settings))?;
         print(&format!(
@@ -109,18 +121,31 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         }
     };
     let start = Instant::now();
+    let rays = header
+        .as_ref()
+        .map_or(0..settings.rays, |header| header.range.clone());
+    let mut drawn = None;
     let outcome = workers.install(|| match &external {
         Some(external) => external.compare(&tracer, arguments, &report_progress),
         None => {
             let outcome =
-                cyltrace_check::compare_with(&loaded, &tracer, &settings, &report_progress);
+                cyltrace_check::compare_rays(&loaded, &tracer, &settings, rays, &report_progress);
             interrupt::check()?;
-            Ok(outcome?)
+            let outcome = outcome?;
+            drawn = header.is_some().then(|| outcome.to_bytes());
+            Ok(Outcome::of_parts(&settings, [outcome]))
         }
     });
     bar.finish_and_clear();
     let outcome = outcome?;
     let elapsed = start.elapsed().as_secs_f64();
+    let mut figures = figures(arguments, &tracer, &outcome, elapsed);
+    if let (Some(header), Some(output), Some(tallies)) = (&header, &arguments.output, drawn) {
+        let mut part = parts::create(output, header)?;
+        part.write_all(&tallies)?;
+        part.finish(&json!({ "figures": figures, "seconds": elapsed }))?;
+        figures["part"] = json!(header.number.to_string());
+    }
 
     if let Some(page) = &page_path {
         let checked = Checked {
@@ -134,9 +159,13 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         interrupt::check()?;
         write_text(page, &text)?;
     }
-    json::write(common, &figures(arguments, &tracer, &outcome, elapsed))?;
+    json::write(common, &figures)?;
     if common.prints() {
-        let mut text = cyltrace_check::summary(&outcome);
+        let mut text = match &header {
+            Some(header) => parts::range_text(header) + "\n",
+            None => String::new(),
+        };
+        text += &cyltrace_check::summary(&outcome);
         text += &format!(
             "time: {elapsed:.2} s on {} threads\n",
             workers.current_num_threads()
@@ -151,7 +180,33 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         );
         print(&text)?;
     }
-    Ok(if outcome.holds() { GOOD } else { CHECK_FAILED })
+    // A part that is written is a success: the verdict is that of the whole.
+    Ok(match header.is_some() || outcome.holds() {
+        true => GOOD,
+        false => CHECK_FAILED,
+    })
+}
+
+/// The header of the part that is checked, if not all is.
+fn part_header(
+    arguments: &CheckArguments,
+    settings: &Settings,
+    tracer: &Tracer,
+) -> anyhow::Result<Option<Header>> {
+    let Some(number) = arguments.part.part else {
+        return Ok(None);
+    };
+    let statistics = tracer.statistics();
+    let (exact, embree) = (arguments.decisions.exact, &statistics.embree_version);
+    let work = Work {
+        command: "check",
+        unit: "rays",
+        whole: settings.rays,
+        settings: parts::check::settings(settings, exact, embree, &statistics.isa),
+        scene: &scene::read(&arguments.scene, MemoryLimit::available())?,
+        long_table: None,
+    };
+    work.header(number).map(Some)
 }
 
 /// Prints one ray with all that is known about it.
@@ -187,6 +242,9 @@ fn files<'a>(arguments: &'a CheckArguments, page: Option<&'a PathBuf>) -> Files<
     }
     if let Some(path) = page {
         files = files.output("the page of --report", path);
+    }
+    if let Some(path) = &arguments.output {
+        files = files.output("-o", path);
     }
     files
 }

@@ -13,6 +13,7 @@ mod limits;
 mod manual;
 mod memory;
 mod outputs;
+mod parts;
 mod points;
 mod program;
 mod render;

@@ -1,0 +1,102 @@
+//! `cyltrace merge`.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, bail};
+use cyltrace_output::Output;
+use cyltrace_parts::{PartSet, Survey};
+use serde_json::{Value, json};
+
+use super::{check, render, trace};
+use crate::arguments::MergeArguments;
+use crate::output_sink::{OutputSink, is_standard_stream};
+use crate::print::print;
+use crate::{CHECK_FAILED, GOOD, interrupt, json};
+
+/// Puts the parts together. The exit code is that of the command that made them.
+pub fn run(arguments: &MergeArguments) -> anyhow::Result<u8> {
+    let (common, output) = (&arguments.common, &arguments.output);
+    OutputSink::check(output)?;
+    json::check(common)?;
+    let paths = paths(&arguments.parts)?;
+    for path in &paths {
+        if same_file::is_same_file(path, output).unwrap_or(false) {
+            bail!("-o {output:?} is one of the parts and would overwrite it: choose another name");
+        }
+    }
+    let set = PartSet::read(&paths)?;
+    let command = set.header().command.as_str();
+    if command == "render" {
+        Output::check(output)?;
+    }
+    interrupt::end_in_order();
+    let (code, figures, text) = match command {
+        "render" => {
+            render::merge(&set, output)?;
+            let figures = sums(&set, "rays", &["camera", "shadow", "ao"]);
+            let rays = figures["rays"].as_object().into_iter().flatten();
+            let rays: u64 = rays.filter_map(|(_, count)| count.as_u64()).sum();
+            (GOOD, figures, format!("{rays} rays\n"))
+        }
+        "trace" => {
+            let totals = trace::merge(&set, output)?;
+            let text = format!("{} of {} rows hit\n", totals.hit_rows, totals.rows);
+            (GOOD, json!({ "totals": totals }), text)
+        }
+        "check" => {
+            let outcome = check::merge(&set, output)?;
+            let code = if outcome.holds() { GOOD } else { CHECK_FAILED };
+            let mut text = cyltrace_check::summary(&outcome);
+            text += &format!("{}\n", cyltrace_check::verdict(&outcome));
+            (code, json!(outcome), text)
+        }
+        other => bail!(
+            "{:?} is a part of the command `{other}`, which this version does not know",
+            set.parts()[0].path()
+        ),
+    };
+    let mut all = json!({
+        "output": output,
+        "command": command,
+        "parts": set.parts().len(),
+        "settings": set.header().settings,
+    });
+    if let (Value::Object(all), Value::Object(figures)) = (&mut all, figures) {
+        all.extend(figures);
+    }
+    json::write(common, &all)?;
+    if common.prints() && !is_standard_stream(output) {
+        let (path, count) = (output.display(), set.parts().len());
+        print(&format!("{path}: merged from {count} parts, {text}"))?;
+    }
+    Ok(code)
+}
+
+/// The files that are named, and the parts in the folders that are named.
+fn paths(named: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
+    let mut paths = Vec::new();
+    for path in named {
+        if !path.is_dir() {
+            paths.push(path.clone());
+            continue;
+        }
+        let survey =
+            Survey::of(path).with_context(|| format!("cannot read the folder {path:?}"))?;
+        if let Some(damaged) = survey.damaged.first() {
+            bail!("{}", damaged.reason);
+        }
+        let parts = survey.wholes.iter().flat_map(|whole| &whole.parts);
+        paths.extend(parts.map(|part| part.path().to_owned()));
+    }
+    Ok(paths)
+}
+
+/// The sums of counts over all parts, `{ key: { count: sum } }`.
+fn sums(set: &PartSet, key: &str, counts: &[&str]) -> Value {
+    let sum = |name: &&str| {
+        let parts = set.parts().iter();
+        let counts = parts.filter_map(|part| part.summary()["figures"][key][name].as_u64());
+        ((*name).to_owned(), json!(counts.sum::<u64>()))
+    };
+    json!({ key: Value::Object(counts.iter().map(sum).collect()) })
+}
