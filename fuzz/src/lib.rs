@@ -10,6 +10,7 @@ mod drawing;
 mod drawn_scene;
 mod meshes;
 mod number_tables;
+mod parts;
 mod scene_files;
 mod traced_scene;
 mod truth;
@@ -18,7 +19,8 @@ use arbitrary::Unstructured;
 pub use command_line::numbers as command_line_numbers;
 use drawn_scene::DrawnScene;
 pub use meshes::{obj, ply, stl};
-pub use number_tables::{hits, points, rays};
+pub use number_tables::{hits, point_ranges, points, rays};
+pub use parts::part_file;
 pub use scene_files::{cylinder_table, scene_file, swc, three_mf_model, three_mf_package};
 
 /// What a target does with its bytes.
@@ -31,7 +33,9 @@ pub const TARGETS: &[(&str, Target)] = &[
     ("cylinder_table", cylinder_table),
     ("hits", hits),
     ("obj", obj),
+    ("part_file", part_file),
     ("ply", ply),
+    ("point_ranges", point_ranges),
     ("points", points),
     ("rays", rays),
     ("scene_file", scene_file),

@@ -1,9 +1,12 @@
 //! Tables of numbers that commands read: rays, points and hits of another program.
 
+use std::ops::Range;
 use std::path::Path;
 
 use cyltrace::math::Ray;
-use cyltrace::scene::{Decimal, Delimiter, GivenHits, NumberRow, NumberTable, TableFormat};
+use cyltrace::scene::{
+    Decimal, Delimiter, GivenHits, NumberRow, NumberTable, SceneError, TableFormat,
+};
 use glam::DVec3;
 
 use super::scene_files::said;
@@ -29,6 +32,59 @@ pub fn rays(bytes: &[u8]) {
 pub fn points(bytes: &[u8]) {
     for point in rows::<DVec3>(bytes) {
         assert!(point.is_finite(), "{point}");
+    }
+}
+
+/// A table of points, as [`points`], read whole and in up to 16 ranges of its bytes. The ranges
+/// contain the rows of the whole, or a range is refused in the same line or because a row is
+/// on several lines.
+///
+/// # Panics
+/// When something is wrong with what it becomes.
+pub fn point_ranges(bytes: &[u8]) {
+    let Some((&choice, rest)) = bytes.split_first() else {
+        return;
+    };
+    let Some((format, _, content)) = stated(rest) else {
+        return;
+    };
+    let file = tempfile::NamedTempFile::new().expect("a file");
+    std::fs::write(file.path(), content).expect("written");
+    let whole = read_range(file.path(), format, 0..u64::MAX);
+    let (count, length) = (u64::from(choice % 16) + 1, content.len() as u64);
+    let ranges = (0..count).map(|part| part * length / count..(part + 1) * length / count);
+    let parts: Result<Vec<Vec<DVec3>>, String> = ranges
+        .map(|range| read_range(file.path(), format, range))
+        .collect();
+    match (whole, parts) {
+        (Ok(whole), Ok(parts)) => assert_eq!(whole, parts.concat()),
+        (Err(whole), Err(part)) => {
+            assert!(
+                whole == part || part.contains("on one line"),
+                "{whole}: {part}"
+            );
+        }
+        (Ok(_), Err(part)) => assert!(part.contains("on one line"), "{part}"),
+        (Err(whole), Ok(_)) => panic!("only the whole is refused: {whole}"),
+    }
+}
+
+/// The points of a range, or the message of the error.
+fn read_range(path: &Path, format: TableFormat, range: Range<u64>) -> Result<Vec<DVec3>, String> {
+    let table = NumberTable::<DVec3>::open_range(path, format, &[], range);
+    let mut table = table.map_err(|error| error.to_string())?;
+    let columns = table.columns();
+    let mut all = Vec::new();
+    let mut read = || {
+        while let Some(block) = table.next_block()? {
+            all.extend(columns.rows(&block)?);
+        }
+        Ok(())
+    };
+    let outcome: Result<(), SceneError> = read();
+    match outcome {
+        Ok(()) => Ok(all),
+        Err(error) => Err(table.located(path, error).to_string()),
     }
 }
 
@@ -88,7 +144,7 @@ fn rows<R: NumberRow>(bytes: &[u8]) -> Vec<R> {
         }
         Ok(())
     };
-    let outcome: Result<(), cyltrace::scene::SceneError> = read();
+    let outcome: Result<(), SceneError> = read();
     match outcome {
         Ok(()) => all,
         Err(error) => {
