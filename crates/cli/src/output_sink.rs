@@ -56,7 +56,9 @@ impl Write for OutputSink {
             Self::StandardOutput(writer) => writer
                 .write(bytes)
                 .map_err(|error| StandardOutputError::of(&error)),
-            Self::File(file, path) => file.write(bytes).map_err(|error| unwritten(path, error)),
+            Self::File(file, path) => file
+                .write(bytes)
+                .map_err(|error| FileError::of_write(path, error)),
         }
     }
 
@@ -65,15 +67,11 @@ impl Write for OutputSink {
             Self::StandardOutput(writer) => writer
                 .flush()
                 .map_err(|error| StandardOutputError::of(&error)),
-            Self::File(file, path) => file.flush().map_err(|error| unwritten(path, error)),
+            Self::File(file, path) => file
+                .flush()
+                .map_err(|error| FileError::of_write(path, error)),
         }
     }
-}
-
-/// An error of the same kind that names the file as the user stated it, not the temporary one.
-fn unwritten(path: &Path, source: io::Error) -> io::Error {
-    let (kind, path) = (source.kind(), path.into());
-    io::Error::new(kind, FileError::System { path, source })
 }
 
 /// Creates the directory of a report if it does not exist.

@@ -57,6 +57,16 @@ pub enum FileError {
     },
 }
 
+impl FileError {
+    /// The error of a write to a new file, of the kind of `source`. It names the file as the
+    /// user stated it, as the system's error does not.
+    #[must_use]
+    pub fn of_write(path: &Path, source: io::Error) -> io::Error {
+        let (kind, path) = (source.kind(), path.into());
+        io::Error::new(kind, Self::System { path, source })
+    }
+}
+
 /// A file that will create or replace another. Unless [`NewFile::finish`] is
 /// reached, nothing of it stays.
 #[derive(Debug)]

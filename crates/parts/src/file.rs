@@ -97,8 +97,8 @@ impl PartWriter {
             header,
         };
         let line = format!("{BEGIN}{}\n", json(&line));
-        let written = writer.write_all(line.as_bytes());
-        writer.payload_bytes = 0;
+        writer.hasher.update(&line);
+        let written = writer.file.write_all(line.as_bytes());
         written.map_err(|source| writer.unwritten(source))?;
         Ok(writer)
     }
@@ -132,14 +132,16 @@ impl PartWriter {
 /// Writes to the payload.
 impl Write for PartWriter {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let count = self.file.write(bytes)?;
+        let written = self.file.write(bytes);
+        let count = written.map_err(|source| FileError::of_write(&self.path, source))?;
         self.hasher.update(&bytes[..count]);
         self.payload_bytes += count as u64;
         Ok(count)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
+        let flushed = self.file.flush();
+        flushed.map_err(|source| FileError::of_write(&self.path, source))
     }
 }
 
