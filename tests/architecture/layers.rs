@@ -42,6 +42,7 @@ const CHECK: Layers = Layers {
         &["settings", "reported_hit"],
         &["outcome", "replay"],
         &["tally"],
+        &["partial_outcome"],
         &["solids"],
         &["bounding_meshes"],
         &["rays"],

@@ -76,7 +76,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         bar: &bar,
         next: Mutex::new(1),
         failed: AtomicBool::new(false),
-        notes: &|text| note(common, text),
+        notes: &|text| note(common.quiet, text),
     };
     let outcomes: Vec<anyhow::Result<()>> = thread::scope(|scope| {
         let workers: Vec<_> = (0..workers.get())
