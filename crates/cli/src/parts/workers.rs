@@ -290,3 +290,64 @@ fn figures(arguments: &RenderArguments, set: &PartSet, workers: usize, seconds: 
     figures["run_s"] = json!(seconds);
     figures
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::{CommandFactory, Parser};
+
+    use super::*;
+    use crate::arguments::{Arguments, Command};
+
+    /// Options that a worker does not have, or that have its own values.
+    const OWN: [&str; 7] = [
+        "output", "json", "quiet", "part", "resume", "workers", "parts",
+    ];
+
+    fn render(words: &[OsString]) -> RenderArguments {
+        let program = [OsString::from("cyltrace")];
+        let words = program.iter().chain(words);
+        match Arguments::try_parse_from(words).expect("valid").command {
+            Command::Render(arguments) => arguments,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn every_option_of_render_reaches_the_workers() {
+        let line = "render -o p.png --size 3x2 --spp 5 --integrator ao --seed 7 --max-memory 1GB \
+                    --layout block --exact --threads 6 --max-isa avx2 --workers 2 -- -s.toml";
+        let words: Vec<OsString> = line.split_whitespace().map(OsString::from).collect();
+        let arguments = render(&words);
+        let mut passed = passed_on(&arguments, 2).expect("processors");
+        let command = Arguments::command();
+        let command = command.find_subcommand("render").expect("a command");
+        let options = command.get_arguments().filter_map(|arg| arg.get_long());
+        for option in options.filter(|option| !OWN.contains(option)) {
+            let begins = |word: &OsString| {
+                let word = word.to_str().expect("UTF-8");
+                word.strip_prefix("--")
+                    .is_some_and(|word| word.starts_with(option))
+            };
+            assert!(passed.iter().any(begins), "--{option} is not passed on");
+        }
+        passed.splice(1..1, ["-o", "part"].map(OsString::from));
+        let worker = render(&passed);
+        let stated = |arguments: &RenderArguments| {
+            let memory = format!("{:?}", arguments.memory);
+            let integrator = format!("{:?}", arguments.integrator);
+            let scene = arguments.scene.clone();
+            let numbers = (arguments.size, arguments.spp, arguments.seed);
+            let max_isa = arguments.common.max_isa;
+            (
+                scene,
+                numbers,
+                integrator,
+                memory,
+                arguments.decisions.exact,
+                max_isa,
+            )
+        };
+        assert_eq!(stated(&worker), stated(&arguments));
+        assert_eq!(worker.common.threads.map(usize::from), Some(3));
+    }
+}
