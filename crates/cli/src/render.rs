@@ -115,7 +115,10 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     };
     let figures = run.figures();
     match target {
-        Target::Picture(output) => output.write(&rendered.film(settings.film))?,
+        Target::Picture(output) => {
+            let film = settings.film;
+            output.write_bands((film.width, film.height), rendered.bands(film))?;
+        }
         Target::Part(mut part) => {
             parts::render::write(&mut part, &rendered.pixels)?;
             part.finish(&json!({ "figures": figures, "seconds": run.times.all() }))?;

@@ -13,7 +13,7 @@ mod tiles;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
-use cyltrace_output::Film;
+use cyltrace_output::{Bands, Film};
 use rayon::ThreadPool;
 
 pub use cyltrace::scene::GREATEST_PIXELS;
@@ -131,6 +131,24 @@ pub struct RenderedTiles {
 }
 
 impl RenderedTiles {
+    /// The rows of the picture of this size of which these are all tiles, a row of tiles at a
+    /// time: the source of [`cyltrace_output::Output::write_bands`].
+    ///
+    /// # Panics
+    /// If they are not.
+    pub fn bands(&self, size: scene::Film) -> impl Bands {
+        let tiles = Tiles::of(size);
+        let (mut row, mut rest) = (0, &self.pixels[..]);
+        move |band: &mut Vec<[f32; 3]>| {
+            let pixels = tiles.pixels(tiles.row(row)) as usize;
+            let (colors, later) = rest.split_at(pixels);
+            tiles.arrange(row, colors, band);
+            rest = later;
+            row += 1;
+            Ok(())
+        }
+    }
+
     /// The picture of this size of which these are all tiles.
     ///
     /// # Panics

@@ -136,30 +136,35 @@ pub(super) fn render(
     cancelled: &AtomicBool,
 ) -> Result<(Vec<[f32; 3]>, RayCounts), RenderError> {
     let tiles = Tiles::of(settings.film);
-    let rendered: Vec<_> = numbers
-        .into_par_iter()
-        .map(|number| {
-            let rendered = render_tile(view, settings, &tiles.tile(number), cancelled)?;
-            progress(rendered.0.len() as u64);
-            Ok(rendered)
-        })
-        .collect::<Result<_, RenderError>>()?;
-    let mut pixels = Vec::with_capacity(rendered.iter().map(|(colors, _)| colors.len()).sum());
-    let mut rays = RayCounts::default();
-    for (colors, tile_rays) in rendered {
-        rays = rays + tile_rays;
-        pixels.extend(colors);
+    // Each tile has its place in one list, as a large picture should not be in memory twice.
+    let mut pixels = vec![[0.0; 3]; tiles.pixels(numbers.clone()) as usize];
+    let mut rest = &mut pixels[..];
+    let mut places = Vec::new();
+    for number in numbers {
+        let tile = tiles.tile(number);
+        let (place, later) = rest.split_at_mut((tile.width * tile.height) as usize);
+        places.push((tile, place));
+        rest = later;
     }
+    let rays = places
+        .into_par_iter()
+        .map(|(tile, place)| {
+            let rays = render_tile(view, settings, &tile, place, cancelled)?;
+            progress(place.len() as u64);
+            Ok(rays)
+        })
+        .try_reduce(RayCounts::default, |rays, more| Ok(rays + more))?;
     Ok((pixels, rays))
 }
 
-/// The pixels of a tile, row by row, and the rays they took.
+/// Renders the pixels of a tile, row by row, and returns the rays they took.
 fn render_tile(
     view: &View,
     settings: &Settings,
     tile: &Tile,
+    colors: &mut [[f32; 3]],
     cancelled: &AtomicBool,
-) -> Result<(Vec<[f32; 3]>, RayCounts), RenderError> {
+) -> Result<RayCounts, RenderError> {
     let pixel = |(column, row)| {
         let pixel = (tile.x + column, tile.y + row);
         let index = u64::from(pixel.1) * u64::from(settings.film.width) + u64::from(pixel.0);
@@ -192,13 +197,12 @@ fn render_tile(
             sums[place(number)] += *color;
         }
     }
-    let mut colors = vec![[0.0; 3]; pixels.len()];
     for (((x, y), _), sum) in pixels.into_iter().zip(sums) {
         let mean = sum / f64::from(settings.spp);
         let position = (y - tile.y) * tile.width + (x - tile.x);
         colors[position as usize] = mean.as_vec3().to_array();
     }
-    Ok((colors, rays))
+    Ok(rays)
 }
 
 impl Tile {
