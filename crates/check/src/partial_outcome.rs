@@ -97,10 +97,11 @@ impl PartialOutcome {
         let windows: Vec<SavedWindow> = postcard::from_bytes(bytes).map_err(|_| NotTheseTallies)?;
         let count = rows(settings).count();
         let window = |window: SavedWindow| {
+            let is_same = window.tallies.len() == count;
             let tallies = rows(settings).zip(window.tallies);
-            let tallies: Vec<_> = tallies.map(|(row, saved)| saved.tally(row)).collect();
+            let tallies = tallies.map(|(row, saved)| saved.tally(row)).collect();
             let text = window.text;
-            (tallies.len() == count).then_some(WindowOutcome { text, tallies })
+            is_same.then_some(WindowOutcome { text, tallies })
         };
         let windows: Option<Vec<_>> = windows.into_iter().map(window).collect();
         windows

@@ -5,6 +5,7 @@ mod external_kinds;
 mod extremes;
 mod mesh_verdicts;
 mod meshes;
+mod parts;
 mod scenes;
 mod solids;
 
