@@ -84,7 +84,7 @@ fn read_range(path: &Path, format: TableFormat, range: Range<u64>) -> Result<Vec
     let outcome: Result<(), SceneError> = read();
     match outcome {
         Ok(()) => Ok(all),
-        Err(error) => Err(table.located(path, error).to_string()),
+        Err(error) => Err(error.to_string()),
     }
 }
 

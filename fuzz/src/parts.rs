@@ -7,7 +7,7 @@ use cyltrace_parts::{PartError, PartFile};
 /// A part, or a message that says what is wrong with the file.
 ///
 /// # Panics
-/// When something is wrong with what it becomes.
+/// If a valid part cannot be read again.
 pub fn part_file(bytes: &[u8]) {
     let file = tempfile::NamedTempFile::new().expect("a file");
     std::fs::write(file.path(), bytes).expect("written");
@@ -16,7 +16,7 @@ pub fn part_file(bytes: &[u8]) {
             let mut payload = Vec::new();
             let mut reader = part.payload().expect("it was readable");
             reader.read_to_end(&mut payload).expect("it was readable");
-            assert!(PartFile::is_there(file.path(), part.header()));
+            assert!(PartFile::existing(file.path(), part.header()).is_some());
             assert!(payload.len() < bytes.len());
         }
         Err(PartError::Unreadable { source, .. }) => panic!("{source}"),

@@ -7,7 +7,7 @@
 use std::io::{self, Read, Seek, SeekFrom};
 use std::marker::PhantomData;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
@@ -82,8 +82,6 @@ const MOST_NUMBERS: usize = 8;
 pub struct NumberTable<R, I = Box<dyn Read>> {
     table: Table<I>,
     columns: NumberColumns<R>,
-    /// The place, in bytes, of the line that errors call line 2; see [`NumberTable::located`].
-    second_line: Option<u64>,
 }
 
 /// The columns of a table that contain the numbers.
@@ -91,7 +89,26 @@ pub struct NumberColumns<R> {
     layout: Layout,
     /// The columns present, each with its position in [`NumberRow::NAMES`].
     columns: Vec<(usize, Column)>,
+    range: Option<RangeStart>,
     row: PhantomData<fn() -> R>,
+}
+
+/// The beginning of a range in a file, whose lines are numbered from 2 until their numbers are
+/// of use, in a message.
+#[derive(Clone)]
+struct RangeStart {
+    path: PathBuf,
+    /// The place of the first line of the range, in bytes.
+    place: u64,
+}
+
+impl RangeStart {
+    /// An error with the number of its line in the whole file.
+    fn located(&self, error: SceneError) -> SceneError {
+        // Of a file that cannot be read any more, the lines are those of the range.
+        let lines = lines_before(&self.path, self.place).unwrap_or(1);
+        error.lines_later(lines.saturating_sub(1))
+    }
 }
 
 impl<R: NumberRow> NumberTable<R> {
@@ -121,7 +138,7 @@ impl<R: NumberRow> NumberTable<R> {
         range: Range<u64>,
     ) -> Result<Self, SceneError> {
         let mut table = Self::open(path, format, columns)?;
-        table.second_line = table.table.restrict(range, |place| {
+        let place = table.table.restrict(range, |place| {
             let mut file = input::open(path)?;
             let moved = file.seek(SeekFrom::Start(place));
             moved.map_err(|source| SceneError::Unreadable {
@@ -130,17 +147,9 @@ impl<R: NumberRow> NumberTable<R> {
             })?;
             Ok(Box::new(file))
         })?;
+        let path = path.to_owned();
+        table.columns.range = place.map(|place| RangeStart { path, place });
         Ok(table)
-    }
-
-    /// An error of this table with its line in the whole file. The lines before a range are
-    /// counted here, as they are of use only in messages.
-    #[must_use]
-    pub fn located(&self, path: &Path, error: SceneError) -> SceneError {
-        let lines = self.second_line.map(|place| lines_before(path, place));
-        // A file that cannot be read any more: its lines are those of the range.
-        let lines = lines.and_then(Result::ok).unwrap_or(1);
-        error.lines_later(lines.saturating_sub(1))
     }
 }
 
@@ -184,13 +193,10 @@ impl<R: NumberRow, I: Read> NumberTable<R, I> {
         let columns = NumberColumns {
             layout: layout.clone(),
             columns: found,
+            range: None,
             row: PhantomData,
         };
-        Ok(Self {
-            table,
-            columns,
-            second_line: None,
-        })
+        Ok(Self { table, columns })
     }
 
     /// The next rows, or `None` at the end.
@@ -198,7 +204,8 @@ impl<R: NumberRow, I: Read> NumberTable<R, I> {
     /// # Errors
     /// If the table cannot be read or exceeds a limit.
     pub fn next_block(&mut self) -> Result<Option<Block>, SceneError> {
-        self.table.next_block()
+        let block = self.table.next_block();
+        block.map_err(|error| self.columns.located(error))
     }
 
     /// The columns of the table, which other threads may use.
@@ -207,6 +214,7 @@ impl<R: NumberRow, I: Read> NumberTable<R, I> {
         NumberColumns {
             layout: self.columns.layout.clone(),
             columns: self.columns.columns.clone(),
+            range: self.columns.range.clone(),
             row: PhantomData,
         }
     }
@@ -219,11 +227,20 @@ impl<R: NumberRow> NumberColumns<R> {
     /// The error in the first invalid row.
     pub fn rows(&self, block: &Block) -> Result<Vec<R>, SceneError> {
         let mut rows = Vec::with_capacity(block.len());
-        self.layout.for_each_row(block, |row| {
+        let read = self.layout.for_each_row(block, |row| {
             rows.push(self.row(row)?);
             Ok(())
-        })?;
+        });
+        read.map_err(|error| self.located(error))?;
         Ok(rows)
+    }
+
+    /// An error with the number of its line in the whole table.
+    fn located(&self, error: SceneError) -> SceneError {
+        match &self.range {
+            Some(range) => range.located(error),
+            None => error,
+        }
     }
 
     fn row(&self, row: &Row) -> Result<R, SceneError> {

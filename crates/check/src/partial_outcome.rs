@@ -41,6 +41,9 @@ pub(crate) fn rows(settings: &Settings) -> impl Iterator<Item = Row> {
 impl Outcome {
     /// The outcome of ranges of rays that follow one another: the same as that of all rays at
     /// once. The settings must be those of the parts.
+    ///
+    /// # Panics
+    /// If the parts are of different scenes, so that they differ in the number of windows.
     #[must_use]
     pub fn of_parts(settings: &Settings, parts: impl IntoIterator<Item = PartialOutcome>) -> Self {
         let mut windows: Vec<WindowOutcome> = Vec::new();
@@ -49,6 +52,7 @@ impl Outcome {
                 windows = part.windows;
                 continue;
             }
+            assert_eq!(windows.len(), part.windows.len(), "parts of one scene");
             for (window, later) in windows.iter_mut().zip(part.windows) {
                 for (tally, later) in window.tallies.iter_mut().zip(later.tallies) {
                     tally.add(later, settings.most_listed);

@@ -5,7 +5,7 @@ use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{
@@ -97,6 +97,7 @@ impl Common {
 
 /// Render a picture of a scene
 #[derive(Args, Debug)]
+#[command(group(ArgGroup::new("divided").args(["part", "workers"])), mut_arg("resume", |arg| arg.requires("divided")))]
 pub struct RenderArguments {
     /// The scene file
     #[arg(value_name = "SCENE")]
@@ -138,6 +139,7 @@ pub struct RenderArguments {
 
 /// Trace the rays of a table, or find the solids that contain the points of one
 #[derive(Args, Debug)]
+#[command(mut_arg("resume", |arg| arg.requires("part")))]
 pub struct TraceArguments {
     /// The scene file
     #[arg(value_name = "SCENE")]

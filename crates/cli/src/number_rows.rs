@@ -35,14 +35,15 @@ impl NumberRows<'_> {
             None => NumberTable::<R>::open(path, format, columns),
         };
         // The error's text is the whole message; its source would repeat a part.
-        let mut table = table.map_err(|error| anyhow!("{error}"))?;
+        let message = |error: SceneError| anyhow!("{error}");
+        let mut table = table.map_err(message)?;
         let columns = table.columns();
         loop {
             interrupt::check()?;
             let mut blocks = Vec::new();
             while blocks.len() < BLOCKS_PER_THREAD * rayon::current_num_threads() {
                 let block = table.next_block();
-                let Some(block) = block.map_err(|error| self.message(&table, error))? else {
+                let Some(block) = block.map_err(message)? else {
                     break;
                 };
                 blocks.push(block);
@@ -54,11 +55,7 @@ impl NumberRows<'_> {
             // reported.
             let parsed: Vec<_> = blocks.par_iter().map(|block| columns.rows(block)).collect();
             let parsed: Result<_, _> = parsed.into_iter().collect();
-            action(parsed.map_err(|error| self.message(&table, error))?)?;
+            action(parsed.map_err(message)?)?;
         }
-    }
-
-    fn message<R: NumberRow>(&self, table: &NumberTable<R>, error: SceneError) -> anyhow::Error {
-        anyhow!("{}", table.located(self.path, error))
     }
 }

@@ -18,8 +18,15 @@ pub struct Files<'a> {
 impl<'a> Files<'a> {
     /// The scene file, and the JSON if it is written.
     pub fn new(scene: &Path, json: Option<&'a Path>) -> Self {
+        let mut files = Self::without_scene(json);
+        files.inputs.push(("the scene file", scene.into()));
+        files
+    }
+
+    /// The JSON if it is written.
+    pub fn without_scene(json: Option<&'a Path>) -> Self {
         Self {
-            inputs: vec![("the scene file", scene.into())],
+            inputs: Vec::new(),
             outputs: json.map(|path| ("--json", path)).into_iter().collect(),
         }
     }

@@ -35,6 +35,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     if arguments.workers.workers.is_some() {
         return parts::workers::run(arguments);
     }
+    parts::parent::end_with_parent()?;
     let common = &arguments.common;
     let files = output_files(arguments);
     files.check()?;

@@ -25,4 +25,4 @@ pub use size::{parse_size, readable};
 pub use srgb::encode as srgb_encode;
 pub use table::{Table, figure};
 pub use text_file::write_text;
-pub use unfinished::{UnfinishedGuard, remove_unfinished};
+pub use unfinished::{UnfinishedGuard, is_unfinished, remove_unfinished};

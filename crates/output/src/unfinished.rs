@@ -17,6 +17,17 @@ use std::time::{Duration, Instant};
 
 use tempfile::NamedTempFile;
 
+/// How the name of every temporary file begins.
+const PREFIX: &str = ".cyltrace-";
+
+/// Whether a file has the name of a temporary file. While no process writes to it, it was left
+/// behind by one that was killed.
+#[must_use]
+pub fn is_unfinished(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default();
+    name.as_encoded_bytes().starts_with(PREFIX.as_bytes())
+}
+
 /// The temporary files that exist.
 static REGISTERED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
@@ -104,7 +115,7 @@ fn forget(registered: &mut Vec<PathBuf>, path: &Path) {
 
 fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".cyltrace-");
+    builder.prefix(PREFIX);
     // Temporary files are private by default; this one is to be as readable
     // as the user's umask lets any file be.
     #[cfg(unix)]

@@ -57,7 +57,7 @@ pub enum PartError {
         what: &'static str,
     },
     /// There is no part.
-    #[error("there is no part to merge")]
+    #[error("no part was found")]
     None,
     /// A part belongs to another result.
     #[error("{path:?} does not belong to the same result as {first:?}: {difference}")]

@@ -55,6 +55,8 @@ pub struct Header {
     pub settings: Value,
     /// The hash of the settings and of the files that determine the result.
     pub fingerprint: String,
+    /// The hash of the input that this part alone reads, if there is one.
+    pub own_input: Option<String>,
 }
 
 /// A header with the format, which is read first.
@@ -168,60 +170,16 @@ impl PartFile {
     /// # Errors
     /// If the file cannot be read, is not a part, has another format, or is damaged.
     pub fn read(path: &Path) -> Result<Self, PartError> {
-        let unreadable = |source| PartError::Unreadable {
-            path: path.into(),
-            source,
-        };
-        let damaged = |what| PartError::Damaged {
-            path: path.into(),
-            what,
-        };
-        let mut file = File::open(path).map_err(unreadable)?;
-        let length = file.metadata().map_err(unreadable)?.len();
-
-        let mut first = Vec::new();
-        let mut beginning = BufReader::new(&mut file).take(LONGEST_LINE);
-        beginning
-            .read_until(b'\n', &mut first)
-            .map_err(unreadable)?;
-        let not_a_part = || PartError::NotAPart { path: path.into() };
-        let text = first
-            .strip_prefix(BEGIN.as_bytes())
-            .ok_or_else(not_a_part)?;
-        let line: FirstLine<Value> =
-            serde_json::from_slice(text).map_err(|_| damaged("its first line is not JSON"))?;
-        if line.format != FORMAT {
-            return Err(PartError::Format {
-                path: path.into(),
-                format: line.format,
-                own: FORMAT,
-                version: line.header["version"].as_str().unwrap_or("?").into(),
-            });
+        let mut file = File::open(path).map_err(|source| unreadable(path, source))?;
+        let (header, start) = first_line(path, &mut file)?;
+        let (line, end) = last_line(path, &mut file, start)?;
+        let range = &header.range;
+        if range.start > range.end || range.end > header.whole {
+            return Err(damaged(path, "its range is wrong"));
         }
-        let header = serde_json::from_value(line.header)
-            .map_err(|_| damaged("its first line lacks a value"))?;
-
-        let end_start = length
-            .saturating_sub(LONGEST_LINE)
-            .max(first.len() as u64 - 1);
-        let mut end = Vec::new();
-        file.seek(SeekFrom::Start(end_start)).map_err(unreadable)?;
-        file.read_to_end(&mut end).map_err(unreadable)?;
-        let cut_off = || damaged("its last line is missing, as of a file that was cut off");
-        let last = end.windows(END.len()).rposition(|bytes| bytes == END);
-        let last = last.ok_or_else(cut_off)?;
-        let line = std::str::from_utf8(&end[last + END.len()..]).map_err(|_| cut_off())?;
-        let (line, checksum) = line.rsplit_once(CHECKSUM).ok_or_else(cut_off)?;
-        let hashed = end_start + (last + END.len() + line.len()) as u64;
-        file.rewind().map_err(unreadable)?;
-        let hasher = hash(&mut file.take(hashed), Sha256::new()).map_err(unreadable)?;
-        if checksum.strip_suffix('\n') != Some(&digits(hasher)) {
-            return Err(damaged("its checksum is wrong"));
-        }
-        let line: LastLine<Value> = serde_json::from_str(line).map_err(|_| cut_off())?;
-        let payload = first.len() as u64..end_start + last as u64;
+        let payload = start..end;
         if payload.end.checked_sub(payload.start) != Some(line.payload_bytes) {
-            return Err(damaged("its length is wrong"));
+            return Err(damaged(path, "its length is wrong"));
         }
         Ok(Self {
             path: path.into(),
@@ -254,47 +212,135 @@ impl PartFile {
     /// # Errors
     /// If the file cannot be read.
     pub fn payload(&self) -> Result<Payload, PartError> {
-        let unreadable = |source| PartError::Unreadable {
-            path: self.path.clone(),
-            source,
-        };
-        let mut file = File::open(&self.path).map_err(unreadable)?;
-        let start = SeekFrom::Start(self.payload.start);
-        file.seek(start).map_err(unreadable)?;
-        let length = self.payload.end - self.payload.start;
-        Ok(BufReader::with_capacity(1 << 16, file.take(length)))
+        let file = File::open(&self.path).and_then(|mut file| {
+            file.seek(SeekFrom::Start(self.payload.start))?;
+            Ok(file)
+        });
+        let file = file.map_err(|source| unreadable(&self.path, source))?;
+        Ok(BufReader::with_capacity(
+            1 << 16,
+            file.take(self.payload_bytes()),
+        ))
     }
 
-    /// Whether there is a valid part with this header at `path`.
+    /// The length of the payload.
     #[must_use]
-    pub fn is_there(path: &Path, header: &Header) -> bool {
-        Self::read(path).is_ok_and(|part| part.header == *header)
+    pub fn payload_bytes(&self) -> u64 {
+        self.payload.end - self.payload.start
+    }
+
+    /// The valid part with this header at `path`, if there is one.
+    #[must_use]
+    pub fn existing(path: &Path, header: &Header) -> Option<Self> {
+        Self::read(path).ok().filter(|part| part.header == *header)
+    }
+
+    /// Whether a file begins as a part does, damaged or not.
+    #[must_use]
+    pub fn is_begun(path: &Path) -> bool {
+        let mut beginning = Vec::new();
+        let file = File::open(path);
+        let read = file.and_then(|file| file.take(BEGIN.len() as u64).read_to_end(&mut beginning));
+        read.is_ok() && beginning == BEGIN.as_bytes()
     }
 }
 
+fn unreadable(path: &Path, source: io::Error) -> PartError {
+    PartError::Unreadable {
+        path: path.into(),
+        source,
+    }
+}
+
+fn damaged(path: &Path, what: &'static str) -> PartError {
+    PartError::Damaged {
+        path: path.into(),
+        what,
+    }
+}
+
+/// The header, and the place where the payload begins.
+fn first_line(path: &Path, file: &mut File) -> Result<(Header, u64), PartError> {
+    let mut first = Vec::new();
+    let mut beginning = BufReader::new(file).take(LONGEST_LINE);
+    let read = beginning.read_until(b'\n', &mut first);
+    read.map_err(|source| unreadable(path, source))?;
+    let text = first.strip_prefix(BEGIN.as_bytes());
+    let text = text.ok_or_else(|| PartError::NotAPart { path: path.into() })?;
+    let line: FirstLine<Value> =
+        serde_json::from_slice(text).map_err(|_| damaged(path, "its first line is not JSON"))?;
+    if line.format != FORMAT {
+        return Err(PartError::Format {
+            path: path.into(),
+            format: line.format,
+            own: FORMAT,
+            version: line.header["version"].as_str().unwrap_or("?").into(),
+        });
+    }
+    let header = serde_json::from_value(line.header)
+        .map_err(|_| damaged(path, "its first line lacks a value"))?;
+    Ok((header, first.len() as u64))
+}
+
+/// The last line, whose checksum is verified, and the place where the payload ends.
+fn last_line(
+    path: &Path,
+    file: &mut File,
+    payload: u64,
+) -> Result<(LastLine<Value>, u64), PartError> {
+    let unreadable = |source| unreadable(path, source);
+    let cut_off = || {
+        damaged(
+            path,
+            "its last line is missing, as of a file that was cut off",
+        )
+    };
+    let length = file.metadata().map_err(unreadable)?.len();
+    // An empty payload: the line feed before the last line ends the first.
+    let start = length.saturating_sub(LONGEST_LINE).max(payload - 1);
+    let mut end = Vec::new();
+    file.seek(SeekFrom::Start(start)).map_err(unreadable)?;
+    file.read_to_end(&mut end).map_err(unreadable)?;
+    let last = end.windows(END.len()).rposition(|bytes| bytes == END);
+    let last = last.ok_or_else(cut_off)?;
+    let line = std::str::from_utf8(&end[last + END.len()..]).map_err(|_| cut_off())?;
+    let (line, checksum) = line.rsplit_once(CHECKSUM).ok_or_else(cut_off)?;
+    let hashed = start + (last + END.len() + line.len()) as u64;
+    file.rewind().map_err(unreadable)?;
+    let hasher = hash(&mut file.take(hashed), Sha256::new()).map_err(unreadable)?;
+    if checksum.strip_suffix('\n') != Some(&digits(hasher)) {
+        return Err(damaged(path, "its checksum is wrong"));
+    }
+    let line = serde_json::from_str(line).map_err(|_| cut_off())?;
+    Ok((line, start + last as u64))
+}
+
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use serde_json::json;
     use std::fs;
 
-    fn header() -> Header {
+    /// The header of a part of 100 tiles.
+    pub(crate) fn header(number: u64, of: u64) -> Header {
+        let number = PartNumber::new(number, of).expect("valid");
         Header {
             version: "0.1.0".into(),
             command: "render".into(),
-            number: PartNumber::new(3, 16).expect("valid"),
+            number,
             unit: "tiles".into(),
-            range: 20..30,
-            whole: 160,
-            settings: json!({ "spp": 4, "text": "a\nb" }),
+            range: number.range(100),
+            whole: 100,
+            settings: json!({ "spp": 4, "seed": 0, "text": "a\nb" }),
             fingerprint: "00ff".into(),
+            own_input: None,
         }
     }
 
     /// A part whose payload contains what looks like its last line.
     fn written(path: &Path) -> Vec<u8> {
         let payload = [b"row\n#end {}", &[0, 159, 146, 150][..], b"\n"].concat();
-        let mut writer = PartWriter::create(path, &header()).expect("created");
+        let mut writer = PartWriter::create(path, &header(3, 16)).expect("created");
         writer.write_all(&payload).expect("written");
         writer.finish(&json!({ "seconds": 0.5 })).expect("finished");
         payload
@@ -306,13 +352,14 @@ mod tests {
         let path = directory.path().join("part");
         let payload = written(&path);
         let part = PartFile::read(&path).expect("valid");
-        assert_eq!(part.header(), &header());
+        assert_eq!(part.header(), &header(3, 16));
         assert_eq!(part.summary(), &json!({ "seconds": 0.5 }));
         let mut read = Vec::new();
         let mut reader = part.payload().expect("readable");
         reader.read_to_end(&mut read).expect("read");
         assert_eq!(read, payload);
-        assert!(PartFile::is_there(&path, &header()));
+        assert!(PartFile::existing(&path, &header(3, 16)).is_some());
+        assert!(PartFile::existing(&path, &header(4, 16)).is_none());
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
@@ -31,6 +32,30 @@ impl Fingerprint {
     /// # Errors
     /// If the file cannot be read, or is not a regular file, whose content could be read again.
     pub fn file(&mut self, path: &Path) -> Result<(), PartError> {
+        self.range(path, 0..u64::MAX)
+    }
+
+    /// Adds the length and both ends of a table that each part reads only in part: a hash of
+    /// all of it would make each of a thousand parts read the whole table.
+    ///
+    /// # Errors
+    /// Those of [`Fingerprint::file`].
+    pub fn long_table(&mut self, path: &Path) -> Result<(), PartError> {
+        let end = u64::MAX - BUFFER as u64;
+        self.ranges(path, &[0..BUFFER as u64, end..u64::MAX])
+    }
+
+    /// Adds the bytes of a range of a file.
+    ///
+    /// # Errors
+    /// Those of [`Fingerprint::file`].
+    pub fn range(&mut self, path: &Path, range: Range<u64>) -> Result<(), PartError> {
+        self.ranges(path, std::slice::from_ref(&range))
+    }
+
+    /// Adds the length of a file and the bytes of some ranges. Where the file is shorter, a
+    /// range is moved to end with it.
+    fn ranges(&mut self, path: &Path, ranges: &[Range<u64>]) -> Result<(), PartError> {
         let unreadable = |source| PartError::Unreadable {
             path: path.into(),
             source,
@@ -41,29 +66,12 @@ impl Fingerprint {
         }
         self.length(metadata.len());
         let mut file = File::open(path).map_err(unreadable)?;
-        self.hasher = hash(&mut file, self.hasher.clone()).map_err(unreadable)?;
-        Ok(())
-    }
-
-    /// Adds the length and both ends of a table that each part reads only in part: a hash of
-    /// all of it would make each of a thousand parts read the whole table.
-    ///
-    /// # Errors
-    /// Those of [`Fingerprint::file`].
-    pub fn long_table(&mut self, path: &Path) -> Result<(), PartError> {
-        let unreadable = |source| PartError::Unreadable {
-            path: path.into(),
-            source,
-        };
-        let length = path.metadata().map_err(unreadable)?.len();
-        let mut file = File::open(path).map_err(unreadable)?;
-        self.length(length);
-        for start in [0, length.saturating_sub(BUFFER as u64)] {
-            let mut end = Vec::new();
-            file.seek(SeekFrom::Start(start)).map_err(unreadable)?;
-            let piece = (&mut file).take(BUFFER as u64).read_to_end(&mut end);
-            piece.map_err(unreadable)?;
-            self.hasher.update(&end);
+        for range in ranges {
+            let beyond = range.end.saturating_sub(metadata.len());
+            let start = SeekFrom::Start(range.start.saturating_sub(beyond));
+            file.seek(start).map_err(unreadable)?;
+            let mut bytes = (&mut file).take(range.end - range.start);
+            self.hasher = hash(&mut bytes, self.hasher.clone()).map_err(unreadable)?;
         }
         Ok(())
     }

@@ -26,7 +26,7 @@ impl PartSet {
     }
 
     /// Orders parts; see [`PartSet::read`].
-    fn new(mut parts: Vec<PartFile>) -> Result<Self, PartError> {
+    pub(crate) fn new(mut parts: Vec<PartFile>) -> Result<Self, PartError> {
         let first = parts.first().ok_or(PartError::None)?.clone();
         for part in &parts[1..] {
             if let Some(difference) = difference(first.header(), part.header()) {
@@ -126,24 +126,14 @@ fn differs_in_settings(first: &Value, other: &Value) -> Option<String> {
 mod tests {
     use super::*;
     use crate::file::PartWriter;
-    use crate::number::PartNumber;
+    use crate::file::tests::header;
     use serde_json::json;
     use std::io::Write;
     use std::path::Path;
 
     /// A part with a range of units, whose header `change` changes.
     fn part(folder: &Path, name: &str, numbers: (u64, u64), change: fn(&mut Header)) -> PathBuf {
-        let number = PartNumber::new(numbers.0, numbers.1).expect("valid");
-        let mut header = Header {
-            version: "0.1.0".into(),
-            command: "render".into(),
-            number,
-            unit: "tiles".into(),
-            range: number.range(100),
-            whole: 100,
-            settings: json!({ "spp": 4, "seed": 0 }),
-            fingerprint: "00ff".into(),
-        };
+        let mut header = header(numbers.0, numbers.1);
         change(&mut header);
         let path = folder.join(name);
         let mut writer = PartWriter::create(&path, &header).expect("created");

@@ -1,16 +1,19 @@
-//! What parts there are in a folder.
+//! Lists the parts in a folder.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use cyltrace_output::is_unfinished;
+
 use super::error::PartError;
 use super::file::PartFile;
+use super::set::PartSet;
 
 /// The parts in a folder.
 #[derive(Clone, Debug, Default)]
 pub struct Survey {
-    /// The results that there are parts of, in the order of the names of their first parts.
+    /// Results with at least one part, in the order of the names of their first parts.
     pub wholes: Vec<Whole>,
     /// The parts that are damaged or have another format.
     pub damaged: Vec<Damaged>,
@@ -33,14 +36,15 @@ pub struct Damaged {
 }
 
 impl Survey {
-    /// Reads the parts in a folder, not in folders within it. Other files are skipped.
+    /// Reads the parts in a folder, not in folders within it. Other files are skipped, and so
+    /// are the temporary files of processes that were killed.
     ///
     /// # Errors
     /// If the folder cannot be read.
     pub fn of(folder: &Path) -> io::Result<Self> {
         let entries: Result<Vec<_>, _> = fs::read_dir(folder)?.collect();
         let mut paths: Vec<PathBuf> = entries?.iter().map(fs::DirEntry::path).collect();
-        paths.retain(|path| path.is_file());
+        paths.retain(|path| path.is_file() && !is_unfinished(path));
         paths.sort();
         let mut survey = Self::default();
         for path in paths {
@@ -49,7 +53,7 @@ impl Survey {
                 Err(PartError::NotAPart { .. }) => {}
                 Err(error) => survey.damaged.push(Damaged {
                     path,
-                    reason: error.to_string(),
+                    reason: with_source(&error),
                 }),
             }
         }
@@ -72,9 +76,25 @@ impl Survey {
     }
 }
 
+/// An error and its cause.
+fn with_source(error: &PartError) -> String {
+    match std::error::Error::source(error) {
+        Some(source) => format!("{error}: {source}"),
+        None => error.to_string(),
+    }
+}
+
 impl Whole {
-    /// The numbers of missing parts, in the division that its first part is of, or `None` if
-    /// its parts are of several divisions.
+    /// Whether the parts make up the result.
+    ///
+    /// # Errors
+    /// What is missing, or contained twice.
+    pub fn check(&self) -> Result<(), PartError> {
+        PartSet::new(self.parts.clone()).map(|_| ())
+    }
+
+    /// The numbers of missing parts; `None` if some parts were made with another number of
+    /// parts than the first.
     #[must_use]
     pub fn missing(&self) -> Option<Vec<u64>> {
         let of = self.parts[0].header().number.of();
@@ -94,25 +114,16 @@ impl Whole {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::file::{Header, PartWriter};
-    use crate::number::PartNumber;
+    use crate::file::PartWriter;
+    use crate::file::tests::header;
     use serde_json::json;
 
     #[test]
     fn folder_with_parts_of_two_results_and_other_files() {
         let folder = tempfile::tempdir().expect("directory");
         let write = |name: &str, number: u64, of: u64, fingerprint: &str| {
-            let number = PartNumber::new(number, of).expect("valid");
-            let header = Header {
-                version: "0.1.0".into(),
-                command: "render".into(),
-                number,
-                unit: "tiles".into(),
-                range: number.range(100),
-                whole: 100,
-                settings: json!({}),
-                fingerprint: fingerprint.into(),
-            };
+            let mut header = header(number, of);
+            header.fingerprint = fingerprint.into();
             let path = folder.path().join(name);
             let writer = PartWriter::create(&path, &header).expect("created");
             writer.finish(&json!({})).expect("finished");
@@ -126,11 +137,15 @@ mod tests {
         let cut = write("c", 1, 1, "cc");
         fs::write(&cut, &fs::read(&cut).expect("read")[..200]).expect("written");
         fs::write(folder.path().join("notes.txt"), "no part").expect("written");
+        // As a process leaves it that is killed.
+        fs::copy(&cut, folder.path().join(".cyltrace-ab12")).expect("copied");
         fs::create_dir(folder.path().join("folder")).expect("created");
 
         let survey = Survey::of(folder.path()).expect("readable");
         let missing: Vec<_> = survey.wholes.iter().map(Whole::missing).collect();
         assert_eq!(missing, [Some(vec![2, 4]), Some(vec![])]);
+        assert!(survey.wholes[0].check().is_err());
+        assert!(survey.wholes[1].check().is_ok());
         assert_eq!(survey.damaged.len(), 1);
         assert_eq!(survey.damaged[0].path, cut);
     }

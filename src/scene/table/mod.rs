@@ -107,8 +107,8 @@ impl<I: Read> Table<I> {
         })
     }
 
-    /// Restricts the table, of which nothing has been read, to the rows that begin in `range`,
-    /// in bytes from its beginning. `reopened` opens the table at a place. Returns the place of
+    /// Restricts a table, before its first row is read, to the rows that begin in `range`, in
+    /// bytes from its beginning. `reopened` opens the table at a place. Returns the place of
     /// the line that errors call line 2, or `None` if they number the lines of the whole table.
     ///
     /// # Errors

@@ -65,6 +65,9 @@ pub fn compare_with(
 ///
 /// # Errors
 /// As [`compare_with`].
+///
+/// # Panics
+/// If the range is not within `0..settings.rays`.
 pub fn compare_rays(
     scene: &Scene,
     intersector: &impl Intersector,
@@ -72,6 +75,8 @@ pub fn compare_rays(
     rays: Range<u64>,
     progress: &Progress,
 ) -> Result<PartialOutcome, CheckError> {
+    let is_within = rays.start <= rays.end && rays.end <= settings.rays;
+    assert!(is_within, "rays {rays:?} of {}", settings.rays);
     let windows = chosen_windows(scene, settings)?;
     let classes = settings.classes.len() as u64;
     let run = Run {

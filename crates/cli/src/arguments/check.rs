@@ -20,6 +20,7 @@ const COLUMNS: &str = "Read a table of rays without a header: the numbers of its
 #[derive(Args, Debug)]
 #[command(
     mut_arg("columns", |arg| arg.help(COLUMNS)),
+    mut_arg("resume", |arg| arg.requires("part")),
     mut_arg("part", |arg| arg.requires("output").conflicts_with_all(["hits", "mesh", "replay", "report"])),
 )]
 pub struct CheckArguments {

@@ -25,8 +25,9 @@ pub struct PartArguments {
 #[derive(Args, Clone, Debug)]
 pub struct WorkerArguments {
     /// Render in N processes that share nothing, 1 to 1024. If one dies, its part is rendered
-    /// again. Parts are in the folder FILE.parts until the picture is complete; with
-    /// `--resume`, those that an earlier run left there are used
+    /// again. Threads and `--max-memory` are divided among them. Parts are in the folder
+    /// FILE.parts until the picture is complete; with `--resume`, those that an earlier run
+    /// left there are used
     #[arg(long, value_name = "N", value_parser = parse_threads, conflicts_with = "part")]
     pub workers: Option<NonZeroUsize>,
     /// Divide the picture into N parts for `--workers`, 1 to 10^6 [default: 8 for each worker]
@@ -45,7 +46,7 @@ const NO_EFFECT: &str = "Accepted as by other commands, without effect";
 #[derive(Args, Debug)]
 #[command(mut_arg("max_isa", |arg| arg.help(NO_EFFECT)), mut_arg("threads", |arg| arg.help(NO_EFFECT)))]
 pub struct MergeArguments {
-    /// The parts, in any order, or folders of which all parts belong to the result
+    /// The parts, in any order, or folders that contain only parts of the result
     #[arg(value_name = "PART", required = true)]
     pub parts: Vec<PathBuf>,
     /// Write the result to FILE: a picture (`.png` or `.exr`), a table (`-` is standard

@@ -9,7 +9,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::bail;
-use cyltrace::embree::DeviceOptions;
+use cyltrace::embree::{Device, DeviceOptions, MaxIsa};
+use cyltrace::scene::SceneFile;
 use cyltrace::tracer::{Options, Tracer};
 use cyltrace_check::{self, Checked, Outcome, Replay, Settings};
 use cyltrace_output::{NewFile, write_text};
@@ -74,6 +75,13 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
     let workers = scene::workers(common)?;
     let file = scene::read(&arguments.scene, MemoryLimit::available())?;
     files.check_with(&file)?;
+    let settings = settings(arguments);
+    let header = part_header(arguments, &settings, &file)?;
+    if let (Some(header), Some(output)) = (&header, &arguments.output)
+        && parts::is_done(&arguments.part, common, output, header)?
+    {
+        return Ok(GOOD);
+    }
     let external = workers.install(|| ExternalInput::read(arguments))?;
     let loaded = Arc::new(scene::load(
         common,
@@ -86,17 +94,10 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
         ..Options::default()
     };
     let tracer = scene::build(common, &loaded, options)?;
-    let settings = settings(arguments);
     if let Some(which) = &arguments.replay {
         return workers.install(|| replay(&tracer, which, &settings));
     }
 
-    let header = part_header(arguments, &settings, &tracer)?;
-    if let (Some(header), Some(output)) = (&header, &arguments.output)
-        && parts::is_done(&arguments.part, common, output, header)?
-    {
-        return Ok(GOOD);
-    }
     if external.is_none() && common.prints() {
         let plan = workers.install(|| cyltrace_check::plan(&loaded, &settings))?;
         print(&format!(
@@ -191,19 +192,19 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
 fn part_header(
     arguments: &CheckArguments,
     settings: &Settings,
-    tracer: &Tracer,
+    scene: &SceneFile,
 ) -> anyhow::Result<Option<Header>> {
     let Some(number) = arguments.part.part else {
         return Ok(None);
     };
-    let statistics = tracer.statistics();
-    let (exact, embree) = (arguments.decisions.exact, &statistics.embree_version);
+    let embree = Device::new(&settings.device)?.version().to_string();
+    let isa = MaxIsa::name_in_use(settings.device.max_isa);
     let work = Work {
         command: "check",
         unit: "rays",
         whole: settings.rays,
-        settings: parts::check::settings(settings, exact, embree, &statistics.isa),
-        scene: &scene::read(&arguments.scene, MemoryLimit::available())?,
+        settings: parts::check::settings(settings, arguments.decisions.exact, &embree, isa),
+        scene,
         long_table: None,
     };
     work.header(number).map(Some)

@@ -5,6 +5,7 @@ use cyltrace_parts::{PartFile, Survey, Whole};
 use serde_json::{Value, json};
 
 use crate::arguments::PartsArguments;
+use crate::outputs::Files;
 use crate::print::print;
 use crate::{CHECK_FAILED, GOOD, json};
 
@@ -17,6 +18,11 @@ pub fn run(arguments: &PartsArguments) -> anyhow::Result<u8> {
     json::check(common)?;
     let survey =
         Survey::of(folder).with_context(|| format!("cannot read the folder {folder:?}"))?;
+    let parts = survey.wholes.iter().flat_map(|whole| &whole.parts);
+    let files = Files::without_scene(common.json.as_deref());
+    parts
+        .fold(files, |files, part| files.input("a part,", part.path()))
+        .check()?;
     let wholes: Vec<Value> = survey.wholes.iter().map(figures).collect();
     let damaged = survey.damaged.iter();
     let damaged: Vec<Value> = damaged
@@ -36,10 +42,9 @@ pub fn run(arguments: &PartsArguments) -> anyhow::Result<u8> {
         }
         print(&text)?;
     }
-    let mut wholes = survey.wholes.iter();
     let is_complete = !survey.wholes.is_empty()
         && survey.damaged.is_empty()
-        && wholes.all(|whole| whole.missing().is_some_and(|missing| missing.is_empty()));
+        && survey.wholes.iter().all(|whole| whole.check().is_ok());
     Ok(if is_complete { GOOD } else { CHECK_FAILED })
 }
 
@@ -74,26 +79,30 @@ fn whole_text(whole: &Whole) -> String {
     let mut text = format!(
         "{} {}: {there} of {of} parts",
         header.command,
-        &header.fingerprint[..12.min(header.fingerprint.len())]
+        header.fingerprint.get(..12).unwrap_or("?")
     );
     let seconds: Vec<f64> = whole.parts.iter().filter_map(seconds).collect();
     if let Some(longest) = seconds.iter().copied().reduce(f64::max) {
         let mean = seconds.iter().sum::<f64>() / seconds.len() as f64;
         text += &format!(", {mean:.2} s each on average, {longest:.2} s at most");
     }
-    text += match whole.missing().as_deref() {
-        None => "\n  of several divisions: `cyltrace merge` finds what is missing\n",
-        Some([]) => "\n",
-        Some(missing) => {
+    text += "\n";
+    match whole.missing() {
+        Some(missing) if !missing.is_empty() => {
             let named = missing.iter().take(MOST_NAMED).map(u64::to_string);
             let named = named.collect::<Vec<_>>().join(", ");
-            let more = missing.len().saturating_sub(MOST_NAMED);
-            let more = match more {
+            let more = match missing.len().saturating_sub(MOST_NAMED) {
                 0 => String::new(),
-                _ => format!(" and {more} more"),
+                more => format!(" and {more} more"),
             };
-            return text + &format!("\n  missing: {named}{more}\n");
+            text += &format!("  missing: {named}{more}\n");
         }
-    };
+        // Doubled parts, or parts of several numbers of parts.
+        _ => {
+            if let Err(error) = whole.check() {
+                text += &format!("  {error}\n");
+            }
+        }
+    }
     text
 }

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use super::{check, render, trace};
 use crate::arguments::MergeArguments;
 use crate::output_sink::{OutputSink, is_standard_stream};
+use crate::outputs::Files;
 use crate::print::print;
 use crate::{CHECK_FAILED, GOOD, interrupt, json};
 
@@ -19,10 +20,17 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<u8> {
     OutputSink::check(output)?;
     json::check(common)?;
     let paths = paths(&arguments.parts)?;
-    for path in &paths {
-        if same_file::is_same_file(path, output).unwrap_or(false) {
-            bail!("-o {output:?} is one of the parts and would overwrite it: choose another name");
-        }
+    let files = Files::without_scene(common.json.as_deref()).output("-o", output);
+    let files = paths
+        .iter()
+        .fold(files, |files, path| files.input("a part,", path));
+    files.check()?;
+    if paths.is_empty() {
+        let named = arguments.parts.iter().map(|path| format!("{path:?}"));
+        bail!(
+            "there are no parts in {}",
+            named.collect::<Vec<_>>().join(", ")
+        );
     }
     let set = PartSet::read(&paths)?;
     let command = set.header().command.as_str();
@@ -66,8 +74,14 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<u8> {
     }
     json::write(common, &all)?;
     if common.prints() && !is_standard_stream(output) {
-        let (path, count) = (output.display(), set.parts().len());
-        print(&format!("{path}: merged from {count} parts, {text}"))?;
+        let count = match set.parts().len() {
+            1 => String::from("1 part"),
+            count => format!("{count} parts"),
+        };
+        print(&format!(
+            "{}: merged from {count}, {text}",
+            output.display()
+        ))?;
     }
     Ok(code)
 }

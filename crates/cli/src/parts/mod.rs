@@ -5,8 +5,10 @@
 //! part is a pure function of its range: the pixels of tiles, rows of a table, rays of a check.
 
 pub mod check;
+mod folder;
 pub mod list;
 pub mod merge;
+pub mod parent;
 pub mod render;
 pub mod trace;
 pub mod workers;
@@ -20,12 +22,14 @@ use cyltrace_parts::{Fingerprint, Header, PartFile, PartNumber, PartWriter};
 use serde_json::Value;
 
 use super::arguments::{Common, PartArguments};
+use super::json;
+use super::output_sink::is_standard_stream;
 use super::print::print;
 
 /// The whole that a part is of.
 pub struct Work<'a> {
     pub command: &'static str,
-    /// What is divided, such as `tiles`, and how much of it there is.
+    /// What is divided, such as `tiles`, and its number.
     pub unit: &'static str,
     pub whole: u64,
     /// The settings that determine the result; not those that only determine its time.
@@ -47,46 +51,63 @@ impl Work<'_> {
         for file in self.scene.files() {
             fingerprint.file(&file)?;
         }
+        let range = number.range(self.whole);
+        let mut own_input = None;
         if let Some(table) = self.long_table {
             fingerprint.long_table(table)?;
+            let mut rows = Fingerprint::default();
+            rows.range(table, range.clone())?;
+            own_input = Some(rows.digits());
         }
         Ok(Header {
             version: version.into(),
             command: self.command.into(),
             number,
             unit: self.unit.into(),
-            range: number.range(self.whole),
+            range,
             whole: self.whole,
             settings: self.settings,
             fingerprint: fingerprint.digits(),
+            own_input,
         })
     }
 }
 
-/// Rejects arguments without a meaning, and a part that cannot be written to `output`.
+/// Rejects a part that cannot be written to `output`, or would replace another kind of file.
 pub fn check(arguments: &PartArguments, output: &Path) -> anyhow::Result<()> {
-    if arguments.part.is_some() {
-        if output.as_os_str() == "-" {
-            bail!("-o -: a part is written to a file, not to standard output");
-        }
-        NewFile::check(output)?;
+    if arguments.part.is_none() {
+        return Ok(());
+    }
+    if is_standard_stream(output) {
+        bail!("-o -: a part is written to a file, not to standard output");
+    }
+    NewFile::check(output)?;
+    if output.metadata().is_ok_and(|file| file.is_file()) && !PartFile::is_begun(output) {
+        bail!(
+            "-o {output:?} is there already and is not a part: choose another name, or remove it"
+        );
     }
     Ok(())
 }
 
-/// Whether the part is there and `--resume` leaves it as it is, which is then printed.
+/// Whether the part is there and `--resume` leaves it as it is. Then its figures are written
+/// again.
 pub fn is_done(
     arguments: &PartArguments,
     common: &Common,
     output: &Path,
     header: &Header,
 ) -> anyhow::Result<bool> {
-    let is_done = arguments.resume && PartFile::is_there(output, header);
-    if is_done && common.prints() {
+    let existing = PartFile::existing(output, header).filter(|_| arguments.resume);
+    let Some(existing) = existing else {
+        return Ok(false);
+    };
+    json::write(common, &existing.summary()["figures"])?;
+    if common.prints() {
         let (path, number) = (output.display(), header.number);
         print(&format!("{path}: part {number} is already there\n"))?;
     }
-    Ok(is_done)
+    Ok(true)
 }
 
 /// Begins to write a part.

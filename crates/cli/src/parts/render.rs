@@ -3,7 +3,8 @@
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-use cyltrace::scene::Film;
+use anyhow::bail;
+use cyltrace::scene::{Film, GREATEST_PIXELS};
 use cyltrace_output::Output;
 use cyltrace_parts::{PartFile, PartSet, PartWriter, Payload};
 use cyltrace_render::{Settings, Tiles};
@@ -39,7 +40,18 @@ pub fn merge(set: &PartSet, output: &Path) -> anyhow::Result<()> {
     let first = &set.parts()[0];
     let [width, height]: [u32; 2] = value(first, &set.header().settings["size"])?;
     let film = Film { width, height };
+    let pixels = u64::from(width) * u64::from(height);
+    if !(1..=GREATEST_PIXELS).contains(&pixels) {
+        bail!("{:?} is of a picture of {width}x{height}", first.path());
+    }
     let tiles = Tiles::of(film);
+    for part in set.parts() {
+        let header = part.header();
+        let pixels = tiles.pixels(header.range.clone());
+        if header.whole != tiles.count() || part.payload_bytes() != pixels * PIXEL as u64 {
+            bail!("{:?} has more or fewer pixels than its tiles", part.path());
+        }
+    }
     let mut pixels = Pixels::new(set.parts());
     let (mut row, mut colors) = (0, Vec::new());
     let bands = |band: &mut Vec<[f32; 3]>| {

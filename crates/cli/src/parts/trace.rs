@@ -2,11 +2,11 @@
 //! the table that is read. Rows of the output are numbered from 0 in each part; `merge`
 //! adds the rows of the parts before. So no part has to read the rows of another.
 
-use std::io::{self, BufRead, Write};
+use std::io::{BufRead, Write};
 use std::path::Path;
 
 use anyhow::{Context, bail};
-use cyltrace_parts::{PartError, PartSet};
+use cyltrace_parts::{PartError, PartFile, PartSet};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -66,9 +66,7 @@ pub fn merge(set: &PartSet, output: &Path) -> anyhow::Result<Totals> {
     let mut all = Totals::default();
     for part in set.parts() {
         let totals: Totals = value(part, &part.summary()["totals"])?;
-        let mut payload = part.payload()?;
-        let written = renumber(&mut payload, all.rows, &mut target);
-        written.with_context(|| format!("the rows of {:?}", part.path()))?;
+        renumber(part, all.rows, &mut target)?;
         all.rows += totals.rows;
         all.hit_rows += totals.hit_rows;
         all.hits += totals.hits;
@@ -77,22 +75,31 @@ pub fn merge(set: &PartSet, output: &Path) -> anyhow::Result<Totals> {
     Ok(all)
 }
 
-/// Copies rows with the number in their first cell increased.
-fn renumber(rows: &mut impl BufRead, by: u64, target: &mut impl Write) -> io::Result<()> {
+/// Copies the rows of a part with their numbers increased.
+fn renumber(part: &PartFile, by: u64, target: &mut impl Write) -> anyhow::Result<()> {
+    let mut rows = part.payload()?;
     let mut row = Vec::new();
-    while rows.read_until(b'\n', &mut row)? > 0 {
-        let end = row
-            .iter()
-            .position(|&byte| byte == b',')
-            .unwrap_or(row.len());
-        let number = std::str::from_utf8(&row[..end]).ok();
-        let number: Option<u64> = number.and_then(|digits| digits.parse().ok());
-        let number = number.ok_or(io::ErrorKind::InvalidData)?;
-        write!(target, "{}", number + by)?;
-        target.write_all(&row[end..])?;
+    loop {
         row.clear();
+        let read = rows.read_until(b'\n', &mut row);
+        let read = read.with_context(|| format!("cannot read {:?}", part.path()))?;
+        if read == 0 {
+            return Ok(());
+        }
+        let renumbered =
+            number_and_rest(&row).and_then(|(number, rest)| Some((number.checked_add(by)?, rest)));
+        let (number, rest) =
+            renumbered.with_context(|| format!("{:?} has a row without a number", part.path()))?;
+        write!(target, "{number}")?;
+        target.write_all(rest)?;
     }
-    Ok(())
+}
+
+/// The number in the first cell of a row, and the rest of the row.
+fn number_and_rest(row: &[u8]) -> Option<(u64, &[u8])> {
+    let end = row.iter().position(|&byte| byte == b',')?;
+    let (digits, rest) = row.split_at(end);
+    Some((std::str::from_utf8(digits).ok()?.parse().ok()?, rest))
 }
 
 #[cfg(test)]
@@ -100,10 +107,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_renumbered() {
-        let mut written = Vec::new();
-        renumber(&mut &b"0,1,a\n0,1,b\n9,0,,\n"[..], 95, &mut written).expect("rows");
-        assert_eq!(written, b"95,1,a\n95,1,b\n104,0,,\n");
-        assert!(renumber(&mut &b"x,1\n"[..], 1, &mut Vec::new()).is_err());
+    fn row_begins_with_its_number() {
+        assert_eq!(number_and_rest(b"95,1,a\n"), Some((95, &b",1,a\n"[..])));
+        for wrong in ["", "\n", "x,1\n", ",1\n", "-1,1\n", "95\n"] {
+            assert_eq!(number_and_rest(wrong.as_bytes()), None, "{wrong:?}");
+        }
     }
 }

@@ -4,9 +4,9 @@
 //! it but its part, which is rendered again. The processes share nothing.
 
 use std::ffi::OsString;
-use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
@@ -20,6 +20,8 @@ use indicatif::ProgressBar;
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::{Value, json};
 
+use super::folder::Folder;
+use super::parent::PARENT;
 use super::render::merge;
 use crate::arguments::RenderArguments;
 use crate::interrupt;
@@ -32,7 +34,7 @@ use crate::{COULD_NOT_RUN, json, progress, scene};
 /// for half a part's time on average, and every part costs a start.
 const PARTS_PER_WORKER: u64 = 8;
 
-/// How often a part is tried whose process dies.
+/// How often a part is tried whose process ends by a signal or a panic.
 const MOST_TRIES: u32 = 3;
 
 /// How often a process is looked at.
@@ -52,58 +54,51 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let file = scene::read(&arguments.scene, MemoryLimit::of(&arguments.memory))?;
     files.check_with(&file)?;
     let settings = settings(arguments, &file)?;
-    let count = work(arguments, &settings, &file).whole;
+    let work = work(arguments, &settings, &file);
+    let count = work.whole;
+    let whole = PartNumber::new(1, 1).map(|number| work.header(number));
+    let fingerprint = whole.transpose()?.map(|header| header.fingerprint);
+
+    let folder = Folder::open(output, arguments.part.resume)?;
     let stated = arguments.workers.parts.map(u64::from);
-    let parts = stated.unwrap_or(PARTS_PER_WORKER * workers.get() as u64);
-    // More parts than tiles would be empty.
-    let parts = parts.min(count);
-
-    let folder = folder_of(output);
-    if folder.exists() && !arguments.part.resume {
-        bail!(
-            "{folder:?} is there already, with parts of an earlier run: add --resume to use them, or remove it"
-        );
-    }
-    fs::create_dir_all(&folder).with_context(|| format!("cannot create the folder {folder:?}"))?;
-
+    let parts = stated
+        .or_else(|| folder.earlier_parts(fingerprint.as_deref()))
+        .unwrap_or(PARTS_PER_WORKER * workers.get() as u64)
+        // More parts than tiles would be empty.
+        .min(count);
+    let workers = workers.get().min(parts as usize);
     interrupt::end_in_order();
     let bar = progress::bar(common, parts, "parts");
     let crew = Crew {
         program: std::env::current_exe().context("cannot find the program itself")?,
-        arguments: passed_on(arguments, workers.get())?,
-        folder: &folder,
+        arguments: passed_on(arguments, workers)?,
+        folder: &folder.path,
         parts,
         bar: &bar,
         next: Mutex::new(1),
         failed: AtomicBool::new(false),
         notes: &|text| note(common.quiet, text),
     };
-    let outcomes: Vec<anyhow::Result<()>> = thread::scope(|scope| {
-        let workers: Vec<_> = (0..workers.get())
-            .map(|_| scope.spawn(|| crew.work()))
-            .collect();
-        let ended = workers.into_iter().map(|worker| worker.join());
-        ended
-            .map(|ended| ended.unwrap_or_else(|_| Err(anyhow!("a thread of --workers panicked"))))
-            .collect()
-    });
+    let outcome = crew.work_together(workers);
     bar.finish_and_clear();
-    let outcome: anyhow::Result<()> = outcomes.into_iter().collect();
-    outcome.with_context(|| {
-        format!("the parts that are complete are in {folder:?}: --resume uses them")
-    })?;
-
     let paths: Vec<PathBuf> = (1..=parts).map(|number| crew.path(number)).collect();
+    if let Err(error) = outcome {
+        return Err(match folder.remove_if_empty() {
+            true => error,
+            false => error.context(format!(
+                "the parts that are complete are in {:?}: --resume uses them",
+                folder.path
+            )),
+        });
+    }
     let set = PartSet::read(&paths)?;
     merge(&set, output)?;
-    fs::remove_dir_all(&folder).with_context(|| format!("cannot remove the folder {folder:?}"))?;
+    let figures = figures(arguments, &set, workers, start.elapsed().as_secs_f64());
+    folder.remove(&paths)?;
 
-    let figures = figures(
-        arguments,
-        &set,
-        workers.get(),
-        start.elapsed().as_secs_f64(),
-    );
+    for text in figures["notes"].as_array().into_iter().flatten() {
+        note(common.quiet, text.as_str().unwrap_or_default());
+    }
     json::write(common, &figures)?;
     if !common.prints() {
         return Ok(());
@@ -118,13 +113,6 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         crate::arguments::integrator_name(settings.integrator),
         start.elapsed().as_secs_f64(),
     ))
-}
-
-/// The folder of the parts of a picture.
-fn folder_of(output: &Path) -> PathBuf {
-    let mut name = output.as_os_str().to_owned();
-    name.push(".parts");
-    name.into()
 }
 
 /// The arguments of a worker, without its part and its output.
@@ -146,10 +134,11 @@ fn passed_on(arguments: &RenderArguments, workers: usize) -> anyhow::Result<Vec<
         arguments.integrator.as_ref().and_then(name_of),
     );
     option("seed", Some(arguments.seed.to_string()));
-    option(
-        "max-memory",
-        arguments.memory.max_memory.map(|bytes| format!("{bytes}B")),
-    );
+    let share = arguments
+        .memory
+        .max_memory
+        .map(|bytes| bytes / workers as u64);
+    option("max-memory", share.map(|bytes| format!("{bytes}B")));
     option("layout", name_of(&arguments.memory.layout));
     option("max-isa", common.max_isa.map(|isa| isa.name().to_owned()));
     let all = match common.threads {
@@ -189,6 +178,18 @@ impl Crew<'_> {
         self.folder.join(format!("{number:0digits$}.cylpart"))
     }
 
+    /// Renders all parts.
+    fn work_together(&self, workers: usize) -> anyhow::Result<()> {
+        thread::scope(|scope| {
+            let workers: Vec<_> = (0..workers).map(|_| scope.spawn(|| self.work())).collect();
+            let ended: Vec<_> = workers.into_iter().map(|worker| worker.join()).collect();
+            let panicked = || anyhow!("a thread of --workers panicked");
+            ended
+                .into_iter()
+                .try_for_each(|ended| ended.unwrap_or_else(|_| Err(panicked())))
+        })
+    }
+
     /// Renders parts until there are no more.
     fn work(&self) -> anyhow::Result<()> {
         while let Some(part) = self.next_part() {
@@ -212,43 +213,55 @@ impl Crew<'_> {
     /// Renders a part, again if its process dies.
     fn render(&self, part: PartNumber) -> anyhow::Result<()> {
         for tried in 1.. {
-            let Some(status) = self.start(part)? else {
+            let Some((status, message)) = self.start(part)? else {
                 return Ok(());
             };
             if status.success() {
                 return Ok(());
             }
-            // The process has printed the reason, which would be the same again.
+            // Wrong input would be wrong again, and a full disk full.
             if status.code() == Some(i32::from(COULD_NOT_RUN)) {
-                bail!("part {part} cannot be rendered");
+                let reason = message.strip_prefix("error: ").unwrap_or(&message);
+                bail!("part {part}: {}", reason.trim_end());
             }
             if tried == MOST_TRIES {
-                bail!("the process of part {part} died {tried} times, the last time by {status}");
+                bail!(
+                    "the process of part {part} ended {tried} times, the last time by {status}: {message}"
+                );
             }
             (self.notes)(&format!(
-                "the process of part {part} died by {status}; the part is rendered again"
+                "the process of part {part} ended by {status}; the part is rendered again"
             ));
         }
         unreachable!("a part is tried {MOST_TRIES} times")
     }
 
-    /// Runs the process of a part. `None` if it was ended because another part failed.
-    fn start(&self, part: PartNumber) -> anyhow::Result<Option<ExitStatus>> {
+    /// Runs the process of a part, and returns how it ended and what it printed to standard
+    /// error. `None` if it was ended because another part failed.
+    fn start(&self, part: PartNumber) -> anyhow::Result<Option<(ExitStatus, String)>> {
         let mut command = Command::new(&self.program);
         let path = self.path(part.number());
         command.arg(&self.arguments[0]);
-        command.arg(format!("--part={part}")).arg("-o").arg(path);
-        command.args(&self.arguments[1..]);
+        let mut output = OsString::from("--output=");
+        output.push(path);
+        command.arg(format!("--part={part}")).arg(output);
+        command.args(&self.arguments[1..]).stderr(Stdio::piped());
+        command.env(PARENT, std::process::id().to_string());
         let child = command.spawn();
         let child = child.with_context(|| format!("cannot start {:?}", self.program))?;
         self.wait(child)
     }
 
     /// Waits for a process, and ends it if the command is interrupted or another part failed.
-    fn wait(&self, mut child: Child) -> anyhow::Result<Option<ExitStatus>> {
+    fn wait(&self, mut child: Child) -> anyhow::Result<Option<(ExitStatus, String)>> {
         loop {
             if let Some(status) = child.try_wait().context("cannot wait for a process")? {
-                return Ok(Some(status));
+                // A quiet process prints at most a message, which a pipe can keep.
+                let mut message = String::new();
+                if let Some(mut pipe) = child.stderr.take() {
+                    let _ = pipe.read_to_string(&mut message);
+                }
+                return Ok(Some((status, message)));
             }
             let interrupted = interrupt::check();
             if interrupted.is_err() || self.failed.load(Ordering::Relaxed) {
@@ -266,8 +279,8 @@ impl Crew<'_> {
 
 /// The figures of the run: those of a part, with what the parts sum up to.
 fn figures(arguments: &RenderArguments, set: &PartSet, workers: usize, seconds: f64) -> Value {
-    let of = |part: &cyltrace_parts::PartFile| part.summary()["figures"].clone();
-    let all: Vec<Value> = set.parts().iter().map(of).collect();
+    let all = set.parts().iter().map(|part| &part.summary()["figures"]);
+    let all: Vec<&Value> = all.collect();
     let mut figures = all[0].clone();
     if let Value::Object(keys) = &mut figures {
         keys.remove("part");
@@ -283,7 +296,12 @@ fn figures(arguments: &RenderArguments, set: &PartSet, workers: usize, seconds: 
         figures["rays"][kind] = json!(count);
         total += count;
     }
-    figures["rays_per_s"] = json!(total as f64 / seconds);
+    // The workers trace side by side.
+    figures["rays_per_s"] = json!(total as f64 / sum("render_s") * workers as f64);
+    let peak = all
+        .iter()
+        .map(|one| one["memory"]["peak_rss_bytes"].as_u64());
+    figures["memory"]["peak_rss_bytes"] = json!(peak.max().flatten());
     figures["output"] = json!(arguments.output);
     figures["workers"] = json!(workers);
     figures["parts"] = json!(set.parts().len());

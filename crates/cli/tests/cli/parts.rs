@@ -272,8 +272,20 @@ fn merge_refuses_what_is_no_whole_and_writes_nothing() {
         &["parts/3", "damaged", "cut off"],
     );
 
-    let message = refused(folder, "merge parts/1 parts/2 parts/4 -o parts/1");
-    assert!(message.contains("is one of the parts"), "{message}");
+    for line in [
+        "merge parts/1 parts/2 parts/4 -o parts/1",
+        "merge parts/1 parts/2 parts/4 -o other.png --json parts/1",
+        "merge parts/1 parts/2 parts/4 -o other.png --json other.png",
+        "parts parts --json parts/1",
+    ] {
+        let message = refused(folder, line);
+        assert!(message.contains("choose"), "{line}: {message}");
+    }
+    fs::create_dir(folder.join("empty")).expect("created");
+    merge("empty", &["no parts in", "empty"]);
+    // A picture is not replaced by a part.
+    let message = refused(folder, "render scene.toml --part 1/2 -o merged.png");
+    assert!(message.contains("not a part"), "{message}");
 }
 
 #[test]
@@ -297,6 +309,13 @@ fn parts_lists_what_is_there_missing_and_damaged() {
     assert_eq!(figures["damaged"][0]["file"], "parts/4");
     let (_, output, _) = cyltrace(folder, &words("parts parts"));
     assert!(output.contains("missing: 2, 4"), "{output}");
+
+    // A part twice, which `merge` refuses.
+    make_parts(folder, "render scene.toml --spp 1", 5);
+    fs::copy(folder.join("parts/2"), folder.join("parts/twice")).expect("copied");
+    let (code, output, _) = cyltrace(folder, &words("parts parts"));
+    assert_eq!(code, 1, "{output}");
+    assert!(output.contains("overlap"), "{output}");
 }
 
 #[test]
@@ -323,12 +342,35 @@ fn resume_keeps_valid_parts_only() {
     run(folder, "render scene.toml --spp 1 --part 2/2 -o other -q");
     run(folder, "merge part other -o merged.png");
 
+    // The figures of a part that is kept.
+    run(folder, &format!("{line} --json figures.json"));
+    let figures: Value = serde_json::from_slice(&bytes(folder, "figures.json")).expect("JSON");
+    assert_eq!(figures["part"], "1/2");
+
     // Another setting, another scene.
     let output = run(folder, &line.replace("--spp 1", "--spp 2"));
     assert!(!output.contains("already there"), "{output}");
     fs::write(folder.join("scene.toml"), SCENE.replace("0.7", "0.6")).expect("written");
     let output = run(folder, &line.replace("--spp 1", "--spp 2"));
     assert!(!output.contains("already there"), "{output}");
+}
+
+#[test]
+fn rows_that_change_are_traced_again() {
+    let folder = scene();
+    let folder = folder.path();
+    let row = |x: u32| format!("{x:06},0,5,0,0,-1\n");
+    // Longer than the ends that every part reads.
+    let rows: String = (0..20_000).map(|_| row(0)).collect();
+    let table = |rows: &str| format!("ox,oy,oz,dx,dy,dz\n{rows}");
+    fs::write(folder.join("rays.csv"), table(&rows)).expect("written");
+    let line = "trace scene.toml --rays rays.csv --part 2/3 -o part --resume";
+    run(folder, line);
+    assert!(run(folder, line).contains("already there"));
+    let (head, tail) = rows.split_at(row(0).len() * 10_000);
+    let changed = format!("{head}{}{}", row(9), &tail[row(0).len()..]);
+    fs::write(folder.join("rays.csv"), table(&changed)).expect("written");
+    assert!(!run(folder, line).contains("already there"));
 }
 
 #[test]
@@ -370,14 +412,30 @@ fn disk_that_fills_up_leaves_no_part() {
 fn one_part_rendered_twice_at_the_same_time_is_whole() {
     let folder = scene();
     let folder = folder.path();
-    let line = words("render scene.toml --spp 4 --part 1/1 -o part -q");
+    let line = words("render scene.toml --spp 512 --part 1/1 -o part -q");
     let both: Vec<Child> = (0..2)
         .map(|_| command(folder, &line).spawn().expect("it runs"))
         .collect();
+    // Both have begun to write.
+    let start = Instant::now();
+    let begun = || {
+        let entries = fs::read_dir(folder).expect("readable");
+        let names = entries.map(|entry| entry.expect("entry").file_name());
+        names
+            .filter(|name| name.to_string_lossy().starts_with(".cyltrace-"))
+            .count()
+    };
+    while begun() < 2 {
+        assert!(
+            start.elapsed() < Duration::from_secs(60),
+            "{} writers",
+            begun()
+        );
+    }
     for mut child in both {
         assert!(child.wait().expect("it ends").success());
     }
-    run(folder, "render scene.toml --spp 4 -o whole.exr -q");
+    run(folder, "render scene.toml --spp 512 -o whole.exr -q");
     run(folder, "merge part -o merged.exr -q");
     assert!(bytes(folder, "whole.exr") == bytes(folder, "merged.exr"));
 }
@@ -396,15 +454,55 @@ fn workers_make_the_picture_of_one_process() {
     assert_eq!(figures["rays"]["camera"], 75 * 50 * 2);
     assert_eq!(figures["workers"], 2);
 
-    // Wrong input is reported once, not tried again.
+    // Wrong input is reported once, and is not tried again.
     fs::write(folder.join("twigs.csv"), "x0\n1\n").expect("written");
-    let message = refused(folder, "render scene.toml -o bad.png --workers 1 --parts 2");
-    assert!(
-        message.contains("twigs.csv") && !message.contains("again"),
-        "{message}"
-    );
-    let message = refused(folder, "render scene.toml -o bad.png --workers 1");
+    let message = refused(folder, "render scene.toml -o bad.png --workers 4");
+    assert_eq!(message.matches("twigs.csv").count(), 1, "{message}");
+    assert!(!message.contains("again"), "{message}");
+    assert!(!folder.join("bad.png.parts").exists());
+}
+
+#[test]
+fn folder_of_workers_keeps_what_is_not_theirs() {
+    let folder = scene();
+    let folder = folder.path();
+    let parts = folder.join("out.png.parts");
+    fs::create_dir(&parts).expect("created");
+    fs::write(parts.join("notes.txt"), "mine").expect("written");
+    let line = "render scene.toml --spp 1 -o out.png --workers 2 -q";
+    let message = refused(folder, line);
     assert!(message.contains("--resume"), "{message}");
+    run(folder, &format!("{line} --resume"));
+    let left = fs::read_dir(&parts).expect("readable");
+    let left: Vec<_> = left
+        .map(|entry| entry.expect("entry").file_name())
+        .collect();
+    assert!(
+        left.contains(&"notes.txt".into()) && left.len() <= 2,
+        "{left:?}"
+    );
+
+    // Another run is at work in the folder.
+    let lock = fs::File::create(parts.join("lock")).expect("created");
+    lock.lock().expect("locked");
+    let message = refused(folder, &format!("{line} --resume"));
+    assert!(message.contains("another run"), "{message}");
+}
+
+#[test]
+fn fewer_workers_use_the_parts_of_more() {
+    let folder = scene();
+    let folder = folder.path();
+    run(folder, "render scene.toml --spp 1 -o whole.png -q");
+    fs::create_dir(folder.join("out.png.parts")).expect("created");
+    for number in 1..=5 {
+        let part = format!("render scene.toml --spp 1 --part {number}/6 -q -o");
+        run(folder, &format!("{part} out.png.parts/{number}.cylpart"));
+    }
+    let line = "render scene.toml --spp 1 -o out.png --workers 1 --resume";
+    let output = run(folder, line);
+    assert!(output.contains("6 parts by 1 workers"), "{output}");
+    assert!(bytes(folder, "whole.png") == bytes(folder, "out.png"));
 }
 
 /// The process of a part that `parent` has started, if there is one.
@@ -416,6 +514,46 @@ fn child_of(parent: u32) -> Option<u32> {
         others.filter_map(|task| fs::read_to_string(task.ok()?.path().join("children")).ok());
     let all: String = others.chain([tasks]).collect::<Vec<_>>().join(" ");
     all.split_whitespace().next()?.parse().ok()
+}
+
+/// The process of a part that `parent` starts, once there is one.
+#[cfg(target_os = "linux")]
+fn first_child_of(parent: u32) -> u32 {
+    let start = Instant::now();
+    loop {
+        assert!(start.elapsed() < Duration::from_secs(60), "no worker");
+        match child_of(parent) {
+            Some(child) => return child,
+            None => thread::sleep(Duration::from_millis(1)),
+        }
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn kill(process: u32) {
+    let mut command = std::process::Command::new("kill");
+    let killed = command.args(["-9", &process.to_string()]).status();
+    assert!(killed.expect("it runs").success());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn workers_end_with_the_process_that_started_them() {
+    let folder = scene();
+    let folder = folder.path();
+    let line = "render scene.toml --size 1000x1000 --spp 4096 -o out.png --workers 1 --parts 1";
+    let mut all = command(folder, &words(line)).spawn().expect("it runs");
+    let child = first_child_of(all.id());
+    kill(all.id());
+    all.wait().expect("it ends");
+    let start = Instant::now();
+    while Path::new(&format!("/proc/{child}")).exists() {
+        assert!(
+            start.elapsed() < Duration::from_secs(20),
+            "the worker goes on"
+        );
+        thread::sleep(Duration::from_millis(10));
+    }
 }
 
 #[cfg(target_os = "linux")]
@@ -433,18 +571,7 @@ fn worker_that_dies_is_started_again() {
     .stderr(Stdio::piped())
     .spawn()
     .expect("it runs");
-    let start = Instant::now();
-    let child = loop {
-        assert!(start.elapsed() < Duration::from_secs(60), "no worker");
-        match child_of(all.id()) {
-            Some(child) => break child,
-            None => thread::sleep(Duration::from_millis(1)),
-        }
-    };
-    let killed = std::process::Command::new("kill")
-        .args(["-9", &child.to_string()])
-        .status();
-    assert!(killed.expect("it runs").success());
+    kill(first_child_of(all.id()));
     let status = all.wait().expect("it ends");
     let mut message = String::new();
     std::io::Read::read_to_string(&mut all.stderr.take().expect("a pipe"), &mut message)
@@ -498,6 +625,42 @@ fn slurm_script_makes_and_merges_parts() {
     let (_, merge) = submitted[1].split_once("--wrap=").expect("a command");
     sh(merge, None);
     assert!(bytes(folder, "whole.png") == bytes(folder, "out.png"));
+
+    assert!(!folder.join("out.png.3.parts/4.cylpart").exists());
+    for (command, words) in [
+        ("render scene.toml -o out.jpg", ".png or .exr"),
+        ("trace scene.toml --rays - -o out.csv", "standard input"),
+        ("render scene.toml -o out.png --json out.json", "--json"),
+        ("render scene.toml -o out.png --part 1/2", "--part"),
+    ] {
+        let message = refused(folder, &format!("farm slurm-script --parts 3 -- {command}"));
+        assert!(message.contains(words), "{command}: {message}");
+    }
+    let array = "farm slurm-script --parts 3 --sbatch=--array=1-9 -- render scene.toml -o out.png";
+    let message = refused(folder, array);
+    assert!(message.contains("--array"), "{message}");
+    // Names are words of the shell, whatever they contain.
+    let name = "a b'c\n$(touch broken).png";
+    let words = [
+        "farm",
+        "slurm-script",
+        "--parts",
+        "1",
+        "--",
+        "render",
+        "scene.toml",
+        "-o",
+        name,
+    ];
+    let (code, script, error) = cyltrace(folder, &words);
+    assert_eq!(code, 0, "{error}");
+    fs::write(folder.join("script"), &script).expect("written");
+    sh(
+        "mkdir -p \"$(printf \"a b'c\\n\\$(touch broken).png.1.parts\")\"; sh -n ./script",
+        None,
+    );
+    sh("sh ./script", None);
+    assert!(!folder.join("broken").exists());
 
     let message = refused(folder, "farm slurm-script --parts 3 -- info scene.toml");
     assert!(message.contains("after `--`"), "{message}");
