@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import shutil
 import signal
@@ -11,6 +12,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
+
+#: Modules that need Dask.
+collect_ignore_glob = [] if importlib.util.find_spec("distributed") else ["cyltrace/farm/*"]
 
 
 @pytest.fixture(autouse=True)
