@@ -406,21 +406,29 @@ def test_program_that_dies(farm: Farm, forest: str) -> None:
     assert farm.starts()[1] == 4
 
 
-def test_interrupted_run_goes_on(farm: Farm, forest: str) -> None:
+@pytest.mark.parametrize("is_local", [True, False])
+def test_interrupted_run_goes_on(
+    farm: Farm, forest: str, is_local: bool, port: int, tmp_path: Path
+) -> None:
     farm.one_process("render", forest, "-o", "expected.png", *SMALL)
+    where = "--local=1" if is_local else f"--scheduler=tcp://127.0.0.1:{port}"
+    if not is_local:
+        farm.scheduler(port)
+        farm.worker(port, tmp_path / "worker")
     held = farm.hold(4)
-    words = ("render", forest, "-o", "found.png", "--local=1", "--parts=6", *SMALL)
+    words = ("render", forest, "-o", "found.png", where, "--parts=6", *SMALL)
     run = farm.begin(*words)
-    process, _ = farm.begun(4)
+    process, worker = farm.begun(4)
     # As a terminal does, to all processes of the run.
     os.killpg(run.pid, signal.SIGINT)
     printed = farm.end(run, code=130)
     assert "the same command" in printed and "Traceback" not in printed
     wait_until(lambda: not is_running(process), "the program ends")
+    assert is_running(worker) == (not is_local)
     held.unlink()
     farm.run(*words)
     assert farm.starts() == {1: 1, 2: 1, 3: 1, 4: 2, 5: 1, 6: 1}
-    assert (farm.folder / "found.png").read_bytes() == (farm.folder / "expected.png").read_bytes()
+    assert (tmp_path / "found.png").read_bytes() == (tmp_path / "expected.png").read_bytes()
 
 
 def test_full_disk(farm: Farm, forest: str) -> None:

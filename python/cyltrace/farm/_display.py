@@ -63,8 +63,10 @@ class Display:
         self.refresh()
 
     def end(self) -> None:
-        """Removes the bar."""
+        """Removes the bar; a line of a run that is complete stays."""
         self._replace("")
+        if self._is_terminal and self._total and self._done == self._total:
+            self._print(f"{self._total} parts{self._times()}\n")
         self._total = 0
 
     def _times(self) -> str:
