@@ -119,8 +119,6 @@ class Round:
         """Looks whether tasks can still end."""
         run = self._run
         run.display.refresh()
-        if self._contents is not None and self._contents.status != "finished":
-            raise ConnectionLost("the workers that had the scene's files are gone")
         if threads(self._client):
             self._last_worker = time.monotonic()
         elif time.monotonic() - self._last_worker > run.patience:
@@ -155,7 +153,9 @@ class Round:
         try:
             return future.result(timeout=TRANSFER)
         except CancelledError as error:
-            raise ConnectionLost("the connection to the scheduler was lost") from error
+            # Dask cancels tasks when a worker dies that alone has the files of the scene.
+            lost = "the scheduler" + (", or a worker's files," if self._run.bundle else "")
+            raise ConnectionLost(f"{lost} was lost") from error
         except KilledWorker:
             raise
         except (OSError, TimeoutError) as error:
