@@ -2,6 +2,7 @@
 
     pip install ./python mpmath trimesh embreex raysect mitsuba
     python python/benchmarks/peers.py [--sticks 100000] [--rays 1000000] [--rounds 3]
+    python python/benchmarks/peers.py --draw peers.json     # after that, with matplotlib
 
 Every program is timed on one thread, in turns, and the least time counts. Wrong hits are those
 of a sample against `oracle.py`, in 60 digits: another stick, or hit for miss. The error is the
@@ -25,6 +26,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from figure import draw
 
 Query = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray | None]]
 
@@ -215,8 +217,14 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--only", action="append", choices=PROGRAMS, help="may be repeated")
     parser.add_argument("--output", type=Path, default=Path("peers.json"))
+    parser.add_argument(
+        "--draw", type=Path, metavar="JSON", help="draw the rows of an earlier run beside them"
+    )
     parser.add_argument("--serve", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
+    if arguments.draw:
+        draw(json.loads(arguments.draw.read_text()), arguments.draw.with_suffix(".svg"))
+        return
     sticks = Sticks.random(arguments.sticks)
     if arguments.serve:
         serve(arguments.serve, sticks, arguments.rays)
