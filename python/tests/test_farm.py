@@ -438,6 +438,9 @@ def test_full_disk(farm: Farm, forest: str) -> None:
     printed = farm.run(*words, code=2, preexec_fn=limit)
     assert "part 1/2" in printed and "large" in printed
     assert list((farm.folder / "found.exr.parts").iterdir()) == []
+    # The same where the part is sent and written here, after the worker.
+    printed = farm.run(*words, "--no-shared", code=2, preexec_fn=limit)
+    assert "part 1/2" in printed and "large" in printed
     farm.run(*words)
     farm.one_process("render", forest, "-o", "expected.exr", *SMALL)
     assert (farm.folder / "found.exr").read_bytes() == (farm.folder / "expected.exr").read_bytes()

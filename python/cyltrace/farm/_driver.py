@@ -11,8 +11,8 @@ from ._cluster import connected
 from ._error import ConnectionLost, FarmError
 from ._round import Round, Run
 
-#: Rounds without a new part, after which parts must be going elsewhere.
-MOST_IDLE_ROUNDS = 3
+#: Rounds in a row without a new part, after which another one would not help.
+MOST_IDLE_ROUNDS = 5
 
 
 def make_all(run: Run, address: str) -> None:
@@ -31,6 +31,7 @@ def make_all(run: Run, address: str) -> None:
     run.compares = bool(run.done)
     todo, idle = missing or [1], 0
     while todo:
+        before = len(todo)
         try:
             with connected(address, run.patience, note) as client:
                 if run.compares:
@@ -39,7 +40,7 @@ def make_all(run: Run, address: str) -> None:
                 Round(run, client).make(todo)
         except ConnectionLost as lost:
             note(f"{lost}; what is missing is made in another round")
-        before, todo = len(todo), _missing(run)
+        todo = _missing(run)
         idle = idle + 1 if len(todo) >= before else 0
         if idle == MOST_IDLE_ROUNDS:
             raise FarmError(

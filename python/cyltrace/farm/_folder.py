@@ -75,17 +75,27 @@ class Folder:
         return Present(of.pop() if of else None, frozenset(numbers), damaged)
 
     def write(self, number: int, of: int, content: bytes) -> None:
-        """Writes a part: it is complete when it gets its name."""
-        handle, temporary = tempfile.mkstemp(prefix=UNFINISHED, dir=self.path)
+        """Writes a part: it is complete when it gets its name.
+
+        Raises
+        ------
+        FarmError
+            If it cannot be written.
+        """
+        path = self.path / part_name(number, of)
         try:
-            with open(handle, "wb") as file:
-                file.write(content)
-                file.flush()
-                os.fsync(file.fileno())
-            os.rename(temporary, self.path / part_name(number, of))
-        except OSError:
-            os.unlink(temporary)
-            raise
+            handle, temporary = tempfile.mkstemp(prefix=UNFINISHED, dir=self.path)
+            try:
+                with open(handle, "wb") as file:
+                    file.write(content)
+                    file.flush()
+                    os.fsync(file.fileno())
+                os.rename(temporary, path)
+            except OSError:
+                os.unlink(temporary)
+                raise
+        except OSError as error:
+            raise FarmError(f"cannot write {str(path)!r}: {error.strerror}") from error
 
     def has(self, number: int, of: int) -> bool:
         """Whether a part has its name here."""

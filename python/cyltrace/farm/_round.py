@@ -104,13 +104,22 @@ class Round:
         if bundle is not None:
             # One object, so that Dask sees many equal tasks and spreads them evenly.
             key = f"cyltrace-files-{bundle.key}"
-            self._contents = self._client.scatter({key: bundle.contents})[key]
+            try:
+                self._contents = self._client.scatter({key: bundle.contents})[key]
+            except (OSError, TimeoutError) as error:
+                raise ConnectionLost(f"the scene's files did not arrive ({error})") from error
 
     def _submit(self, numbers: list[int]) -> None:
         keys = [f"cyltrace-part-{number}-{uuid.uuid4().hex}" for number in numbers]
-        futures = self._client.map(
-            self._code, numbers, key=keys, pure=False, job=self._run.job, contents=self._contents
-        )
+        job, contents = self._run.job, self._contents
+        try:
+            futures = self._client.map(
+                self._code, numbers, key=keys, pure=False, job=job, contents=contents
+            )
+        except Exception as error:
+            if self._client.status == "running":
+                raise
+            raise ConnectionLost("the scheduler was lost") from error
         for number, future in zip(numbers, futures, strict=True):
             self._tasks[future.key] = number, future
             future.add_done_callback(self._ended.put)
