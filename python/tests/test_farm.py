@@ -46,8 +46,9 @@ def is_running(process: int) -> bool:
 class Farm:
     """Runs of ``python -m cyltrace.farm`` whose program notes what it does.
 
-    The program is a script that runs the real one. It writes a line for every part to ``log``.
-    For the part of :meth:`hold` it waits before that; for the part of :meth:`kill` it dies.
+    The program is a script that runs the real one. For every part, it writes a line to ``log``;
+    then it waits while there is a file ``hold.PART``, and dies if there is a file ``die.PART``,
+    which it removes, or ``die_always.PART``.
     """
 
     def __init__(self, program: str, folder: Path) -> None:
@@ -95,8 +96,11 @@ class Farm:
 
     def begun(self, part: int) -> tuple[int, int]:
         """Waits until a part is begun. Returns its process and its worker's."""
-        of_part = lambda: [entry for entry in self.log() if entry[0] == part]  # noqa: E731
-        _, process, worker = wait_until(of_part, f"part {part} begins")[-1]
+
+        def entries() -> list[list[int]]:
+            return [entry for entry in self.log() if entry[0] == part]
+
+        _, process, worker = wait_until(entries, f"part {part} begins")[-1]
         return process, worker
 
     def begin(self, *words: str | Path, **options: Any) -> subprocess.Popen[str]:
@@ -433,8 +437,11 @@ def test_interrupted_run_goes_on(
 
 def test_full_disk(farm: Farm, forest: str) -> None:
     words = ("render", forest, "-o", "found.exr", "--local=1", "--parts=2", *SMALL)
-    limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000))  # noqa: E731
-    # A part has 86 kB.
+
+    def limit() -> None:
+        # A part has 86 kB.
+        resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000))
+
     printed = farm.run(*words, code=2, preexec_fn=limit)
     assert "part 1/2" in printed and "large" in printed
     assert list((farm.folder / "found.exr.parts").iterdir()) == []
