@@ -59,14 +59,14 @@ class Farm:
         self.program = self._notes / "program"
         self.program.write_text(
             f"""#!/bin/sh
-            cd_notes={self._notes}
+            notes={self._notes}
             for word; do
                 case $word in --part=*/*)
                     part=${{word#--part=}}; part=${{part%/*}}
-                    echo "$part $$ $PPID" >> $cd_notes/log
-                    if [ -e $cd_notes/die.$part ]; then rm $cd_notes/die.$part; kill -9 $$; fi
-                    if [ -e $cd_notes/die_always.$part ]; then kill -9 $$; fi
-                    while [ -e $cd_notes/hold.$part ]; do sleep 0.05; done;;
+                    echo "$part $$ $PPID" >> $notes/log
+                    if [ -e $notes/die.$part ]; then rm $notes/die.$part; kill -9 $$; fi
+                    if [ -e $notes/die_always.$part ]; then kill -9 $$; fi
+                    while [ -e $notes/hold.$part ]; do sleep 0.05; done;;
                 esac
             done
             exec {program} "$@"
