@@ -14,7 +14,7 @@ pub(super) fn lines(path: &Path) -> io::Result<u64> {
     Ok(1 + line_ends(File::open(path)?)?)
 }
 
-/// The number of lines in the first bytes of a file, of which the last ends there.
+/// The number of lines that end within the first bytes of a file.
 pub(super) fn lines_before(path: &Path, place: u64) -> io::Result<u64> {
     line_ends(File::open(path)?.take(place))
 }
