@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use super::{SCENE, TWIGS, bytes, make_parts, refused, run, scene};
+use super::{SCENE, TWIGS, bytes, make_parts, refused, run, scene, unfinished};
 use crate::program::{command, cyltrace, words};
 
 #[test]
@@ -204,19 +204,8 @@ fn one_part_rendered_twice_at_the_same_time_is_whole() {
         .collect();
     // Both have begun to write.
     let start = Instant::now();
-    let begun = || {
-        let entries = fs::read_dir(folder).expect("readable");
-        let names = entries.map(|entry| entry.expect("entry").file_name());
-        names
-            .filter(|name| name.to_string_lossy().starts_with(".cyltrace-"))
-            .count()
-    };
-    while begun() < 2 {
-        assert!(
-            start.elapsed() < Duration::from_secs(60),
-            "{} writers",
-            begun()
-        );
+    while unfinished(folder) < 2 {
+        assert!(start.elapsed() < Duration::from_secs(60), "one writer");
     }
     for mut child in both {
         assert!(child.wait().expect("it ends").success());

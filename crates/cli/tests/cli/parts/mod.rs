@@ -78,3 +78,12 @@ fn make_parts(folder: &Path, line: &str, count: u64) {
 fn bytes(folder: &Path, name: &str) -> Vec<u8> {
     fs::read(folder.join(name)).expect("a file")
 }
+
+/// The number of files that processes are writing in a folder.
+fn unfinished(folder: &Path) -> usize {
+    let entries = fs::read_dir(folder).expect("readable");
+    let names = entries.map(|entry| entry.expect("entry").file_name());
+    names
+        .filter(|name| name.to_string_lossy().starts_with(".cyltrace-"))
+        .count()
+}

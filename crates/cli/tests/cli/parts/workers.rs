@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use super::{bytes, refused, run, scene};
+use super::{bytes, refused, run, scene, unfinished};
 use crate::program::{command, words};
 
 #[test]
@@ -113,17 +113,30 @@ fn workers_end_with_the_process_that_started_them() {
     let folder = scene();
     let folder = folder.path();
     let line = "render scene.toml --size 1000x1000 --spp 4096 -o out.png --workers 1 --parts 1";
-    let mut all = command(folder, &words(line)).spawn().expect("it runs");
+    let mut all = command(folder, &words(line))
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("it runs");
     let child = first_child_of(all.id());
+    // In the middle of its part, long after its start.
+    let start = Instant::now();
+    while unfinished(&folder.join("out.png.parts")) == 0 {
+        assert!(
+            start.elapsed() < Duration::from_secs(60),
+            "no part is begun"
+        );
+        thread::sleep(Duration::from_millis(1));
+    }
     kill(all.id());
     all.wait().expect("it ends");
     let start = Instant::now();
-    while Path::new(&format!("/proc/{child}")).exists() {
-        assert!(
-            start.elapsed() < Duration::from_secs(20),
-            "the worker goes on"
-        );
+    let is_there = || Path::new(&format!("/proc/{child}")).exists();
+    while is_there() && start.elapsed() < Duration::from_secs(20) {
         thread::sleep(Duration::from_millis(10));
+    }
+    if is_there() {
+        kill(child);
+        panic!("the worker went on");
     }
 }
 
