@@ -91,12 +91,14 @@ class Hits:
     @property
     def point(self) -> Floats:
         """(n, 3) The hit point, put onto the surface."""
-        return self._column("point")
+        self._vectors()
+        return self._columns["point"]
 
     @property
     def normal(self) -> Floats:
         """(n, 3) The outward unit normal, whichever way the ray goes."""
-        return self._column("normal")
+        self._vectors()
+        return self._columns["normal"]
 
     @property
     def uv(self) -> Floats:
@@ -221,6 +223,11 @@ class Hits:
             )
         origins = self._core.spawn(directions).reshape(-1, 3)
         return origins, np.broadcast_to(directions, origins.shape).copy()
+
+    def _vectors(self) -> None:
+        if "point" not in self._columns:
+            point, normal = (values.reshape(-1, 3) for values in self._core.vectors())
+            self._columns |= {"point": point, "normal": normal}
 
     def _column(self, name: str) -> Any:
         def column() -> Any:

@@ -48,7 +48,8 @@ pub enum Block {
     /// The first hits of rays. A ray has the number of its hit, or [`MISS`].
     First {
         slots: Vec<u32>,
-        hits: Vec<(Ray, FirstHit)>,
+        rays: Vec<Ray>,
+        hits: Vec<FirstHit>,
     },
     /// Hits with all of their fields.
     Whole(Vec<PartialHit>),
@@ -58,18 +59,21 @@ pub enum Block {
 pub const MISS: u32 = u32::MAX;
 
 impl Block {
-    /// The block of these answers.
-    pub fn first(answers: impl Iterator<Item = Option<(Ray, FirstHit)>>) -> Self {
-        let (mut slots, mut hits) = (Vec::new(), Vec::new());
-        for answer in answers {
-            slots.push(if answer.is_some() {
-                hits.len() as u32
-            } else {
-                MISS
-            });
-            hits.extend(answer);
-        }
-        Self::First { slots, hits }
+    /// The block of the first hits of rays. Only rays that hit are kept.
+    pub fn first(mut rays: Vec<Ray>, hits: Vec<Option<FirstHit>>) -> Self {
+        let mut next = 0;
+        let slot = |hit: &Option<FirstHit>| {
+            let slot = if hit.is_some() { next } else { MISS };
+            next += u32::from(hit.is_some());
+            slot
+        };
+        let slots = hits.iter().map(slot).collect();
+        let mut each = hits.iter();
+        rays.retain(|_| each.next().is_some_and(Option::is_some));
+        rays.shrink_to_fit();
+        let mut hits: Vec<FirstHit> = hits.into_iter().flatten().collect();
+        hits.shrink_to_fit();
+        Self::First { slots, rays, hits }
     }
 
     fn len(&self) -> usize {
@@ -79,51 +83,59 @@ impl Block {
         }
     }
 
-    /// Computes a value of every answer.
-    fn values<T: Clone>(
+    /// Computes `write` of every hit and its target, of the targets of all answers.
+    fn write<T>(
         &self,
         tracer: &Tracer,
         fields: HitFields,
-        missing: &T,
-        get: &impl Fn(&PartialHit) -> T,
-    ) -> Vec<T> {
+        targets: impl Iterator<Item = T>,
+        write: &impl Fn(&PartialHit, T),
+    ) {
         match self {
-            Self::First { slots, hits } => {
-                let value = |&slot: &u32| match hits.get(slot as usize) {
-                    Some((ray, first)) => get(&tracer.hit_with(ray, first, fields)),
-                    None => missing.clone(),
-                };
-                slots.iter().map(value).collect()
+            Self::First { slots, rays, hits } => {
+                for (&slot, target) in slots.iter().zip(targets) {
+                    if slot != MISS {
+                        let (ray, first) = (&rays[slot as usize], &hits[slot as usize]);
+                        write(&tracer.hit_with(ray, first, fields), target);
+                    }
+                }
             }
-            Self::Whole(hits) => hits.iter().map(get).collect(),
+            Self::Whole(hits) => hits
+                .iter()
+                .zip(targets)
+                .for_each(|(hit, target)| write(hit, target)),
         }
     }
 
-    /// As [`Block::values`], of what the query itself finds: nothing is computed again.
-    fn found_values<T: Clone>(
+    /// As [`Block::write`], of what the query itself finds: nothing is computed again.
+    fn write_found<T>(
         &self,
-        missing: &T,
+        targets: &mut [T],
         of_first: &impl Fn(&FirstHit) -> T,
         of_whole: &impl Fn(&PartialHit) -> T,
-    ) -> Vec<T> {
+    ) {
         match self {
-            Self::First { slots, hits } => {
-                let value = |&slot: &u32| {
-                    let hit = hits.get(slot as usize);
-                    hit.map_or_else(|| missing.clone(), |(_, first)| of_first(first))
-                };
-                slots.iter().map(value).collect()
+            Self::First { slots, hits, .. } => {
+                for (slot, target) in slots.iter().zip(targets) {
+                    if let Some(first) = hits.get(*slot as usize) {
+                        *target = of_first(first);
+                    }
+                }
             }
-            Self::Whole(hits) => hits.iter().map(of_whole).collect(),
+            Self::Whole(hits) => {
+                for (hit, target) in hits.iter().zip(targets) {
+                    *target = of_whole(hit);
+                }
+            }
         }
     }
 
     /// The answer at a position.
     fn answer(&self, position: usize) -> Answer<'_> {
         match self {
-            Self::First { slots, hits } => match hits.get(slots[position] as usize) {
-                Some(hit) => Answer::First(hit),
-                None => Answer::Miss,
+            Self::First { slots, rays, hits } => match slots[position] {
+                MISS => Answer::Miss,
+                slot => Answer::First(&rays[slot as usize], &hits[slot as usize]),
             },
             Self::Whole(hits) => Answer::Whole(&hits[position]),
         }
@@ -132,7 +144,7 @@ impl Block {
 
 enum Answer<'a> {
     Miss,
-    First(&'a (Ray, FirstHit)),
+    First(&'a Ray, &'a FirstHit),
     Whole(&'a PartialHit),
 }
 
@@ -159,18 +171,18 @@ impl Found {
         missing: T,
         get: impl Fn(&PartialHit) -> T + Sync,
     ) -> Vec<T> {
-        let tracing = &self.tracing;
+        let tracer = &self.tracing.tracer;
+        let write = |hit: &PartialHit, target: &mut T| *target = get(hit);
         py.detach(|| {
-            let blocks = self.blocks.par_iter();
-            let values = blocks.map(|block| block.values(&tracing.tracer, fields, &missing, &get));
-            tracing
-                .workers
-                .install(|| values.collect::<Vec<_>>())
-                .concat()
+            let mut values = vec![missing; self.len()];
+            self.for_each_block(self.targets(&mut values), |block, targets| {
+                block.write(tracer, fields, targets.iter_mut(), &write);
+            });
+            values
         })
     }
 
-    /// See [`Block::found_values`].
+    /// See [`Block::write_found`].
     fn found_values<T: Clone + Send + Sync>(
         &self,
         py: Python<'_>,
@@ -179,11 +191,34 @@ impl Found {
         of_whole: impl Fn(&PartialHit) -> T + Sync,
     ) -> Vec<T> {
         py.detach(|| {
-            let blocks = self.blocks.par_iter();
-            let values = blocks.map(|block| block.found_values(&missing, &of_first, &of_whole));
-            let values: Vec<_> = self.tracing.workers.install(|| values.collect());
-            values.concat()
+            let mut values = vec![missing; self.len()];
+            self.for_each_block(self.targets(&mut values), |block, targets| {
+                block.write_found(targets, &of_first, &of_whole);
+            });
+            values
         })
+    }
+
+    /// How many answers there are.
+    fn len(&self) -> usize {
+        self.blocks.iter().map(Block::len).sum()
+    }
+
+    /// The targets of each block, of those of all answers.
+    fn targets<'a, T>(&self, mut all: &'a mut [T]) -> Vec<&'a mut [T]> {
+        let targets = self.blocks.iter().map(|block| {
+            let (targets, rest) = std::mem::take(&mut all).split_at_mut(block.len());
+            all = rest;
+            targets
+        });
+        targets.collect()
+    }
+
+    /// Calls `write` for each block and its targets, on all threads.
+    fn for_each_block<T: Send>(&self, targets: Vec<T>, write: impl Fn(&Block, T) + Sync) {
+        let blocks = self.blocks.par_iter().zip(targets);
+        let each = || blocks.for_each(|(block, targets)| write(block, targets));
+        self.tracing.workers.install(each);
     }
 }
 
@@ -195,7 +230,35 @@ fn array<T: numpy::Element>(py: Python<'_>, values: Vec<T>) -> Bound<'_, PyAny> 
 #[pymethods]
 impl Found {
     fn __len__(&self) -> usize {
-        self.blocks.iter().map(Block::len).sum()
+        self.len()
+    }
+
+    /// The columns `point` and `normal`, the rows of each one after the other. Most of the work
+    /// is to find the hit again, so that both cost little more than one.
+    fn vectors<'py>(&self, py: Python<'py>) -> (Bound<'py, PyAny>, Bound<'py, PyAny>) {
+        let tracer = &self.tracing.tracer;
+        let fields = HitFields::POINT | HitFields::NORMAL;
+        let write = |hit: &PartialHit, target: (&mut [f64; 3], &mut [f64; 3])| {
+            *target.0 = hit.point().expect("requested").to_array();
+            *target.1 = hit.normal().expect("requested").to_array();
+        };
+        let (points, normals) = py.detach(|| {
+            let mut points = vec![[f64::NAN; 3]; self.len()];
+            let mut normals = points.clone();
+            let both = self
+                .targets(&mut points)
+                .into_iter()
+                .zip(self.targets(&mut normals));
+            self.for_each_block(both.collect(), |block, (points, normals)| {
+                let targets = points.iter_mut().zip(normals);
+                block.write(tracer, fields, targets, &write);
+            });
+            (points, normals)
+        });
+        (
+            array(py, points.into_flattened()),
+            array(py, normals.into_flattened()),
+        )
     }
 
     /// A column by its name; the rows of `point` and the like one after the other.
@@ -206,16 +269,6 @@ impl Found {
             "t" => {
                 let t = self.found_values(py, f64::INFINITY, |first| first.t, PartialHit::t);
                 array(py, t)
-            }
-            "point" => {
-                let point = |hit: &PartialHit| hit.point().expect("requested").to_array();
-                let points = self.values(py, HitFields::POINT, [NAN; 3], point);
-                array(py, points.into_flattened())
-            }
-            "normal" => {
-                let normal = |hit: &PartialHit| hit.normal().expect("requested").to_array();
-                let normals = self.values(py, HitFields::NORMAL, [NAN; 3], normal);
-                array(py, normals.into_flattened())
             }
             "uv" => {
                 let uv = |hit: &PartialHit| <[f64; 2]>::from(hit.uv().expect("requested"));
@@ -289,14 +342,21 @@ impl Found {
                 if is_whole {
                     let whole = answers.filter_map(|answer| match answer {
                         Answer::Whole(hit) => Some(hit.clone()),
-                        Answer::Miss | Answer::First(_) => None,
+                        Answer::Miss | Answer::First(..) => None,
                     });
                     return Block::Whole(whole.collect());
                 }
-                Block::first(answers.map(|answer| match answer {
-                    Answer::First(hit) => Some(hit.clone()),
-                    Answer::Miss | Answer::Whole(_) => None,
-                }))
+                let (mut slots, mut rays, mut hits) = (Vec::new(), Vec::new(), Vec::new());
+                for answer in answers {
+                    let Answer::First(ray, hit) = answer else {
+                        slots.push(MISS);
+                        continue;
+                    };
+                    slots.push(hits.len() as u32);
+                    rays.push(*ray);
+                    hits.push(hit.clone());
+                }
+                Block::First { slots, rays, hits }
             });
             blocks.collect()
         });
@@ -327,7 +387,7 @@ impl Found {
                     let direction = directions.row(first + position);
                     let ray = match block.answer(position) {
                         Answer::Miss => None,
-                        Answer::First((ray, first)) => tracing
+                        Answer::First(ray, first) => tracing
                             .tracer
                             .hit_with(ray, first, HitFields::SPAWN)
                             .spawn(direction),

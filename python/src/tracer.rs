@@ -134,10 +134,7 @@ impl PyTracer {
             let rays = rays.rows(rows)?;
             let mut hits = Vec::new();
             self.0.tracer.first_hits(&rays, &mut hits);
-            let answers = rays.into_iter().zip(hits);
-            Ok(Block::first(
-                answers.map(|(ray, hit)| hit.map(|hit| (ray, hit))),
-            ))
+            Ok(Block::first(rays, hits))
         })?;
         Ok(Found::new(Arc::clone(&self.0), blocks))
     }
