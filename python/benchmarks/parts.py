@@ -103,7 +103,8 @@ def report(measured: Measured, arguments: argparse.Namespace) -> None:
     (rays, part), *_ = np.linalg.lstsq(matrix, np.ones_like(times), rcond=None)
     width, height = map(int, arguments.size.split("x"))
     samples = width * height * arguments.spp
-    print(f"{os.cpu_count()} processors; {arguments.scene}, {arguments.size}, {arguments.spp} samples")
+    what = f"{arguments.scene}, {arguments.size}, {arguments.spp} samples"
+    print(f"{os.cpu_count()} processors; {what}")
     print("| run | seconds | over the whole |")
     print("|---|---|---|")
     for what, seconds in measured.times.items():
@@ -123,7 +124,7 @@ def model(sample: float, part: float, merge: float) -> None:
     half a part's time on average. Then one machine merges.
     """
     samples, pixels = 1e12, 65536 * 4096
-    print(f"\n10^12 samples, 65536 x 4096 pixels, parts of at least 20 s:")
+    print("\n10^12 samples, 65536 x 4096 pixels, parts of at least 20 s:")
     print("| machines | parts | rays | start of parts | moving | merge | all |")
     print("|---|---|---|---|---|---|---|")
     for machines in [1, 10, 100, 1_000, 10_000, 100_000]:
@@ -133,7 +134,8 @@ def model(sample: float, part: float, merge: float) -> None:
         moving = pixels * PIXEL_BYTES / NETWORK
         merging = pixels * merge
         whole = tracing + starting + moving + merging
-        cells = [f"{machines}", f"{parts}", *map(duration, [tracing, starting, moving, merging, whole])]
+        times = map(duration, [tracing, starting, moving, merging, whole])
+        cells = [f"{machines}", f"{parts}", *times]
         print(f"| {' | '.join(cells)} |")
 
 
