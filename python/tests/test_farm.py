@@ -435,6 +435,21 @@ def test_interrupted_run_goes_on(
     assert (tmp_path / "found.png").read_bytes() == (tmp_path / "expected.png").read_bytes()
 
 
+def test_one_run_at_a_time(farm: Farm, forest: str) -> None:
+    held = farm.hold(1)
+    words = ("render", forest, "-o", "found.png", "--local=1", "--parts=2", *SMALL)
+    run = farm.begin(*words)
+    farm.begun(1)
+    assert "another run" in farm.run(*words, code=2)
+    # The program's own workers have the same folder and the same lock.
+    command = [farm.real, "render", forest, "-o", "found.png", "--workers=1", "--resume", *SMALL]
+    program = subprocess.run(command, cwd=farm.folder, stderr=subprocess.PIPE, text=True)
+    assert program.returncode == 2 and "another run" in program.stderr
+    held.unlink()
+    farm.end(run)
+    assert not (farm.folder / "found.png.parts").exists()
+
+
 def test_full_disk(farm: Farm, forest: str) -> None:
     words = ("render", forest, "-o", "found.exr", "--local=1", "--parts=2", *SMALL)
 
@@ -444,7 +459,8 @@ def test_full_disk(farm: Farm, forest: str) -> None:
 
     printed = farm.run(*words, code=2, preexec_fn=limit)
     assert "part 1/2" in printed and "large" in printed
-    assert list((farm.folder / "found.exr.parts").iterdir()) == []
+    left = [path.name for path in (farm.folder / "found.exr.parts").iterdir()]
+    assert left == ["lock"]
     # The same where the part is sent and written here, after the worker.
     printed = farm.run(*words, "--no-shared", code=2, preexec_fn=limit)
     assert "part 1/2" in printed and "large" in printed

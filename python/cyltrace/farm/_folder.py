@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import IO
 
 from ._error import FarmError
 from ._part import part_name
@@ -13,6 +15,8 @@ from ._program import Program
 
 #: The names of files that the program, or this package, has not finished.
 UNFINISHED = ".cyltrace-"
+#: The file that a run locks, as ``cyltrace render --workers`` does, so that no other works there.
+LOCK = "lock"
 
 
 @dataclass(frozen=True)
@@ -32,15 +36,30 @@ class Folder:
     def __init__(self, output: str, program: Program) -> None:
         self.path = Path(os.path.abspath(output) + ".parts")
         self._program = program
+        self._lock: IO[str] | None = None
 
     def create(self) -> None:
-        """Makes the folder if it is not there."""
+        """Makes the folder if it is not there, and locks it until this program ends.
+
+        Raises
+        ------
+        FarmError
+            If it cannot be made, or another run works in it.
+        """
         try:
             self.path.mkdir(exist_ok=True)
+            self._lock = (self.path / LOCK).open("w")
         except OSError as error:
             raise FarmError(
                 f"cannot make the folder {str(self.path)!r}: {error.strerror}"
             ) from error
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            raise FarmError(f"another run is making the parts in {str(self.path)!r}") from error
+        except OSError:
+            # A file system without locks.
+            pass
 
     def present(self) -> Present:
         """The parts that are there.
@@ -115,7 +134,8 @@ class Folder:
         self.clean()
         for number in range(1, of + 1):
             self.remove_part(number, of)
-        if not any(self.path.iterdir()):
+        if all(path.name == LOCK for path in self.path.iterdir()):
+            (self.path / LOCK).unlink(missing_ok=True)
             self.path.rmdir()
 
 
