@@ -348,7 +348,7 @@ mod tests {
             };
             assert!(passed.iter().any(begins), "--{option} is not passed on");
         }
-        passed.splice(1..1, ["-o", "part"].map(OsString::from));
+        passed.splice(1..1, ["-o", "part", "--part=1/2"].map(OsString::from));
         let worker = render(&passed);
         let stated = |arguments: &RenderArguments| {
             let memory = format!("{:?}", arguments.memory);
