@@ -148,6 +148,8 @@ pub(super) fn render(
     }
     let rays = places
         .into_par_iter()
+        // At the end of a part, threads wait for a tile, not for a share of them.
+        .with_max_len(1)
         .map(|(tile, place)| {
             let rays = render_tile(view, settings, &tile, place, cancelled)?;
             progress(place.len() as u64);
