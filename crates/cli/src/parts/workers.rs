@@ -351,7 +351,7 @@ mod tests {
         passed.splice(1..1, ["-o", "part", "--part=1/2"].map(OsString::from));
         let worker = render(&passed);
         let stated = |arguments: &RenderArguments| {
-            let memory = format!("{:?}", arguments.memory);
+            let layout = arguments.memory.layout;
             let integrator = format!("{:?}", arguments.integrator);
             let scene = arguments.scene.clone();
             let numbers = (arguments.size, arguments.spp, arguments.seed);
@@ -360,12 +360,14 @@ mod tests {
                 scene,
                 numbers,
                 integrator,
-                memory,
+                layout,
                 arguments.decisions.exact,
                 max_isa,
             )
         };
         assert_eq!(stated(&worker), stated(&arguments));
+        // Half of the threads and of the memory.
         assert_eq!(worker.common.threads.map(usize::from), Some(3));
+        assert_eq!(worker.memory.max_memory, Some(500_000_000));
     }
 }
