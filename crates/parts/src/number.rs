@@ -12,10 +12,34 @@ pub const GREATEST_PARTS: u64 = 1_000_000;
 
 /// Part `number` of `of`, from 1; written `3/16`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "Stated", into = "Stated")]
 pub struct PartNumber {
-    #[serde(rename = "part")]
     number: NonZeroU64,
     of: NonZeroU64,
+}
+
+/// The numbers as a file has them.
+#[derive(Serialize, Deserialize)]
+struct Stated {
+    part: u64,
+    of: u64,
+}
+
+impl TryFrom<Stated> for PartNumber {
+    type Error = String;
+
+    fn try_from(Stated { part, of }: Stated) -> Result<Self, String> {
+        Self::new(part, of).ok_or_else(|| format!("there is no part {part} of {of}"))
+    }
+}
+
+impl From<PartNumber> for Stated {
+    fn from(number: PartNumber) -> Self {
+        Self {
+            part: number.number(),
+            of: number.of(),
+        }
+    }
 }
 
 impl PartNumber {
@@ -118,6 +142,21 @@ mod tests {
         ] {
             let message = wrong.parse::<PartNumber>().expect_err(wrong);
             assert!(message.contains("K/N"), "{message}");
+        }
+    }
+
+    #[test]
+    fn number_in_a_file_is_one_that_can_be() {
+        let read = |text: &str| serde_json::from_str::<PartNumber>(text).ok();
+        let part = read(r#"{"part":3,"of":16}"#).expect("valid");
+        let written = serde_json::to_string(&part).expect("numbers");
+        assert_eq!(written, r#"{"part":3,"of":16}"#);
+        for wrong in [
+            r#"{"part":0,"of":1}"#,
+            r#"{"part":5,"of":4}"#,
+            r#"{"part":1,"of":18446744073709551615}"#,
+        ] {
+            assert_eq!(read(wrong), None, "{wrong}");
         }
     }
 }
