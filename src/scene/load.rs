@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use rayon::prelude::*;
 use toml::Spanned;
 
 use super::camera::camera;
@@ -12,7 +13,7 @@ use super::error::SceneError;
 use super::formats::Context;
 use super::graph::{self, Node};
 use super::materials::{Materials, check_names};
-use super::named_table::Tables;
+use super::named_table::{PipeMemory, Tables};
 use super::names::{quoted, suggestion};
 use super::origins::Origins;
 use super::placing::{Edge, Placements};
@@ -35,18 +36,21 @@ pub(super) fn lower(
     document: Document,
     memory: Option<u64>,
 ) -> Result<Scene, SceneError> {
-    let tables = Tables::new(source, memory);
+    let memory = PipeMemory::new(memory);
     let materials = Materials::new(source, &document.material)?;
     let index = prototype_index(source, &document.prototype)?;
     let loader = Loader {
         source,
-        tables: &tables,
+        memory: &memory,
         records: records(source, document.records.as_ref())?,
         materials: &materials,
         prototypes: &index,
     };
-    let bodies = document.bodies().map(|body| loader.body(&body));
-    let bodies = bodies.collect::<Result<Vec<_>, _>>()?;
+    // Prototypes are loaded side by side; the first error in their order is the one reported.
+    let bodies: Vec<Body> = document.bodies().collect();
+    let bodies = bodies.par_iter().with_max_len(1);
+    let bodies: Vec<_> = bodies.map(|body| loader.body(body)).collect();
+    let bodies = bodies.into_iter().collect::<Result<Vec<_>, _>>()?;
     let nodes: Vec<Node> = bodies.iter().map(Lowered::node).collect();
     graph::check(source, &nodes)?;
 
@@ -58,11 +62,9 @@ pub(super) fn lower(
         sky.as_ref(),
         document.background.as_ref(),
     )?;
-    let notes = bodies
-        .iter()
-        .flat_map(|body| body.notes.clone())
-        .collect::<Vec<_>>();
-    let notes = notes.into_iter();
+    let notes = bodies.iter().flat_map(|body| body.notes.clone());
+    let table_notes = bodies.iter().flat_map(|body| body.table_notes.clone());
+    let notes = notes.chain(table_notes).collect();
     Ok(Scene {
         camera: camera(source, &keys(document.camera))?,
         film: film(source, &keys(document.film))?,
@@ -71,7 +73,7 @@ pub(super) fn lower(
         sky: lights.sky,
         background: lights.background,
         skipped_rows: bodies.iter().map(|body| body.skipped).sum(),
-        notes: notes.chain(tables.into_notes()).collect(),
+        notes,
         prototypes: bodies.into_iter().map(|body| body.prototype).collect(),
         materials: materials.list,
     })
@@ -112,7 +114,7 @@ fn prototype_index(
 /// The data that the entries of a prototype refer to.
 struct Loader<'a> {
     source: &'a Source,
-    tables: &'a Tables<'a>,
+    memory: &'a PipeMemory,
     records: Records,
     materials: &'a Materials,
     prototypes: &'a HashMap<String, PrototypeIndex>,
@@ -125,6 +127,7 @@ struct Lowered {
     reach: f64,
     skipped: u64,
     notes: Vec<String>,
+    table_notes: Vec<String>,
 }
 
 impl Lowered {
@@ -142,12 +145,12 @@ impl Lowered {
 /// kind, the cylinders.
 macro_rules! add_in_order {
     (
-        $loader:ident $solids:ident $body:ident;
+        $loader:ident $solids:ident $body:ident $tables:ident;
         { $first_type:ident $first:ident $($first_rest:tt)* }
         $({ $type:ident $name:ident $($rest:tt)* })*
     ) => {
         $loader.add_solids(&mut $solids, $body.$first)?;
-        $loader.add_files(&mut $solids, $body)?;
+        $loader.add_files(&mut $solids, $body, &$tables)?;
         $($loader.add_solids(&mut $solids, $body.$name)?;)*
     };
 }
@@ -156,8 +159,9 @@ impl Loader<'_> {
     /// Collects the solids and placements of a prototype, in the order of their numbers.
     fn body(&self, body: &Body) -> Result<Lowered, SceneError> {
         let source = self.source;
+        let tables = Tables::new(source, self.memory);
         let mut solids = SolidCollector::new(self.records);
-        for_each_solid!(add_in_order self solids body;);
+        for_each_solid!(add_in_order self solids body tables;);
         for (operation, tables) in body.operations() {
             self.add_compositions(&mut solids, operation, tables)?;
         }
@@ -170,7 +174,7 @@ impl Loader<'_> {
         }
         for Keys(keys) in body.instance_table {
             let first = placements.list.len() as u32;
-            placements.add_table(self.tables, keys, self.placed(&keys.of)?)?;
+            placements.add_table(&tables, keys, self.placed(&keys.of)?)?;
             let end = placements.list.len() as u32;
             placement_origins.add(keys.file.get_ref().as_str().into(), Some(0), first, end);
         }
@@ -195,14 +199,20 @@ impl Loader<'_> {
             reach: solids.reach,
             skipped: solids.skipped,
             notes: solids.notes,
+            table_notes: tables.into_notes(),
         })
     }
 
     /// Adds the solids from files.
-    fn add_files(&self, solids: &mut SolidCollector, body: &Body) -> Result<(), SceneError> {
+    fn add_files(
+        &self,
+        solids: &mut SolidCollector,
+        body: &Body,
+        tables: &Tables,
+    ) -> Result<(), SceneError> {
         let context = Context {
             source: self.source,
-            tables: self.tables,
+            tables,
             materials: self.materials,
         };
         for file in body.files() {

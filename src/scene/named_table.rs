@@ -1,8 +1,9 @@
 //! Opens the tables that a scene file names, finds their columns and limits their memory.
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::fs::File;
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use toml::Spanned;
 
@@ -12,13 +13,15 @@ use super::source::Source;
 use super::table::{Column, ColumnKey, Decimal, Delimiter, Row, Rows, Table, TableFormat, input};
 use super::values::ThreeColumns;
 
-/// The data that all tables of a scene file share.
+/// The data that all tables of a prototype share.
 pub(super) struct Tables<'a> {
     pub source: &'a Source,
-    /// Bytes left for the rows of pipes, which cannot be counted in advance.
-    memory: Cell<u64>,
+    memory: &'a PipeMemory,
     notes: RefCell<Vec<String>>,
 }
+
+/// The bytes left for the rows of pipes, which cannot be counted in advance, of all prototypes.
+pub(super) struct PipeMemory(AtomicU64);
 
 /// The keys of a table in a scene file.
 #[derive(Clone, Copy)]
@@ -36,13 +39,27 @@ pub(super) struct NamedTable<'a> {
     lines: Option<u64>,
 }
 
+impl PipeMemory {
+    /// Memory of so many bytes, or without a limit.
+    pub fn new(bytes: Option<u64>) -> Self {
+        Self(AtomicU64::new(bytes.unwrap_or(u64::MAX)))
+    }
+
+    /// Takes some of it. Returns false if less is left; then nothing is left any more.
+    fn take(&self, bytes: u64) -> bool {
+        let before = self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
+            Some(left.saturating_sub(bytes))
+        });
+        before.is_ok_and(|left| left >= bytes)
+    }
+}
+
 impl<'a> Tables<'a> {
-    /// The tables of a scene file, with `memory` bytes for rows that cannot be counted in
-    /// advance.
-    pub fn new(source: &'a Source, memory: Option<u64>) -> Self {
+    /// The tables of a prototype.
+    pub fn new(source: &'a Source, memory: &'a PipeMemory) -> Self {
         Self {
             source,
-            memory: Cell::new(memory.unwrap_or(u64::MAX)),
+            memory,
             notes: RefCell::default(),
         }
     }
@@ -76,9 +93,7 @@ impl<'a> Tables<'a> {
     /// Reserves some of the memory for rows that could not be counted in advance. Returns
     /// false if less is left.
     pub fn take(&self, bytes: u64) -> bool {
-        let left = self.memory.get().checked_sub(bytes);
-        self.memory.set(left.unwrap_or(0));
-        left.is_some()
+        self.memory.take(bytes)
     }
 
     /// The error that the memory does not suffice for a row of a pipe.

@@ -134,12 +134,18 @@ impl SceneFile {
         contents
     }
 
-    /// The most bytes that any file takes while it is read, besides its records.
+    /// The most bytes that files take while they are read on some threads, besides their
+    /// records: a thread reads the files of a prototype one after the other.
     #[must_use]
-    pub fn reading_bytes(&self) -> u64 {
-        let files = self.document.bodies().flat_map(Body::files);
-        let bytes = files.map(|file| file.reading_bytes(&self.source));
-        bytes.max().unwrap_or(0)
+    pub fn reading_bytes(&self, threads: usize) -> u64 {
+        let of_body = |body: Body| {
+            let files = body.files();
+            let bytes = files.map(|file| file.reading_bytes(&self.source));
+            bytes.max().unwrap_or(0)
+        };
+        let mut bytes: Vec<u64> = self.document.bodies().map(of_body).collect();
+        bytes.sort_unstable_by(|one, other| other.cmp(one));
+        bytes.into_iter().take(threads).sum()
     }
 
     /// The numbers of solids that a prototype itself contains.

@@ -48,7 +48,7 @@ fn within(
     max_isa: Option<MaxIsa>,
 ) -> anyhow::Result<Scene> {
     let path = file.path().to_owned();
-    let reading = file.reading_bytes();
+    let reading = file.reading_bytes(workers.current_num_threads());
     let left = limit.check(&path, &file.contents(), reading, need, max_isa)?;
     let scene = workers.install(|| file.load_within(left));
     let scene = scene.map_err(|error| anyhow!("{error}"))?;
