@@ -152,10 +152,7 @@ impl PyScene {
         let materials = &mut Arc::make_mut(&mut self.scene).materials;
         let number = u16::try_from(materials.len())
             .map_err(|_| value_error(format!("a scene has at most {} materials", u16::MAX)))?;
-        materials.push(Material {
-            name,
-            color: color.into(),
-        });
+        materials.push(Material::diffuse(name, color.into()));
         Ok(number)
     }
 
@@ -349,6 +346,7 @@ impl PyScene {
             direction: direction.into(),
             color: color.into(),
             strength,
+            angle_degrees: Sun::ANGLE_DEGREES,
         });
     }
 
@@ -442,14 +440,11 @@ impl PyScene {
 /// # Errors
 /// When there is none.
 pub fn integrator_of(name: &str) -> PyResult<Integrator> {
-    Ok(match name {
-        "sun" => Integrator::Sun,
-        "normal" => Integrator::Normal,
-        "ao" => Integrator::Ao,
-        other => {
-            return Err(value_error(format!(
-                "integrator is \"{other}\": it must be \"sun\", \"normal\" or \"ao\""
-            )));
-        }
+    let mut all = Integrator::ALL.into_iter();
+    all.find(|one| one.name() == name).ok_or_else(|| {
+        let names = Integrator::ALL.map(Integrator::name).join(", ");
+        value_error(format!(
+            "integrator is \"{name}\": it must be one of {names}"
+        ))
     })
 }

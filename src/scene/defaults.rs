@@ -4,8 +4,9 @@
 use glam::DVec3;
 
 use super::description::{
-    Camera, Film, Frame, Integrator, Material, Projection, Prototype, RenderSettings, Scene,
+    Camera, Film, Frame, Integrator, Projection, Prototype, RenderSettings, Scene,
 };
+use super::material::Material;
 
 pub(super) const FOV_DEGREES: f64 = 40.0;
 
@@ -17,6 +18,8 @@ pub(super) const FILM: Film = Film {
 pub(super) const RENDER: RenderSettings = RenderSettings {
     integrator: Integrator::Sun,
     spp: 4,
+    max_depth: 16,
+    ao_distance: f64::INFINITY,
 };
 
 pub(super) const BACKGROUND: DVec3 = DVec3::new(0.8, 0.9, 1.0);
@@ -26,10 +29,7 @@ const REFLECTANCE: f64 = 0.5;
 
 /// The material of solids without a material.
 pub(super) fn material() -> Material {
-    Material {
-        name: String::new(),
-        color: DVec3::splat(REFLECTANCE),
-    }
+    Material::diffuse("", DVec3::splat(REFLECTANCE))
 }
 
 impl Scene {
@@ -50,6 +50,7 @@ impl Scene {
             render: RENDER,
             sun: None,
             sky: None,
+            lights: Vec::new(),
             background: BACKGROUND,
             skipped_rows: 0,
             notes: Vec::new(),

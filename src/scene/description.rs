@@ -1,6 +1,8 @@
 //! The validated description of a scene: everything that `tracer` and `render` need,
 //! independent of the files it came from.
 
+use super::light::{Light, Sky, Sun};
+use super::material::Material;
 use super::origins::Origins;
 use super::record::Records;
 use super::solid_lists::Solids;
@@ -25,6 +27,8 @@ pub struct Scene {
     pub sun: Option<Sun>,
     /// The sky, if any.
     pub sky: Option<Sky>,
+    /// The lights with a place, which integrator `path` sees.
+    pub lights: Vec<Light>,
     /// Linear RGB of camera rays that miss, if the scene has no sky.
     pub background: DVec3,
     /// The number of table rows skipped because of `degenerate = "skip"`.
@@ -101,15 +105,6 @@ pub struct Placement {
     pub parent_from_child: DAffine3,
 }
 
-/// How a surface scatters light. All materials are diffuse.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Material {
-    /// The name in the scene file; empty for the default material.
-    pub name: String,
-    /// Linear RGB reflectance, each in [0, 1].
-    pub color: DVec3,
-}
-
 /// The camera: projection and viewpoint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
@@ -160,12 +155,16 @@ pub struct Film {
 }
 
 /// What `render` computes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderSettings {
     /// The meaning of a pixel.
     pub integrator: Integrator,
     /// Samples a pixel, at least 1.
     pub spp: u32,
+    /// The most rays of a path of integrator `path`, at least 1: with 1, only lights are seen.
+    pub max_depth: u32,
+    /// The distance beyond which surfaces do not occlude under integrator `ao`, greater than 0.
+    pub ao_distance: f64,
 }
 
 /// The quantity that a pixel shows.
@@ -177,24 +176,22 @@ pub enum Integrator {
     Ao,
     /// Sun and sky with shadows.
     Sun,
+    /// Light that is scattered any number of times.
+    Path,
 }
 
-/// A light at infinity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sun {
-    /// Unit vector towards the sun.
-    pub direction: DVec3,
-    /// Linear RGB.
-    pub color: DVec3,
-    /// Factor on `color`; irradiance on a surface that faces the sun.
-    pub strength: f64,
-}
+impl Integrator {
+    /// All integrators.
+    pub const ALL: [Self; 4] = [Self::Sun, Self::Normal, Self::Ao, Self::Path];
 
-/// Light from every direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sky {
-    /// Linear RGB.
-    pub color: DVec3,
-    /// Factor on `color`.
-    pub strength: f64,
+    /// The name in scene files and on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sun => "sun",
+            Self::Normal => "normal",
+            Self::Ao => "ao",
+            Self::Path => "path",
+        }
+    }
 }

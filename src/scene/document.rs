@@ -178,6 +178,8 @@ pub(super) struct FilmKeys {
 pub(super) struct RenderKeys {
     pub integrator: Option<Spanned<String>>,
     pub spp: Option<Spanned<Whole>>,
+    pub max_depth: Option<Spanned<Whole>>,
+    pub ao_distance: Option<Spanned<Number>>,
 }
 
 /// `[sun]`
@@ -189,6 +191,7 @@ pub(super) struct SunKeys {
     pub direction: Option<Triple>,
     pub color: Option<Triple>,
     pub strength: Option<Spanned<Number>>,
+    pub angle_degrees: Option<Spanned<Number>>,
 }
 
 /// `[sky]`

@@ -71,6 +71,7 @@ pub(super) fn lower(
         render: render(source, &keys(document.render))?,
         sun: lights.sun,
         sky: lights.sky,
+        lights: Vec::new(),
         background: lights.background,
         skipped_rows: bodies.iter().map(|body| body.skipped).sum(),
         notes,

@@ -7,8 +7,8 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::defaults;
-use super::description::Material;
 use super::error::SceneError;
+use super::material::{Color, Material, MaterialKind};
 use super::names::{quoted, suggestion};
 use super::record::MaterialIndex;
 use super::source::Source;
@@ -71,7 +71,8 @@ impl Materials {
         self.index.insert(name.clone(), MaterialIndex(index));
         self.list.push(Material {
             name: name.clone(),
-            color,
+            color: Color::Constant(color),
+            kind: MaterialKind::Diffuse,
         });
         Ok(())
     }

@@ -31,9 +31,11 @@ mod formats;
 mod graph;
 mod hit_table;
 mod instance_rows;
+mod light;
 mod limits;
 mod lines;
 mod load;
+mod material;
 mod materials;
 mod named_table;
 mod names;
@@ -66,13 +68,15 @@ pub use contents::{ExpectedCounts, ExpectedSolids, PlacedCount};
 pub(crate) use cylinder_list::SharedRecords;
 pub use cylinder_list::{CylinderList, Iter as CylinderIter};
 pub use description::{
-    Camera, Film, Frame, Integrator, Material, Placement, Projection, Prototype, PrototypeIndex,
-    RenderSettings, Scene, Sky, Sun,
+    Camera, Film, Frame, Integrator, Placement, Projection, Prototype, PrototypeIndex,
+    RenderSettings, Scene,
 };
 pub use error::{SceneError, Statement};
 pub use formats::{SOLID_FORMATS, SolidFormatInfo, beams_of_model, check_swc};
 pub use hit_table::{GivenHit, GivenHits};
+pub use light::{Light, LightShape, Sky, Sun};
 pub use limits::*;
+pub use material::{Color, Material, MaterialKind};
 pub use number_table::{NumberColumns, NumberRow, NumberTable};
 pub use origins::{Origin, Origins};
 pub use record::{

@@ -47,9 +47,11 @@ impl PipeMemory {
 
     /// Takes some of it. Returns false if less is left; then nothing is left any more.
     fn take(&self, bytes: u64) -> bool {
-        let before = self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
-            Some(left.saturating_sub(bytes))
-        });
+        let before = self
+            .0
+            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
+                Some(left.saturating_sub(bytes))
+            });
         before.is_ok_and(|left| left >= bytes)
     }
 }

@@ -4,13 +4,17 @@ use glam::DVec3;
 use toml::Spanned;
 
 use super::defaults;
-use super::description::{Film, Integrator, RenderSettings, Sky, Sun};
+use super::description::{Film, Integrator, RenderSettings};
 use super::document::{FilmKeys, RenderKeys, SkyKeys, SunKeys};
 use super::error::SceneError;
+use super::light::{Sky, Sun};
 use super::limits::{GREATEST_PIXELS, GREATEST_SAMPLES};
 use super::source::Source;
 use super::values::{Number, Triple, Whole, vector};
 use crate::math::{power_of_two, sin_cos_degrees, unit};
+
+/// Most rays of a path. Russian roulette ends nearly all paths long before.
+const GREATEST_DEPTH_OF_PATHS: u32 = 1 << 16;
 
 /// Most pixels across and down.
 const GREATEST_SIDE: u32 = 65_536;
@@ -18,17 +22,12 @@ const GREATEST_SIDE: u32 = 65_536;
 const DEFAULT_SUN_COLOR: DVec3 = DVec3::new(1.0, 0.95, 0.9);
 const DEFAULT_SUN_STRENGTH: f64 = 3.0;
 const DEFAULT_SUN_DEGREES: (f64, f64) = (40.0, 135.0);
+/// The greatest angle of the sun's disk.
+const GREATEST_SUN_DEGREES: f64 = 90.0;
 const DEFAULT_SKY: Sky = Sky {
     color: DVec3::new(0.5, 0.7, 1.0),
     strength: 1.0,
 };
-
-/// The names of the integrators.
-pub(super) const INTEGRATORS: [(&str, Integrator); 3] = [
-    ("sun", Integrator::Sun),
-    ("normal", Integrator::Normal),
-    ("ao", Integrator::Ao),
-];
 
 /// The lights of a scene.
 pub(super) struct Lights {
@@ -93,7 +92,20 @@ fn sun(source: &Source, keys: &SunKeys) -> Result<Sun, SceneError> {
         direction,
         color: color(source, keys.color.as_ref(), DEFAULT_SUN_COLOR)?,
         strength: strength(source, keys.strength.as_ref(), DEFAULT_SUN_STRENGTH)?,
+        angle_degrees: angle_degrees(source, keys.angle_degrees.as_ref())?,
     })
+}
+
+/// The angle of the sun's disk.
+fn angle_degrees(source: &Source, key: Option<&Spanned<Number>>) -> Result<f64, SceneError> {
+    let angle = number(key, Sun::ANGLE_DEGREES);
+    match key {
+        Some(key) if !(0.0..=GREATEST_SUN_DEGREES).contains(&angle) => Err(source.error(
+            key.span(),
+            format!("angle_degrees is {angle}: it must be between 0 and {GREATEST_SUN_DEGREES}"),
+        )),
+        _ => Ok(angle),
+    }
 }
 
 /// The unit vector along a vector. One whose length is 1 to within roundings is its own, so
@@ -133,12 +145,35 @@ pub(super) fn film(source: &Source, keys: &FilmKeys) -> Result<Film, SceneError>
 pub(super) fn render(source: &Source, keys: &RenderKeys) -> Result<RenderSettings, SceneError> {
     Ok(RenderSettings {
         integrator: match &keys.integrator {
-            Some(word) => source.choose("integrator", word, &INTEGRATORS)?,
+            Some(word) => {
+                let names = Integrator::ALL.map(|integrator| (integrator.name(), integrator));
+                source.choose("integrator", word, &names)?
+            }
             None => defaults::RENDER.integrator,
         },
         spp: count(source, "spp", keys.spp.as_ref(), GREATEST_SAMPLES)?
             .unwrap_or(defaults::RENDER.spp),
+        max_depth: count(
+            source,
+            "max_depth",
+            keys.max_depth.as_ref(),
+            GREATEST_DEPTH_OF_PATHS,
+        )?
+        .unwrap_or(defaults::RENDER.max_depth),
+        ao_distance: distance(source, keys.ao_distance.as_ref())?,
     })
+}
+
+/// The distance beyond which surfaces do not occlude.
+fn distance(source: &Source, key: Option<&Spanned<Number>>) -> Result<f64, SceneError> {
+    let distance = number(key, defaults::RENDER.ao_distance);
+    match key {
+        Some(key) if distance <= 0.0 => Err(source.error(
+            key.span(),
+            format!("ao_distance is {distance}: it must be a positive length"),
+        )),
+        _ => Ok(distance),
+    }
 }
 
 /// An optional whole number from 1 to `most`.

@@ -6,7 +6,8 @@ use std::fs;
 use std::path::Path;
 
 use cyltrace::scene::{
-    Frame, Integrator, MaterialIndex, Placement, Projection, Prototype, Records, Scene, load,
+    Frame, Integrator, Material, MaterialIndex, Placement, Projection, Prototype, Records, Scene,
+    load,
 };
 use cyltrace::solid::Caps;
 use glam::{DAffine3, DMat3, DVec3};
@@ -220,7 +221,10 @@ fn materials_and_caps_are_found_by_name() {
         .concat();
     let scene = scene(&format!("{text}{BARK}kind = \"diffuse\"\n"));
     assert_eq!(scene.materials[1].name, "bark");
-    assert_eq!(scene.materials[1].color, DVec3::new(0.1, 0.2, 0.3));
+    assert_eq!(
+        scene.materials[1],
+        Material::diffuse("bark", DVec3::new(0.1, 0.2, 0.3))
+    );
     let found: Vec<_> = scene.prototypes[0]
         .solids
         .cylinders

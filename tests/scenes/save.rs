@@ -201,17 +201,14 @@ fn pictures_and_names_saved_are_the_same() {
         "[[x]] # = {}",
         "C:\\",
     ];
-    scene.materials.extend(names.map(|name| Material {
-        name: name.to_owned(),
-        color: DVec3::new(-0.0, 1.0, random.unit()),
-    }));
-    for (case, integrator) in [Integrator::Sun, Integrator::Normal, Integrator::Ao]
-        .into_iter()
-        .enumerate()
-    {
+    let material = |name| Material::diffuse(name, DVec3::new(-0.0, 1.0, random.unit()));
+    scene.materials.extend(names.map(material));
+    for (case, integrator) in Integrator::ALL.into_iter().enumerate() {
         scene.render = RenderSettings {
             integrator,
             spp: 1 + case as u32,
+            max_depth: 1 + case as u32,
+            ao_distance: [f64::INFINITY, 0.5, 1e90, 7.0][case],
         };
         scene.film = Film {
             width: 65_536,
@@ -257,6 +254,7 @@ fn directions_of_the_sun_saved_are_the_same() {
             direction,
             color: DVec3::ONE,
             strength: 2.5,
+            angle_degrees: 0.25,
         });
         assert_same(&scene, &saved(&scene), &format!("{direction:?}"));
     }

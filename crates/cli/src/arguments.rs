@@ -340,6 +340,8 @@ pub enum IntegratorName {
     Ao,
     /// the outward normal as a color
     Normal,
+    /// light scattered any number of times, by materials of all kinds
+    Path,
 }
 
 impl From<IntegratorName> for Integrator {
@@ -348,16 +350,8 @@ impl From<IntegratorName> for Integrator {
             IntegratorName::Sun => Self::Sun,
             IntegratorName::Ao => Self::Ao,
             IntegratorName::Normal => Self::Normal,
+            IntegratorName::Path => Self::Path,
         }
-    }
-}
-
-/// The name under which an integrator is reported.
-pub fn integrator_name(integrator: Integrator) -> &'static str {
-    match integrator {
-        Integrator::Sun => "sun",
-        Integrator::Ao => "ao",
-        Integrator::Normal => "normal",
     }
 }
 

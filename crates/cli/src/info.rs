@@ -38,8 +38,8 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
         .map(|material| {
             json!({
                 "name": material.name,
-                "kind": "diffuse",
-                "color": material.color.to_array(),
+                "kind": material.kind.name(),
+                "color": material.color.average().to_array(),
             })
         })
         .collect();
@@ -115,7 +115,8 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
         } else {
             &material.name
         };
-        text += &format!("material {name}: diffuse {}\n", text::point(material.color));
+        let (kind, color) = (material.kind.name(), material.color.average());
+        text += &format!("material {name}: {kind} {}\n", text::point(color));
     }
     print(&text)
 }

@@ -11,7 +11,7 @@ use cyltrace_parts::{Header, PartWriter};
 use cyltrace_render::{RayCounts, RenderError, Settings, Tiles};
 use serde_json::{Value, json};
 
-use super::arguments::{RenderArguments, integrator_name};
+use super::arguments::RenderArguments;
 use super::limit::{MemoryLimit, Need};
 use super::outputs::Files;
 use super::parts::{self, Work};
@@ -214,7 +214,7 @@ impl Run<'_> {
             "output": arguments.output,
             "size": [settings.film.width, settings.film.height],
             "spp": settings.spp,
-            "integrator": integrator_name(settings.integrator),
+            "integrator": settings.integrator.name(),
             "seed": settings.seed,
             "load_s": times.load,
             "build_s": times.build,
@@ -254,7 +254,7 @@ impl Run<'_> {
             settings.film.width,
             settings.film.height,
             settings.spp,
-            integrator_name(settings.integrator),
+            settings.integrator.name(),
             text::solids(statistics),
         );
         text += &format!(

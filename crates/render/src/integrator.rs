@@ -20,9 +20,10 @@
 use glam::{DVec2, DVec3};
 
 use super::Lights;
+use super::colors::Colors;
 use super::sampler::PixelSampler;
 use cyltrace::math::Ray;
-use cyltrace::scene::{AimedCamera, Integrator, Material};
+use cyltrace::scene::{AimedCamera, Integrator};
 use cyltrace::tracer::{HitFields, PartialHit, Tracer};
 
 /// How many rays were traced, by purpose.
@@ -59,7 +60,7 @@ impl std::ops::Add for RayCounts {
 /// What a sample is made of.
 pub(super) struct View<'a> {
     pub(super) tracer: &'a Tracer,
-    pub(super) materials: &'a [Material],
+    pub(super) colors: Colors,
     pub(super) camera: AimedCamera,
     pub(super) lights: Lights,
     pub(super) integrator: Integrator,
@@ -134,7 +135,10 @@ impl View<'_> {
         rays.camera += samples.len() as u64;
         let fields = match self.integrator {
             Integrator::Normal => HitFields::NORMAL,
-            Integrator::Ao | Integrator::Sun => HitFields::NORMAL | HitFields::SPAWN,
+            Integrator::Ao => HitFields::NORMAL | HitFields::SPAWN,
+            Integrator::Sun | Integrator::Path => {
+                HitFields::NORMAL | HitFields::SPAWN | self.colors.fields()
+            }
         };
         self.tracer
             .closest_batch_with(&batch.rays, fields, &mut batch.hits);
@@ -142,22 +146,23 @@ impl View<'_> {
         batch.colors.clear();
         let color = |hit: &Option<PartialHit>| match (self.integrator, hit) {
             (Integrator::Normal, Some(hit)) => normal(hit) * 0.5 + 0.5,
-            (Integrator::Normal, None) | (Integrator::Ao | Integrator::Sun, Some(_)) => DVec3::ZERO,
+            (Integrator::Normal, None)
+            | (Integrator::Ao | Integrator::Sun | Integrator::Path, Some(_)) => DVec3::ZERO,
             (Integrator::Ao, None) => DVec3::ONE,
-            (Integrator::Sun, None) => self.lights.miss(),
+            (Integrator::Sun | Integrator::Path, None) => self.lights.miss(),
         };
         batch.colors.extend(batch.hits.iter().map(color));
         match self.integrator {
             Integrator::Normal => {}
             Integrator::Ao => self.add_sky(samples, batch, rays, DVec3::ONE),
-            Integrator::Sun => {
+            Integrator::Sun | Integrator::Path => {
                 self.add_sunlight(batch, rays);
                 if let Some(radiance) = self.lights.sky() {
                     self.add_sky(samples, batch, rays, radiance);
                 }
                 for (color, hit) in batch.colors.iter_mut().zip(&batch.hits) {
                     if let Some(hit) = hit {
-                        *color *= self.materials[usize::from(hit.material().0)].color;
+                        *color *= self.colors.at(hit);
                     }
                 }
             }

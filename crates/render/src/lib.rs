@@ -5,6 +5,7 @@
 //! threads. [`render_tiles()`] renders a part of a picture, so that several processes can share
 //! it: [`Tiles`] numbers its tiles.
 
+mod colors;
 mod integrator;
 mod lights;
 mod sampler;
@@ -21,6 +22,7 @@ pub use integrator::RayCounts;
 pub use lights::{Lights, SunLight};
 pub use tiles::Tiles;
 
+use colors::Colors;
 use cyltrace::scene::{self, AimedCamera, Integrator, RenderSettings, Scene, ViewVolume};
 use cyltrace::tracer::Tracer;
 use integrator::View;
@@ -64,7 +66,7 @@ impl Settings {
     pub fn view(&self, scene: &Scene) -> Option<ViewVolume> {
         let camera = match self.integrator {
             Integrator::Normal => AimedCamera::stated(&scene.camera, self.film)?,
-            Integrator::Ao | Integrator::Sun => return None,
+            Integrator::Ao | Integrator::Sun | Integrator::Path => return None,
         };
         Some(camera.view_volume())
     }
@@ -211,7 +213,7 @@ pub fn render_tiles(
     let scene = tracer.scene();
     let view = View {
         tracer,
-        materials: &scene.materials,
+        colors: Colors::new(scene),
         camera: AimedCamera::new(&scene.camera, &tracer.bounds(), settings.film),
         lights: Lights::of(scene),
         integrator: settings.integrator,
@@ -230,7 +232,7 @@ fn skipped(integrator: Integrator, lights: &Lights) -> Vec<String> {
     let reasons: &[(bool, &str)] = match integrator {
         Integrator::Normal => &[(true, "normals only: no shadow rays and no sky rays")],
         Integrator::Ao => &[(true, "ambient occlusion only: no shadow rays")],
-        Integrator::Sun => &[
+        Integrator::Sun | Integrator::Path => &[
             (lights.sun().is_none(), "no sun: no shadow rays"),
             (lights.sky().is_none(), "no sky: no sky rays"),
         ],

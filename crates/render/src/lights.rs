@@ -86,6 +86,7 @@ fn default_sun() -> Sun {
         direction,
         color,
         strength,
+        angle_degrees: Sun::ANGLE_DEGREES,
     }
 }
 

@@ -4,7 +4,7 @@ use super::text::Text;
 use super::{SaveError, check_names};
 use crate::scene::defaults;
 use crate::scene::description::{Camera, Frame, Projection, Scene};
-use crate::scene::settings::{INTEGRATORS, is_unit};
+use crate::scene::settings::is_unit;
 
 pub(super) fn state(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
     text.top().vector("background", scene.background);
@@ -15,12 +15,12 @@ pub(super) fn state(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
     film.whole("height", scene.film.height);
 
     let mut render = text.table("[render]");
-    for (name, integrator) in INTEGRATORS {
-        if integrator == scene.render.integrator {
-            render.text("integrator", name);
-        }
-    }
+    render.text("integrator", scene.render.integrator.name());
     render.whole("spp", scene.render.spp);
+    render.whole("max_depth", scene.render.max_depth);
+    if scene.render.ao_distance.is_finite() {
+        render.number("ao_distance", scene.render.ao_distance);
+    }
 
     lights(text, scene)?;
     materials(text, scene)?;
@@ -66,6 +66,7 @@ fn lights(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
         entry.vector("direction", sun.direction);
         entry.vector("color", sun.color);
         entry.number("strength", sun.strength);
+        entry.number("angle_degrees", sun.angle_degrees);
     }
     if let Some(sky) = scene.sky {
         let mut entry = text.table("[sky]");
@@ -86,7 +87,7 @@ fn materials(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
     for material in named {
         let mut entry = text.table("[[material]]");
         entry.text("name", &material.name);
-        entry.vector("color", material.color);
+        entry.vector("color", material.color.average());
     }
     Ok(())
 }

@@ -3,8 +3,8 @@
 use std::io;
 
 use cyltrace::scene::{
-    Composition, CylinderList, CylinderRecord, Material, MaterialIndex, Placement, Prototype,
-    PrototypeIndex, Records, Scene, SolidRecord, Sun, save,
+    Color, Composition, CylinderList, CylinderRecord, Material, MaterialIndex, Placement,
+    Prototype, PrototypeIndex, Records, Scene, SolidRecord, Sun, save,
 };
 use cyltrace::solid::{Caps, Cylinder, Disk, Sphere};
 use glam::{DAffine3, DVec3};
@@ -74,7 +74,7 @@ fn what_scene_files_cannot_state_is_an_error() {
         ),
         (changed(|scene| scene.materials.clear()), "default one"),
         (
-            changed(|scene| scene.materials[0].color.x = 0.4),
+            changed(|scene| scene.materials[0].color = Color::Constant(DVec3::splat(0.4))),
             "default one",
         ),
         (
@@ -83,10 +83,7 @@ fn what_scene_files_cannot_state_is_an_error() {
         ),
         (
             changed(|scene| {
-                scene.materials.push(Material {
-                    name: String::new(),
-                    color: DVec3::ZERO,
-                });
+                scene.materials.push(Material::diffuse("", DVec3::ZERO));
             }),
             "has the name \"\"",
         ),
@@ -96,6 +93,7 @@ fn what_scene_files_cannot_state_is_an_error() {
                     direction: DVec3::splat(1.0),
                     color: DVec3::ONE,
                     strength: 1.0,
+                    angle_degrees: 0.5,
                 });
             }),
             "the length 1.73",

@@ -34,9 +34,9 @@ pub fn random_scene(seed: u64) -> Scene {
         }
     }
     let mut scene = Scene::new(prototypes);
-    scene.materials.extend((1..MATERIALS).map(|index| Material {
-        name: format!("material \"{index}\""),
-        color: DVec3::new(random.unit(), random.unit(), random.unit()),
+    scene.materials.extend((1..MATERIALS).map(|index| {
+        let color = DVec3::new(random.unit(), random.unit(), random.unit());
+        Material::diffuse(format!("material \"{index}\""), color)
     }));
     scene
 }

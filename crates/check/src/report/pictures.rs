@@ -245,7 +245,7 @@ fn placed(scene: &Scene, hit: &Seen) -> Placed {
 }
 
 fn color_of(scene: &Scene, hit: &Seen) -> DVec3 {
-    scene.materials[usize::from(hit.material.0)].color
+    scene.materials[usize::from(hit.material.0)].color.average()
 }
 
 const NOTHING: [u8; 4] = [0; 4];

@@ -11,7 +11,6 @@ use cyltrace_render::{Settings, Tiles};
 use serde_json::{Value, json};
 
 use super::value;
-use crate::arguments::integrator_name;
 
 /// Bytes of a pixel.
 const PIXEL: usize = 12;
@@ -21,7 +20,7 @@ pub fn settings(settings: &Settings, exact: bool) -> Value {
     json!({
         "size": [settings.film.width, settings.film.height],
         "spp": settings.spp,
-        "integrator": integrator_name(settings.integrator),
+        "integrator": settings.integrator.name(),
         "seed": settings.seed,
         "exact": exact,
     })

@@ -110,7 +110,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         film.width,
         film.height,
         settings.spp,
-        crate::arguments::integrator_name(settings.integrator),
+        settings.integrator.name(),
         start.elapsed().as_secs_f64(),
     ))
 }

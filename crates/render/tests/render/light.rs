@@ -29,10 +29,7 @@ fn scene(cylinders: &[(DVec3, DVec3, f64, Caps)]) -> Scene {
         ..Prototype::default()
     };
     Scene {
-        materials: vec![Material {
-            name: String::new(),
-            color: DVec3::new(0.5, 0.25, 1.0),
-        }],
+        materials: vec![Material::diffuse("", DVec3::new(0.5, 0.25, 1.0))],
         camera: Camera {
             projection: Projection::Orthographic { height: Some(2.0) },
             frame: Frame::LookAt {
@@ -109,6 +106,7 @@ fn ground_under_a_slanting_sun_follows_lambert() {
         direction: DVec3::new(0.6, 0.0, 0.8),
         color: DVec3::ONE,
         strength: std::f64::consts::PI,
+        angle_degrees: 0.0,
     });
     assert_all_pixels(&picture(scene, 4), DVec3::new(0.5, 0.25, 1.0) * 0.8);
 }
@@ -126,6 +124,7 @@ fn ground_in_the_shadow_of_a_disk_is_black() {
         direction: DVec3::new(1.0, 0.0, 1.0).normalize(),
         color: DVec3::ONE,
         strength: 3.0,
+        angle_degrees: 0.0,
     });
     assert_all_pixels(&picture(scene, 4), DVec3::ZERO);
 }
@@ -160,6 +159,7 @@ fn inside_of_an_open_tube_is_lit_on_the_side_that_is_seen() {
         direction: DVec3::Z,
         color: DVec3::ONE,
         strength: std::f64::consts::PI,
+        angle_degrees: 0.0,
     });
     assert_all_pixels(&picture(scene, 4), DVec3::new(0.5, 0.25, 1.0));
 }

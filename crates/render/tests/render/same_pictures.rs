@@ -91,7 +91,7 @@ fn pictures_are_those_of_rays_traced_one_by_one() {
             let rays = match integrator {
                 Integrator::Sun => [to_sun, to_sky],
                 Integrator::Ao => [0, to_sky],
-                Integrator::Normal => [0, 0],
+                Integrator::Normal | Integrator::Path => [0, 0],
             };
             for layout in [Layout::Single, Layout::Block] {
                 let options = Options {
