@@ -278,6 +278,38 @@ impl Solids {
         lists.fold(Bounds::EMPTY, |sum, bounds| sum.union(&bounds))
     }
 
+    /// The material of the solid of a kind with this number.
+    #[must_use]
+    pub fn material(&self, kind: SolidKind, primitive: u32) -> Option<MaterialIndex> {
+        with_solid_kind!(kind, S => {
+            let list = S::list(self);
+            let position = list.position(primitive)?;
+            Some(list.material(position))
+        })
+    }
+
+    /// The solids whose material is wanted: the number, the material and a box around each.
+    #[must_use]
+    pub fn of_materials(
+        &self,
+        wanted: impl Fn(MaterialIndex) -> bool,
+    ) -> Vec<(u32, MaterialIndex, Bounds)> {
+        let mut found = Vec::new();
+        for &kind in SolidKind::LISTS {
+            with_solid_kind!(kind, S => {
+                let list = S::list(self);
+                for position in 0..list.len() {
+                    let material = list.material(position);
+                    if wanted(material) {
+                        let bounds = S::bounds(list.solid(position).borrow());
+                        found.push((list.primitive(position), material, bounds));
+                    }
+                }
+            });
+        }
+        found
+    }
+
     /// Puts the lists in order after solids were added in another.
     ///
     /// # Errors

@@ -5,7 +5,10 @@
 //! threads. [`render_tiles()`] renders a part of a picture, so that several processes can share
 //! it: [`Tiles`] numbers its tiles.
 
+mod bsdf;
 mod colors;
+mod disk;
+mod frame;
 mod integrator;
 mod lights;
 mod sampler;
@@ -22,7 +25,6 @@ pub use integrator::RayCounts;
 pub use lights::{Lights, SunLight};
 pub use tiles::Tiles;
 
-use colors::Colors;
 use cyltrace::scene::{self, AimedCamera, Integrator, RenderSettings, Scene, ViewVolume};
 use cyltrace::tracer::Tracer;
 use integrator::View;
@@ -211,13 +213,8 @@ pub fn render_tiles(
     let count = Tiles::of(settings.film).count();
     assert!(tiles.end <= count, "tiles {tiles:?} of {count}");
     let scene = tracer.scene();
-    let view = View {
-        tracer,
-        colors: Colors::new(scene),
-        camera: AimedCamera::new(&scene.camera, &tracer.bounds(), settings.film),
-        lights: Lights::of(scene),
-        integrator: settings.integrator,
-    };
+    let camera = AimedCamera::new(&scene.camera, &tracer.bounds(), settings.film);
+    let view = View::new(tracer, camera, settings.integrator);
     let (pixels, rays) =
         workers.install(|| tiles::render(&view, settings, tiles, progress, cancelled))?;
     Ok(RenderedTiles {
@@ -229,12 +226,23 @@ pub fn render_tiles(
 
 /// The kinds of rays that the integrator or the lights have no need of.
 fn skipped(integrator: Integrator, lights: &Lights) -> Vec<String> {
+    let no_shadow = "no sun: no shadow rays";
     let reasons: &[(bool, &str)] = match integrator {
         Integrator::Normal => &[(true, "normals only: no shadow rays and no sky rays")],
         Integrator::Ao => &[(true, "ambient occlusion only: no shadow rays")],
-        Integrator::Sun | Integrator::Path => &[
-            (lights.sun().is_none(), "no sun: no shadow rays"),
+        Integrator::Sun => &[
+            (lights.sun().is_none(), no_shadow),
             (lights.sky().is_none(), "no sky: no sky rays"),
+        ],
+        Integrator::Path => &[
+            (
+                !lights.is_sampled(),
+                "no sun and no light with a place: no shadow rays",
+            ),
+            (
+                lights.has_too_many_emitters(),
+                "too many solids emit light to choose one: no shadow rays to them",
+            ),
         ],
     };
     let holding = reasons.iter().filter(|(holds, _)| *holds);

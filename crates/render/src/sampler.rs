@@ -1,6 +1,7 @@
 //! The numbers of every sample, fixed by (seed, pixel, sample).
 //!
-//! A sample needs two pairs of numbers: a place in its pixel and a direction.
+//! A sample needs pairs of numbers: a place in its pixel, a direction, and those that a longer
+//! path takes.
 //! Each pair is a point of the (0, 2)-sequence of Sobol', so that any 2^k
 //! samples of a pixel from its start are stratified in every way that 2^k
 //! boxes allow. Two hashes decorrelate what would otherwise repeat: each
@@ -18,6 +19,8 @@ use cyltrace::math::Random;
 pub struct PixelSampler {
     place: PairKey,
     direction: PairKey,
+    /// Distinguishes the pixel's further pairs.
+    further: u64,
 }
 
 /// The hashes of one pair of dimensions.
@@ -33,15 +36,10 @@ impl PixelSampler {
     #[must_use]
     pub fn new(seed: u64, pixel: u64) -> Self {
         let mut random = Random::new(seed, pixel);
-        let mut key = || (random.bits() >> 32) as u32;
-        let mut pair = || PairKey {
-            order: key(),
-            first: key(),
-            second: key(),
-        };
         Self {
-            place: pair(),
-            direction: pair(),
+            place: PairKey::next(&mut random),
+            direction: PairKey::next(&mut random),
+            further: random.bits(),
         }
     }
 
@@ -56,9 +54,26 @@ impl PixelSampler {
     pub fn direction(&self, sample: u32) -> (f64, f64) {
         self.direction.point(sample)
     }
+
+    /// Two numbers of a sample for another purpose, each with a `dimension` of its own: both in
+    /// [0, 1).
+    #[must_use]
+    pub fn pair(&self, dimension: u32, sample: u32) -> (f64, f64) {
+        let mut random = Random::new(self.further, dimension.into());
+        PairKey::next(&mut random).point(sample)
+    }
 }
 
 impl PairKey {
+    fn next(random: &mut Random) -> Self {
+        let mut key = || (random.bits() >> 32) as u32;
+        Self {
+            order: key(),
+            first: key(),
+            second: key(),
+        }
+    }
+
     fn point(&self, sample: u32) -> (f64, f64) {
         let index = scrambled(sample, self.order);
         let first = scrambled(index.reverse_bits(), self.first);
@@ -160,7 +175,15 @@ mod tests {
     fn sampler_sixteen_samples_stratified_in_every_elementary_interval() {
         for pixel in 0..200 {
             let sampler = PixelSampler::new(11, pixel);
-            for pair in [PixelSampler::place, PixelSampler::direction] {
+            let pair =
+                |dimension| move |sampler: &PixelSampler, sample| sampler.pair(dimension, sample);
+            let pairs: [&dyn Fn(&PixelSampler, u32) -> (f64, f64); 4] = [
+                &PixelSampler::place,
+                &PixelSampler::direction,
+                &pair(0),
+                &pair(77),
+            ];
+            for pair in pairs {
                 for (columns, rows) in [(1, 16), (2, 8), (4, 4), (8, 2), (16, 1)] {
                     let mut seen = [false; 16];
                     for sample in 0..16 {
@@ -179,14 +202,19 @@ mod tests {
     }
 
     #[test]
-    fn sampler_place_and_direction_are_uncorrelated() {
-        let mut sums = [0.0_f64; 4];
+    fn sampler_pairs_are_uncorrelated() {
+        let mut sums = [0.0_f64; 12];
         let pixels = 20_000;
         for pixel in 0..pixels {
             let sampler = PixelSampler::new(5, pixel);
             let (x, y) = sampler.place(0);
             let (u, v) = sampler.direction(0);
-            for (sum, (a, b)) in sums.iter_mut().zip([(x, u), (x, v), (y, u), (y, v)]) {
+            let (one, two) = (sampler.pair(0, 0), sampler.pair(1, 0));
+            let products = [(x, u), (x, v), (y, u), (y, v), (x, one.0), (y, one.1)];
+            let further = [(u, one.0), (v, one.1), (u, two.1), (v, two.0)];
+            let last = [(one.0, two.0), (one.1, two.1)];
+            let products = products.into_iter().chain(further).chain(last);
+            for (sum, (a, b)) in sums.iter_mut().zip(products) {
                 *sum += (a - 0.5) * (b - 0.5) * 12.0;
             }
         }

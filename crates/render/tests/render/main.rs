@@ -1,4 +1,6 @@
 //! Light, and pictures that are the same on all paths.
 
 mod light;
+mod path;
 mod same_pictures;
+mod stage;

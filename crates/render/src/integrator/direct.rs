@@ -1,0 +1,118 @@
+//! Integrators of one reflection.
+//!
+//! - `ao`: 1 where a ray in a cosine-distributed direction hits no surface within a distance,
+//!   which may be infinite, and 0 elsewhere. So the mean is the visible part of an open sky,
+//!   weighted as a diffuse surface sees it. A camera ray that misses sees the sky itself: 1.
+//! - `sun`: diffuse surfaces under a sun of the irradiance `E` and a sky of the same radiance `L`
+//!   everywhere. A surface of reflectance `ρ` that faces the sun at the cosine `c` sends out
+//!   `ρ (E c S / π + L V)`, where `S` is the part of the sun that is seen and `V` the part of the
+//!   directions, weighted by their cosine, that leave the scene. Light is not reflected twice.
+
+use std::f64::consts::FRAC_1_PI;
+
+use cyltrace::tracer::HitFields;
+use glam::DVec3;
+
+use super::{Batch, RayCounts, Sample, View, facing_normal, spawn};
+use crate::bsdf::cosine_direction;
+use crate::frame::Frame;
+
+/// The dimension of the numbers that choose a point of the sun.
+const SUN: u32 = 0;
+
+impl View<'_> {
+    pub(super) fn ambient_occlusion(
+        &self,
+        samples: &[Sample],
+        batch: &mut Batch,
+        rays: &mut RayCounts,
+    ) {
+        self.closest(batch, HitFields::NORMAL | HitFields::SPAWN);
+        let hits = batch.hits.iter();
+        let colors = hits.map(|hit| {
+            if hit.is_some() {
+                DVec3::ZERO
+            } else {
+                DVec3::ONE
+            }
+        });
+        batch.colors.extend(colors);
+        self.add_sky(
+            samples,
+            batch,
+            rays,
+            (DVec3::ONE, self.settings.ao_distance),
+        );
+    }
+
+    pub(super) fn sunlight_and_sky(
+        &self,
+        samples: &[Sample],
+        batch: &mut Batch,
+        rays: &mut RayCounts,
+    ) {
+        let fields = HitFields::NORMAL | HitFields::SPAWN | self.colors.fields();
+        self.closest(batch, fields);
+        let (hits, miss) = (batch.hits.iter(), self.lights.miss());
+        let colors = hits.map(|hit| if hit.is_some() { DVec3::ZERO } else { miss });
+        batch.colors.extend(colors);
+        self.add_sunlight(samples, batch, rays);
+        if let Some(radiance) = self.lights.sky() {
+            self.add_sky(samples, batch, rays, (radiance, f64::INFINITY));
+        }
+        for (color, hit) in batch.colors.iter_mut().zip(&batch.hits) {
+            if let Some(hit) = hit {
+                *color *= self.colors.at(hit);
+            }
+        }
+    }
+
+    /// Adds the sun's light at the hits: its irradiance over π. No ray is spent
+    /// on a surface that faces away.
+    fn add_sunlight(&self, samples: &[Sample], batch: &mut Batch, rays: &mut RayCounts) {
+        let Some(sun) = self.lights.sun() else {
+            return;
+        };
+        let shadows = &mut batch.occlusion;
+        shadows.clear();
+        for (sample, (ray, hit)) in batch.rays.iter().zip(&batch.hits).enumerate() {
+            let Some(hit) = hit else {
+                continue;
+            };
+            let numbers = match sun.has_extent() {
+                true => samples[sample].pair(SUN),
+                false => (0.0, 0.0),
+            };
+            let (direction, arriving) = sun.towards(numbers);
+            let cosine = facing_normal(ray, hit).dot(direction);
+            if cosine > 0.0 {
+                let light = arriving * cosine * FRAC_1_PI;
+                shadows.push(sample, spawn(hit, direction), light);
+            }
+        }
+        rays.shadow += shadows.add_to(&mut batch.colors, self.tracer);
+    }
+
+    /// Adds a radiance at the hits from which a direction drawn with the sample's numbers is
+    /// free up to a distance.
+    fn add_sky(
+        &self,
+        samples: &[Sample],
+        batch: &mut Batch,
+        rays: &mut RayCounts,
+        (radiance, distance): (DVec3, f64),
+    ) {
+        let openings = &mut batch.occlusion;
+        openings.clear();
+        for (number, (ray, hit)) in batch.rays.iter().zip(&batch.hits).enumerate() {
+            if let Some(hit) = hit {
+                let direction = cosine_direction(samples[number].direction());
+                let direction = Frame::about(facing_normal(ray, hit)).to_world(direction);
+                let mut ray = spawn(hit, direction);
+                ray.t_max = distance;
+                openings.push(number, ray, radiance);
+            }
+        }
+        rays.ao += openings.add_to(&mut batch.colors, self.tracer);
+    }
+}

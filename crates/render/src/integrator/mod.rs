@@ -1,0 +1,183 @@
+//! From a camera ray to the light it sees.
+//!
+//! - `normal`: the outward unit normal `n` as the linear colour `n/2 + 1/2`,
+//!   just as `trace` reports it (not turned to the viewer); black, which is
+//!   no normal's colour, where the ray misses.
+//! - `ao` and `sun`: see [`direct`].
+//! - `path`: see [`path`].
+//!
+//! Surfaces are two-sided: they are lit on the side the viewer is on, so that
+//! open tubes show their inside.
+
+mod direct;
+mod occlusion;
+mod path;
+
+use glam::{DVec2, DVec3};
+
+use super::Lights;
+use super::bsdf::Bsdf;
+use super::colors::Colors;
+use super::sampler::PixelSampler;
+use cyltrace::math::Ray;
+use cyltrace::scene::{AimedCamera, Integrator, RenderSettings, Scene};
+use cyltrace::tracer::{HitFields, PartialHit, Tracer};
+use occlusion::Occlusion;
+use path::Paths;
+
+/// How many rays were traced, by purpose.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RayCounts {
+    /// From the camera.
+    pub camera: u64,
+    /// Towards the sun and other lights.
+    pub shadow: u64,
+    /// In cosine-distributed directions, of `ao` or towards the sky.
+    pub ao: u64,
+    /// In directions from which surfaces scatter light, of `path`.
+    pub scattered: u64,
+}
+
+impl RayCounts {
+    /// All rays.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.camera + self.shadow + self.ao + self.scattered
+    }
+}
+
+impl std::ops::Add for RayCounts {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            camera: self.camera + other.camera,
+            shadow: self.shadow + other.shadow,
+            ao: self.ao + other.ao,
+            scattered: self.scattered + other.scattered,
+        }
+    }
+}
+
+/// What a sample is made of.
+pub(super) struct View<'a> {
+    pub(super) tracer: &'a Tracer,
+    pub(super) colors: Colors,
+    pub(super) camera: AimedCamera,
+    pub(super) lights: Lights,
+    pub(super) integrator: Integrator,
+    pub(super) settings: RenderSettings,
+    /// How each material scatters light, for `path`; `None` for those that emit light.
+    bsdfs: Vec<Option<Box<dyn Bsdf>>>,
+    /// Whether a ray may be in glass.
+    has_glass: bool,
+}
+
+/// A sample of a pixel.
+#[derive(Clone, Copy)]
+pub(super) struct Sample {
+    /// The pixel's column and row.
+    pub pixel: (u32, u32),
+    pub sampler: PixelSampler,
+    pub number: u32,
+}
+
+impl Sample {
+    /// Two numbers for a direction.
+    fn direction(&self) -> (f64, f64) {
+        self.sampler.direction(self.number)
+    }
+
+    /// Two numbers for another purpose.
+    fn pair(&self, dimension: u32) -> (f64, f64) {
+        self.sampler.pair(dimension, self.number)
+    }
+}
+
+/// Many samples at a time, in steps: all rays of one purpose are traced
+/// together, so that coherent ones share work. What is kept
+/// between the steps is kept here, to be used again.
+#[derive(Default)]
+pub(super) struct Batch {
+    rays: Vec<Ray>,
+    hits: Vec<Option<PartialHit>>,
+    /// The colours of the samples, in their order.
+    pub colors: Vec<DVec3>,
+    occlusion: Occlusion,
+    paths: Paths,
+}
+
+impl<'a> View<'a> {
+    /// The view of a picture of this integrator.
+    pub fn new(tracer: &'a Tracer, camera: AimedCamera, integrator: Integrator) -> Self {
+        let scene: &Scene = tracer.scene();
+        let bsdfs: Vec<_> = match integrator {
+            Integrator::Path => scene.materials.iter().map(super::bsdf::of).collect(),
+            Integrator::Sun | Integrator::Ao | Integrator::Normal => Vec::new(),
+        };
+        let transmits =
+            |bsdf: &Option<Box<dyn Bsdf>>| bsdf.as_ref().is_some_and(|one| one.transmits());
+        Self {
+            has_glass: bsdfs.iter().any(transmits),
+            tracer,
+            colors: Colors::new(scene),
+            camera,
+            lights: Lights::of(scene, &tracer.bounds()),
+            integrator,
+            settings: scene.render,
+            bsdfs,
+        }
+    }
+
+    /// Works out the linear colours of samples, which are best near each other.
+    pub(super) fn trace(&self, samples: &[Sample], batch: &mut Batch, rays: &mut RayCounts) {
+        batch.rays.clear();
+        batch.rays.extend(samples.iter().map(|sample| {
+            let (across, down) = sample.sampler.place(sample.number);
+            let (x, y) = sample.pixel;
+            let position = DVec2::new(f64::from(x) + across, f64::from(y) + down);
+            self.camera.ray(position)
+        }));
+        rays.camera += samples.len() as u64;
+        batch.colors.clear();
+        match self.integrator {
+            Integrator::Normal => self.normals(batch),
+            Integrator::Ao => self.ambient_occlusion(samples, batch, rays),
+            Integrator::Sun => self.sunlight_and_sky(samples, batch, rays),
+            Integrator::Path => self.paths(samples, batch, rays),
+        }
+    }
+
+    fn normals(&self, batch: &mut Batch) {
+        self.closest(batch, HitFields::NORMAL);
+        let hits = batch.hits.iter().map(Option::as_ref);
+        let color = |hit: &PartialHit| normal(hit) * 0.5 + 0.5;
+        let colors = hits.map(|hit| hit.map_or(DVec3::ZERO, color));
+        batch.colors.extend(colors);
+    }
+
+    /// The first hits of the batch's rays.
+    fn closest(&self, batch: &mut Batch, fields: HitFields) {
+        self.tracer
+            .closest_batch_with(&batch.rays, fields, &mut batch.hits);
+    }
+}
+
+/// The unit normal on the side that the ray comes from.
+fn facing_normal(ray: &Ray, hit: &PartialHit) -> DVec3 {
+    let normal = normal(hit);
+    if normal.dot(ray.direction) > 0.0 {
+        -normal
+    } else {
+        normal
+    }
+}
+
+fn normal(hit: &PartialHit) -> DVec3 {
+    hit.normal().expect("every integrator requests normals")
+}
+
+fn spawn(hit: &PartialHit, direction: DVec3) -> Ray {
+    hit.spawn(direction)
+        .expect("every integrator that spawns rays requests it")
+}

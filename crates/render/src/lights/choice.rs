@@ -1,0 +1,73 @@
+//! Chooses one of many lights, each with a probability in proportion to its power.
+
+/// Cumulative probabilities of a list.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Choice {
+    /// The sum of the probabilities up to and including each; the last is 1.
+    sums: Vec<f64>,
+}
+
+impl Choice {
+    /// Probabilities in proportion to weights, which are 0 or greater. Equal ones if all are 0.
+    pub fn new(weights: &[f64]) -> Self {
+        let total: f64 = weights.iter().sum();
+        let mut sum = 0.0;
+        let mut sums: Vec<f64> = weights
+            .iter()
+            .map(|weight| {
+                sum += if total > 0.0 {
+                    weight / total
+                } else {
+                    1.0 / weights.len() as f64
+                };
+                sum
+            })
+            .collect();
+        if let Some(last) = sums.last_mut() {
+            *last = 1.0;
+        }
+        Self { sums }
+    }
+
+    /// The position for a number in [0, 1), and its probability.
+    pub fn choose(&self, number: f64) -> (usize, f64) {
+        if self.sums.len() == 1 {
+            return (0, 1.0);
+        }
+        let position = self.sums.partition_point(|&sum| sum <= number);
+        let position = position.min(self.sums.len() - 1);
+        (position, self.probability(position))
+    }
+
+    /// The probability of a position.
+    pub fn probability(&self, position: usize) -> f64 {
+        let before = if position == 0 {
+            0.0
+        } else {
+            self.sums[position - 1]
+        };
+        self.sums[position] - before
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.sums.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_are_chosen_by_their_weights() {
+        let choice = Choice::new(&[1.0, 0.0, 3.0, 4.0]);
+        let mut counts = [0; 4];
+        for number in 0..8000 {
+            let (position, probability) = choice.choose(f64::from(number) / 8000.0);
+            assert_eq!(probability, choice.probability(position));
+            counts[position] += 1;
+        }
+        assert_eq!(counts, [1000, 0, 3000, 4000]);
+        assert_eq!(Choice::new(&[0.0, 0.0]).probability(1), 0.5);
+    }
+}

@@ -1,0 +1,329 @@
+//! The lights of a scene, and the default lights.
+//!
+//! A light is *sampled* if a surface chooses a direction towards it. The sun and lights with a
+//! place are; a sky of the same radiance everywhere is not, because the directions in which a
+//! surface scatters light reach it just as well. If there are several, one is chosen with a
+//! probability in proportion to its power, that of a sun being what crosses the scene.
+
+mod choice;
+mod emitters;
+mod shapes;
+mod sun;
+
+use std::f64::consts::PI;
+
+use cyltrace::math::{Bounds, Ray};
+use cyltrace::scene::{MaterialKind, Scene, Sky, Sun};
+use cyltrace::tracer::PartialHit;
+use glam::DVec3;
+
+use choice::Choice;
+use emitters::Emitters;
+use shapes::ShapeLight;
+pub use sun::SunLight;
+
+/// The sun of a scene that states no light: from the left of an automatic
+/// frame, behind the viewer, 45 degrees high, slightly warm. With the sky
+/// below, a surface of reflectance 0.8 that faces it comes out just at white,
+/// and the default material, 0.5, is visible against a light background.
+const DEFAULT_SUN: (DVec3, DVec3, f64) = (
+    DVec3::new(-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2),
+    DVec3::new(1.0, 0.92, 0.8),
+    3.0,
+);
+
+/// The sky of a scene that states no light: a clear one, far weaker than the
+/// sun, so that shadows show.
+const DEFAULT_SKY: (DVec3, f64) = (DVec3::new(0.65, 0.8, 1.0), 0.3);
+
+/// What shines on a scene; lights without effect are left out.
+#[derive(Clone, Debug)]
+pub struct Lights {
+    sun: Option<SunLight>,
+    sky: Option<DVec3>,
+    miss: DVec3,
+    shapes: Vec<ShapeLight>,
+    emitters: Emitters,
+    /// Between the sun, the shapes and the emitters, in this order.
+    choice: Choice,
+}
+
+/// A direction towards a light that reaches a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LightSample {
+    /// The unit direction.
+    pub direction: DVec3,
+    /// The distance to the light.
+    pub distance: f64,
+    /// The radiance over the density; of a light that has only one direction, the irradiance of a
+    /// surface that faces it.
+    pub arriving: DVec3,
+    /// The density of the direction, or `None` for a light that has only one.
+    pub density: Option<f64>,
+}
+
+/// A sampled light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Towards {
+    /// Light that arrives if nothing is in between. A light with a place has a number.
+    Open(LightSample, Option<usize>),
+    /// Light that arrives if the first hit is on the solid with this number. `arriving` is over
+    /// the radiance there.
+    Solid(LightSample, usize),
+}
+
+impl Towards {
+    /// The direction.
+    pub fn sample(&self) -> &LightSample {
+        match self {
+            Self::Open(sample, _) | Self::Solid(sample, _) => sample,
+        }
+    }
+}
+
+/// Light at the end of a ray.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Arriving {
+    /// The radiance that sampling cannot find.
+    pub unsampled: DVec3,
+    /// The radiance of a sampled light, and the density with which its direction is sampled.
+    pub sampled: DVec3,
+    pub density: f64,
+}
+
+impl Lights {
+    /// The lights of `scene`, which is in `bounds`. A scene that states no light would be black,
+    /// so it gets a default sun and sky; its background is still what a camera ray sees that
+    /// misses everything.
+    #[must_use]
+    pub fn of(scene: &Scene, bounds: &Bounds) -> Self {
+        let is_light = |kind: &MaterialKind| matches!(kind, MaterialKind::Light { .. });
+        let unlit = scene.sun.is_none()
+            && scene.sky.is_none()
+            && scene.lights.is_empty()
+            && !scene.materials.iter().any(|one| is_light(&one.kind));
+        let (sun, sky) = if unlit {
+            (Some(default_sun()), Some(default_sky()))
+        } else {
+            (scene.sun, scene.sky)
+        };
+        let radiance = sky.map(|sky| sky.color * sky.strength);
+        let miss = if unlit { None } else { radiance };
+        let sun = sun.as_ref().and_then(SunLight::new);
+        let shapes: Vec<_> = scene.lights.iter().filter_map(ShapeLight::new).collect();
+        let emitters = Emitters::new(scene);
+        let radius = match bounds.is_empty() {
+            true => 1.0,
+            false => 0.5 * bounds.extent().length(),
+        };
+        let of_sun = sun.map(|sun| sun.irradiance * (PI * radius * radius));
+        let of_shapes = shapes.iter().map(ShapeLight::power);
+        let of_emitters = emitters.list.iter().map(emitters::Emitter::power);
+        let powers = of_sun.into_iter().chain(of_shapes).chain(of_emitters);
+        let powers: Vec<f64> = powers.map(|power| power.element_sum()).collect();
+        Self {
+            sun,
+            sky: radiance.filter(|&radiance| radiance != DVec3::ZERO),
+            miss: miss.unwrap_or(scene.background),
+            choice: Choice::new(&powers),
+            shapes,
+            emitters,
+        }
+    }
+
+    /// The sun, where it gives light.
+    #[must_use]
+    pub fn sun(&self) -> Option<SunLight> {
+        self.sun
+    }
+
+    /// The sky's radiance, the same in every direction, where there is any.
+    #[must_use]
+    pub fn sky(&self) -> Option<DVec3> {
+        self.sky
+    }
+
+    /// The radiance of a camera ray that hits nothing.
+    #[must_use]
+    pub fn miss(&self) -> DVec3 {
+        self.miss
+    }
+
+    /// Whether there are solids that are sampled as lights, so that a hit's path matters.
+    pub(crate) fn has_emitters(&self) -> bool {
+        !self.emitters.list.is_empty()
+    }
+
+    /// Whether solids emit light that are too many to be sampled.
+    pub(crate) fn has_too_many_emitters(&self) -> bool {
+        self.emitters.are_too_many
+    }
+
+    /// Whether some light is sampled.
+    pub(crate) fn is_sampled(&self) -> bool {
+        !self.choice.is_empty()
+    }
+
+    /// A direction from a point towards one of the sampled lights: `choice` is for the light, the
+    /// other numbers for a place on it. `None` if it does not shine on the point.
+    pub(crate) fn sample(&self, point: DVec3, choice: f64, numbers: (f64, f64)) -> Option<Towards> {
+        let (chosen, probability) = self.choice.choose(choice);
+        let scaled = |sample: LightSample| LightSample {
+            arriving: sample.arriving / probability,
+            density: sample.density.map(|density| density * probability),
+            ..sample
+        };
+        let shapes = usize::from(self.sun.is_some());
+        match self.sun {
+            Some(sun) if chosen == 0 => {
+                return Some(Towards::Open(scaled(sun.sample(numbers)), None));
+            }
+            _ => {}
+        }
+        let number = chosen - shapes;
+        if let Some(shape) = self.shapes.get(number) {
+            let sample = shape.sample(point, numbers)?;
+            return Some(Towards::Open(scaled(sample), Some(number)));
+        }
+        let number = number - self.shapes.len();
+        let emitter = &self.emitters.list[number];
+        let (direction, density) = emitter.sample(point, numbers)?;
+        let sample = LightSample {
+            direction,
+            distance: f64::INFINITY,
+            arriving: DVec3::splat(1.0 / density),
+            density: Some(density),
+        };
+        Some(Towards::Solid(scaled(sample), number))
+    }
+
+    /// The light from infinity in a unit direction, where nothing is.
+    pub(crate) fn beyond(&self, direction: DVec3) -> Arriving {
+        let sun = self.sun.filter(SunLight::has_extent);
+        Arriving {
+            unsampled: self.sky.unwrap_or_default(),
+            sampled: sun.map_or(DVec3::ZERO, |sun| sun.radiance(direction)),
+            density: sun.map_or(0.0, |sun| {
+                sun.density(direction) * self.choice.probability(0)
+            }),
+        }
+    }
+
+    /// Whether a light with a place is between the start of a ray and the light that it is
+    /// towards.
+    pub(crate) fn are_between(&self, ray: &Ray, towards: &Towards) -> bool {
+        let own = match towards {
+            Towards::Open(_, number) => *number,
+            // The end of the ray is not known yet.
+            Towards::Solid(..) => return false,
+        };
+        let mut shapes = self.shapes.iter().enumerate();
+        shapes.any(|(number, shape)| own != Some(number) && shape.distance(ray).is_some())
+    }
+
+    /// Whether a light with a place is on a ray.
+    pub(crate) fn is_on(&self, ray: &Ray) -> bool {
+        let mut shapes = self.shapes.iter();
+        shapes.any(|shape| shape.distance(ray).is_some())
+    }
+
+    /// The light of the first light with a place on a ray up to `t_max`. The ray's direction was
+    /// sampled at `point`.
+    pub(crate) fn on(&self, ray: &Ray, t_max: f64, point: DVec3) -> Option<Arriving> {
+        let mut nearest = Ray { t_max, ..*ray };
+        let mut found = None;
+        for (number, shape) in self.shapes.iter().enumerate() {
+            if let Some(t) = shape.distance(&nearest) {
+                nearest.t_max = t;
+                found = Some((number, shape));
+            }
+        }
+        let (number, shape) = found?;
+        let to_light = ray.at(nearest.t_max) - point;
+        let distance = to_light.length();
+        let chosen = usize::from(self.sun.is_some()) + number;
+        let density = shape.density(point, to_light / distance, distance);
+        Some(Arriving {
+            unsampled: DVec3::ZERO,
+            sampled: shape.radiance(),
+            density: density * self.choice.probability(chosen),
+        })
+    }
+
+    /// The density with which the direction of a hit on an emitting solid is sampled at a point.
+    pub(crate) fn density_of(&self, hit: &PartialHit, point: DVec3, direction: DVec3) -> f64 {
+        self.emitters.number(hit).map_or(0.0, |number| {
+            let chosen = usize::from(self.sun.is_some()) + self.shapes.len() + number;
+            let density = self.emitters.list[number].density(point, direction);
+            density * self.choice.probability(chosen)
+        })
+    }
+
+    /// The number of the emitting solid of a hit.
+    pub(crate) fn number_of(&self, hit: &PartialHit) -> Option<usize> {
+        self.emitters.number(hit)
+    }
+}
+
+fn default_sun() -> Sun {
+    let (direction, color, strength) = DEFAULT_SUN;
+    Sun {
+        direction,
+        color,
+        strength,
+        angle_degrees: Sun::ANGLE_DEGREES,
+    }
+}
+
+fn default_sky() -> Sky {
+    let (color, strength) = DEFAULT_SKY;
+    Sky { color, strength }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(sun: Option<Sun>, sky: Option<Sky>) -> Scene {
+        Scene {
+            sun,
+            sky,
+            background: DVec3::new(0.1, 0.2, 0.3),
+            ..Scene::new(Vec::new())
+        }
+    }
+
+    fn lights_of(scene: &Scene) -> Lights {
+        Lights::of(scene, &Bounds::EMPTY)
+    }
+
+    #[test]
+    fn lights_none_stated_defaults_shine_and_background_shows() {
+        let lights = lights_of(&scene(None, None));
+        let sun = lights.sun().expect("a default sun");
+        assert!((sun.direction.length() - 1.0).abs() < 1e-15);
+        assert!(lights.sky().is_some());
+        assert_eq!(lights.miss(), DVec3::new(0.1, 0.2, 0.3));
+    }
+
+    #[test]
+    fn lights_without_strength_left_out() {
+        let mut sun = default_sun();
+        sun.strength = 0.0;
+        let lights = lights_of(&scene(Some(sun), None));
+        assert!(lights.sun().is_none() && lights.sky().is_none());
+        assert_eq!(lights.miss(), DVec3::new(0.1, 0.2, 0.3));
+    }
+
+    #[test]
+    fn lights_sky_stated_seen_where_nothing_is() {
+        let sky = Sky {
+            color: DVec3::new(0.5, 0.25, 1.0),
+            strength: 2.0,
+        };
+        let lights = lights_of(&scene(None, Some(sky)));
+        assert!(lights.sun().is_none());
+        assert_eq!(lights.miss(), DVec3::new(1.0, 0.5, 2.0));
+        assert_eq!(lights.sky(), Some(lights.miss()));
+    }
+}
