@@ -7,6 +7,7 @@
 //!   everywhere. A surface of reflectance `ρ` that faces the sun at the cosine `c` sends out
 //!   `ρ (E c S / π + L V)`, where `S` is the part of the sun that is seen and `V` the part of the
 //!   directions, weighted by their cosine, that leave the scene. Light is not reflected twice.
+//!   Materials of all kinds count as diffuse, and one that emits light shows its radiance.
 
 use std::f64::consts::FRAC_1_PI;
 
@@ -61,8 +62,12 @@ impl View<'_> {
             self.add_sky(samples, batch, rays, (radiance, f64::INFINITY));
         }
         for (color, hit) in batch.colors.iter_mut().zip(&batch.hits) {
-            if let Some(hit) = hit {
-                *color *= self.colors.at(hit);
+            let Some(hit) = hit else {
+                continue;
+            };
+            match self.emitted(hit) {
+                Some(radiance) => *color = radiance,
+                None => *color *= self.colors.at(hit),
             }
         }
     }

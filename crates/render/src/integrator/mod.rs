@@ -20,7 +20,7 @@ use super::bsdf::Bsdf;
 use super::colors::Colors;
 use super::sampler::PixelSampler;
 use cyltrace::math::Ray;
-use cyltrace::scene::{AimedCamera, Integrator, RenderSettings, Scene};
+use cyltrace::scene::{AimedCamera, Integrator, MaterialKind, RenderSettings, Scene};
 use cyltrace::tracer::{HitFields, PartialHit, Tracer};
 use occlusion::Occlusion;
 use path::Paths;
@@ -154,6 +154,15 @@ impl<'a> View<'a> {
         let color = |hit: &PartialHit| normal(hit) * 0.5 + 0.5;
         let colors = hits.map(|hit| hit.map_or(DVec3::ZERO, color));
         batch.colors.extend(colors);
+    }
+
+    /// The radiance that a solid emits at a hit; `None` of a material that emits no light.
+    fn emitted(&self, hit: &PartialHit) -> Option<DVec3> {
+        let material = &self.tracer.scene().materials[usize::from(hit.material().0)];
+        match material.kind {
+            MaterialKind::Light { strength } => Some(self.colors.at(hit) * strength),
+            _ => None,
+        }
     }
 
     /// The first hits of the batch's rays.

@@ -245,18 +245,9 @@ impl View<'_> {
             .map_or(0.0, |_| self.lights.density_of(hit, path.point, direction));
         path.weighted(Arriving {
             unsampled: DVec3::ZERO,
-            sampled: self.emitted(hit),
+            sampled: self.emitted(hit).unwrap_or_default(),
             density,
         })
-    }
-
-    /// The radiance that a solid emits at a hit.
-    fn emitted(&self, hit: &PartialHit) -> DVec3 {
-        let material = &self.tracer.scene().materials[usize::from(hit.material().0)];
-        match material.kind {
-            MaterialKind::Light { strength } => self.colors.at(hit) * strength,
-            _ => DVec3::ZERO,
-        }
     }
 
     /// The surface at a hit, or `None` if it separates nothing.
@@ -392,7 +383,8 @@ impl View<'_> {
             };
             let is_reached = self.lights.number_of(hit) == Some(to_solid.number);
             if is_reached && !self.lights.is_on(&before) {
-                batch.colors[to_solid.sample] += to_solid.factor * self.emitted(hit);
+                batch.colors[to_solid.sample] +=
+                    to_solid.factor * self.emitted(hit).unwrap_or_default();
             }
         }
         rays.len() as u64
