@@ -5,10 +5,13 @@
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::defaults;
+use super::description::Integrator;
 use super::formats::{
     BeamLatticeKeys, CylinderTableKeys, SolidFile, SwcKeys, for_each_solid_format,
 };
 use super::materials::MaterialKeys;
+use super::placed_lights::{PointLightKeys, RectangleLightKeys, SphereLightKeys};
 use super::set_operations::{CompositionKeys, Operation};
 use super::solid_keys::RotationKeys;
 use super::solids::SceneSolid;
@@ -106,6 +109,12 @@ for_each_solid_format! {
         pub sun: Option<Keys<SunKeys>>,
         pub sky: Option<Keys<SkyKeys>>,
         #[serde(default)]
+        pub point_light: Vec<Keys<PointLightKeys>>,
+        #[serde(default)]
+        pub sphere_light: Vec<Keys<SphereLightKeys>>,
+        #[serde(default)]
+        pub rectangle_light: Vec<Keys<RectangleLightKeys>>,
+        #[serde(default)]
         pub material: Vec<Keys<MaterialKeys>>,
         #[serde(default)]
         pub prototype: Vec<Keys<PrototypeKeys>>,
@@ -124,6 +133,20 @@ impl Document {
         let prototypes = self.prototype.iter();
         let prototypes = prototypes.map(|Keys(keys)| keys.body(keys.name.get_ref()));
         std::iter::once(self.body("")).chain(prototypes)
+    }
+
+    /// The integrator of a file that states none: paths, if other integrators would not show
+    /// a material or a light of the file.
+    pub fn default_integrator(&self) -> Integrator {
+        let is_diffuse = |Keys(keys): &Keys<MaterialKeys>| keys.is_diffuse();
+        let is_plain = self.material.iter().all(is_diffuse)
+            && self.point_light.is_empty()
+            && self.sphere_light.is_empty()
+            && self.rectangle_light.is_empty();
+        match is_plain {
+            true => defaults::RENDER.integrator,
+            false => Integrator::Path,
+        }
     }
 }
 

@@ -16,6 +16,7 @@ use super::materials::{Materials, check_names};
 use super::named_table::{PipeMemory, Tables};
 use super::names::{quoted, suggestion};
 use super::origins::Origins;
+use super::placed_lights::placed_lights;
 use super::placing::{Edge, Placements};
 use super::pose;
 use super::record::Records;
@@ -54,6 +55,13 @@ pub(super) fn lower(
     let nodes: Vec<Node> = bodies.iter().map(Lowered::node).collect();
     graph::check(source, &nodes)?;
 
+    let placed_lights = placed_lights(
+        source,
+        &document.point_light,
+        &document.sphere_light,
+        &document.rectangle_light,
+    )?;
+    let integrator = document.default_integrator();
     let sun = document.sun.map(|Keys(keys)| keys);
     let sky = document.sky.map(|Keys(keys)| keys);
     let lights = lights(
@@ -68,10 +76,10 @@ pub(super) fn lower(
     Ok(Scene {
         camera: camera(source, &keys(document.camera))?,
         film: film(source, &keys(document.film))?,
-        render: render(source, &keys(document.render))?,
+        render: render(source, &keys(document.render), integrator)?,
         sun: lights.sun,
         sky: lights.sky,
-        lights: Vec::new(),
+        lights: placed_lights,
         background: lights.background,
         skipped_rows: bodies.iter().map(|body| body.skipped).sum(),
         notes,

@@ -9,10 +9,11 @@ use toml::Spanned;
 use super::defaults;
 use super::error::SceneError;
 use super::material::{Color, Material, MaterialKind};
+use super::material_kinds::{self, KindNumbers};
 use super::names::{quoted, suggestion};
 use super::record::MaterialIndex;
 use super::source::Source;
-use super::values::{Keys, Triple, vector};
+use super::values::{Keys, Number, Triple, vector};
 
 /// `[[material]]`
 #[derive(Deserialize)]
@@ -20,7 +21,18 @@ use super::values::{Keys, Triple, vector};
 pub(super) struct MaterialKeys {
     pub name: Spanned<String>,
     pub kind: Option<Spanned<String>>,
-    pub color: Triple,
+    pub color: Option<Triple>,
+    pub roughness: Option<Spanned<Number>>,
+    pub ior: Option<Spanned<Number>>,
+    pub strength: Option<Spanned<Number>>,
+}
+
+impl MaterialKeys {
+    /// Whether the surface scatters light equally in all directions.
+    pub fn is_diffuse(&self) -> bool {
+        let kind = self.kind.as_ref();
+        kind.is_none_or(|kind| kind.get_ref() == MaterialKind::Diffuse.name())
+    }
 }
 
 /// The materials of a scene and their names.
@@ -49,19 +61,13 @@ impl Materials {
 
     fn add(&mut self, source: &Source, keys: &MaterialKeys) -> Result<(), SceneError> {
         let name = keys.name.get_ref();
-        if let Some(kind) = &keys.kind {
-            source.choose("kind", kind, &[("diffuse", ())])?;
-        }
-        let color = vector(&keys.color);
-        if !(color.cmpge(DVec3::ZERO) & color.cmple(DVec3::ONE)).all() {
-            return Err(source.error(
-                keys.color.span(),
-                format!(
-                    "color is [{}, {}, {}]: a material's components must be in [0, 1]",
-                    color.x, color.y, color.z
-                ),
-            ));
-        }
+        let numbers = KindNumbers {
+            roughness: keys.roughness.as_ref(),
+            ior: keys.ior.as_ref(),
+            strength: keys.strength.as_ref(),
+        };
+        let kind = material_kinds::kind(source, keys.kind.as_ref(), &numbers)?;
+        let color = color(source, keys, kind)?;
         let index = u16::try_from(self.list.len()).map_err(|_| {
             source.error(
                 keys.name.span(),
@@ -71,8 +77,8 @@ impl Materials {
         self.index.insert(name.clone(), MaterialIndex(index));
         self.list.push(Material {
             name: name.clone(),
-            color: Color::Constant(color),
-            kind: MaterialKind::Diffuse,
+            color,
+            kind,
         });
         Ok(())
     }
@@ -95,6 +101,33 @@ impl Materials {
             )
         })
     }
+}
+
+/// The color of a material. Glass and lights are white by default.
+fn color(source: &Source, keys: &MaterialKeys, kind: MaterialKind) -> Result<Color, SceneError> {
+    let Some(key) = &keys.color else {
+        return match kind {
+            MaterialKind::Glass { .. } | MaterialKind::Light { .. } => {
+                Ok(Color::Constant(DVec3::ONE))
+            }
+            _ => Err(source.error_with_help(
+                keys.name.span(),
+                format!("the material {} has no color", quoted(keys.name.get_ref())),
+                "such as color = [0.8, 0.5, 0.2], from 0 to 1 in linear RGB",
+            )),
+        };
+    };
+    let color = vector(key);
+    if (color.cmpge(DVec3::ZERO) & color.cmple(DVec3::ONE)).all() {
+        return Ok(Color::Constant(color));
+    }
+    Err(source.error(
+        key.span(),
+        format!(
+            "color is [{}, {}, {}]: a material's components must be in [0, 1]",
+            color.x, color.y, color.z
+        ),
+    ))
 }
 
 /// Checks that no name is empty and that names are unique.

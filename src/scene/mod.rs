@@ -5,7 +5,8 @@
 //! 1. `document` contains the keys as written, with their places.
 //! 2. The entries are turned into solids, placements and settings, one kind in each
 //!    file: `solids` with their `pose`, `set_operations`, the `formats` of files,
-//!    `placing`, `scatter`, `camera`, `materials` and `settings`. Rows of tables are streamed;
+//!    `placing`, `scatter`, `camera`, `materials` with `material_kinds`, `placed_lights` and
+//!    `settings`. Rows of tables are streamed;
 //!    `named_table` opens the tables and `table` reads them. `solid_collector` collects
 //!    and numbers the solids of a prototype.
 //! 3. `graph` checks how prototypes place each other.
@@ -36,11 +37,13 @@ mod limits;
 mod lines;
 mod load;
 mod material;
+mod material_kinds;
 mod materials;
 mod named_table;
 mod names;
 mod number_table;
 mod origins;
+mod placed_lights;
 mod placing;
 mod pose;
 mod record;

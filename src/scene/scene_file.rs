@@ -85,7 +85,11 @@ impl SceneFile {
         let render_keys = render_keys.as_ref().map(|Keys(keys)| keys);
         Ok((
             film(&self.source, film_keys.unwrap_or(&Default::default()))?,
-            render(&self.source, render_keys.unwrap_or(&Default::default()))?,
+            render(
+                &self.source,
+                render_keys.unwrap_or(&Default::default()),
+                self.document.default_integrator(),
+            )?,
         ))
     }
 

@@ -142,14 +142,20 @@ pub(super) fn film(source: &Source, keys: &FilmKeys) -> Result<Film, SceneError>
 }
 
 /// The settings of `render`.
-pub(super) fn render(source: &Source, keys: &RenderKeys) -> Result<RenderSettings, SceneError> {
+///
+/// `default` is the integrator of a file that states none.
+pub(super) fn render(
+    source: &Source,
+    keys: &RenderKeys,
+    default: Integrator,
+) -> Result<RenderSettings, SceneError> {
     Ok(RenderSettings {
         integrator: match &keys.integrator {
             Some(word) => {
                 let names = Integrator::ALL.map(|integrator| (integrator.name(), integrator));
                 source.choose("integrator", word, &names)?
             }
-            None => defaults::RENDER.integrator,
+            None => default,
         },
         spp: count(source, "spp", keys.spp.as_ref(), GREATEST_SAMPLES)?
             .unwrap_or(defaults::RENDER.spp),
@@ -197,7 +203,11 @@ fn count(
 }
 
 /// The linear RGB of a light, which must not be negative.
-fn color(source: &Source, key: Option<&Triple>, default: DVec3) -> Result<DVec3, SceneError> {
+pub(super) fn color(
+    source: &Source,
+    key: Option<&Triple>,
+    default: DVec3,
+) -> Result<DVec3, SceneError> {
     let Some(key) = key else {
         return Ok(default);
     };
@@ -214,7 +224,8 @@ fn color(source: &Source, key: Option<&Triple>, default: DVec3) -> Result<DVec3,
     Ok(color)
 }
 
-fn strength(
+/// The factor on a light's color, which must not be negative.
+pub(super) fn strength(
     source: &Source,
     key: Option<&Spanned<Number>>,
     default: f64,

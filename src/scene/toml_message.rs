@@ -8,8 +8,11 @@ use crate::solid::SolidKind;
 
 /// The top-level keys for arrays of tables, `[[...]]`, besides those of solids and of their
 /// files.
-const LISTS: [&str; 5] = [
+const LISTS: [&str; 8] = [
     "material",
+    "point_light",
+    "sphere_light",
+    "rectangle_light",
     "prototype",
     "instance",
     "instance_table",

@@ -12,9 +12,9 @@ use cyltrace::scene::{
 use cyltrace::solid::Caps;
 use glam::{DAffine3, DMat3, DVec3};
 
-const SOLID: &str = "[[cylinder]]\np0 = [0, 0, 0]\np1 = [0, 0, 1]\nradius = 1\n";
+pub const SOLID: &str = "[[cylinder]]\np0 = [0, 0, 0]\np1 = [0, 0, 1]\nradius = 1\n";
 const TREE: &str = "[[prototype]]\nname = \"tree\"\n[[prototype.cylinder]]\np0 = [0, 0, 0]\np1 = [0, 0, 1]\nradius = 1\n";
-const BARK: &str = "[[material]]\nname = \"bark\"\ncolor = [0.1, 0.2, 0.3]\n";
+pub const BARK: &str = "[[material]]\nname = \"bark\"\ncolor = [0.1, 0.2, 0.3]\n";
 const LATTICE: &str = "<resources><object id=\"1\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/>\
      <vertex x=\"0\" y=\"0\" z=\"9\"/></vertices><b:beamlattice radius=\"1\" minlength=\"0\"><b:beams>\
      <b:beam v1=\"0\" v2=\"1\"/></b:beams></b:beamlattice></mesh></object></resources>\
@@ -42,7 +42,7 @@ const FILES: [(&str, &str); 5] = [
 ];
 
 /// The scene of a text, with the tables beside it.
-fn scene(text: &str) -> Scene {
+pub fn scene(text: &str) -> Scene {
     let folder = tempfile::tempdir().expect("a temporary folder");
     for (name, text) in FILES {
         fs::write(folder.path().join(name), text).expect("writing a table");

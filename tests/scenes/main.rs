@@ -5,6 +5,7 @@ mod generated_scenes;
 mod keys;
 mod lattices;
 mod nesting;
+mod picture_keys;
 mod real_data;
 mod sample_scenes;
 mod save;

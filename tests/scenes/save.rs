@@ -11,8 +11,8 @@ use std::sync::Arc;
 
 use cyltrace::math::{Bounds, Orientation, Random, Ray, power_of_two};
 use cyltrace::scene::{
-    Camera, Film, Frame, Integrator, Material, MaterialIndex, Projection, Prototype,
-    RenderSettings, Scene, Sky, SolidRecord, Sun, load, save,
+    Camera, Film, Frame, Integrator, Light, LightShape, Material, MaterialIndex, MaterialKind,
+    Projection, Prototype, RenderSettings, Scene, Sky, SolidRecord, Sun, load, save,
 };
 use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 use cyltrace::tracer::{Options, Tracer};
@@ -201,8 +201,26 @@ fn pictures_and_names_saved_are_the_same() {
         "[[x]] # = {}",
         "C:\\",
     ];
-    let material = |name| Material::diffuse(name, DVec3::new(-0.0, 1.0, random.unit()));
-    scene.materials.extend(names.map(material));
+    let kinds = [
+        MaterialKind::Diffuse,
+        MaterialKind::Metal { roughness: 1.0 },
+        MaterialKind::Plastic {
+            roughness: 0.1 + 0.2,
+            ior: 10.0,
+        },
+        MaterialKind::Glass {
+            roughness: -0.0,
+            ior: 1.0,
+        },
+        MaterialKind::Light { strength: 1e300 },
+    ];
+    let material = |(index, name)| Material {
+        kind: kinds[index % kinds.len()],
+        ..Material::diffuse(name, DVec3::new(-0.0, 1.0, random.unit()))
+    };
+    scene
+        .materials
+        .extend(names.into_iter().enumerate().map(material));
     for (case, integrator) in Integrator::ALL.into_iter().enumerate() {
         scene.render = RenderSettings {
             integrator,
@@ -228,6 +246,36 @@ fn pictures_and_names_saved_are_the_same() {
         });
         assert_same(&scene, &saved(&scene), "picture");
     }
+}
+
+#[test]
+fn lights_with_a_place_saved_are_the_same() {
+    let mut scene = sample("minimal.toml");
+    let mut random = Random::new(20, 0);
+    let mut point = || random.direction() * random.log_uniform(1e-30, 1e30);
+    let mut shapes = Vec::new();
+    for _ in 0..3 {
+        shapes.push(LightShape::Point { position: point() });
+    }
+    for _ in 0..3 {
+        let radius = point().length();
+        let center = point();
+        shapes.push(LightShape::Sphere { center, radius });
+    }
+    for _ in 0..3 {
+        let corner = point();
+        let edges = [point(), point()];
+        shapes.push(LightShape::Rectangle { corner, edges });
+    }
+    scene.lights = shapes
+        .into_iter()
+        .map(|shape| Light {
+            shape,
+            color: point().abs(),
+            strength: point().length(),
+        })
+        .collect();
+    assert_same(&scene, &saved(&scene), "lights");
 }
 
 /// The direction of a light is normalized when it is stated, and not again when it is saved.

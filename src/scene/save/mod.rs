@@ -56,7 +56,8 @@ struct Saver<'a, W> {
 /// [`Scene::notes`], [`Scene::skipped_rows`] (the numbers of skipped rows stay unused),
 /// the origins of solids and placements, and [`Scene::rounding`]: cylinders in f32 are
 /// written as they are, so that reading them rounds nothing. The order of the cylinders in
-/// memory may change, and the name of the root is not written.
+/// memory may change, and so may that of lights of different shapes; the name of the root is
+/// not written.
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -4,6 +4,8 @@ use super::text::Text;
 use super::{SaveError, check_names};
 use crate::scene::defaults;
 use crate::scene::description::{Camera, Frame, Projection, Scene};
+use crate::scene::light::{Light, LightShape};
+use crate::scene::material_kinds::keys_of;
 use crate::scene::settings::is_unit;
 
 pub(super) fn state(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
@@ -73,7 +75,34 @@ fn lights(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
         entry.vector("color", sky.color);
         entry.number("strength", sky.strength);
     }
+    for light in &scene.lights {
+        placed_light(text, light);
+    }
     Ok(())
+}
+
+fn placed_light(text: &mut Text, light: &Light) {
+    let mut entry = match light.shape {
+        LightShape::Point { position } => {
+            let mut entry = text.table("[[point_light]]");
+            entry.vector("position", position);
+            entry
+        }
+        LightShape::Sphere { center, radius } => {
+            let mut entry = text.table("[[sphere_light]]");
+            entry.vector("center", center);
+            entry.number("radius", radius);
+            entry
+        }
+        LightShape::Rectangle { corner, edges } => {
+            let mut entry = text.table("[[rectangle_light]]");
+            entry.vector("corner", corner);
+            entry.rows("edges", edges.map(|edge| edge.to_array()));
+            entry
+        }
+    };
+    entry.vector("color", light.color);
+    entry.number("strength", light.strength);
 }
 
 fn materials(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
@@ -87,7 +116,11 @@ fn materials(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
     for material in named {
         let mut entry = text.table("[[material]]");
         entry.text("name", &material.name);
+        entry.text("kind", material.kind.name());
         entry.vector("color", material.color.average());
+        for (key, number) in keys_of(material.kind) {
+            entry.number(key, number);
+        }
     }
     Ok(())
 }

@@ -88,7 +88,7 @@ impl<'t> Entry<'t> {
     }
 
     /// States rows of numbers.
-    pub fn rows<const N: usize>(&mut self, key: &'static str, rows: [[f64; N]; 3]) {
+    pub fn rows<const N: usize, const M: usize>(&mut self, key: &'static str, rows: [[f64; N]; M]) {
         self.check(key, rows.as_flattened());
         self.value(key, format_args!("{rows:?}"));
     }

@@ -15,6 +15,7 @@ pub fn assert_same(one: &Scene, other: &Scene, name: &str) {
     same(&one.render, &other.render, name);
     same(&one.sun, &other.sun, name);
     same(&one.sky, &other.sky, name);
+    same(&one.lights, &other.lights, name);
     same(&one.background, &other.background, name);
     assert_eq!(one.records(), other.records(), "{name}");
     assert_eq!(one.prototypes.len(), other.prototypes.len(), "{name}");

@@ -160,10 +160,10 @@ pub fn cases() -> Vec<Case> {
         ),
         with_solid(
             "integrator_unknown",
-            "[render]\nintegrator = \"path\"\n",
+            "[render]\nintegrator = \"photons\"\n",
             &[
                 "scene.toml:6:14",
-                "\"path\" is not a value of integrator",
+                "\"photons\" is not a value of integrator",
                 "\"ao\"",
             ],
         ),
@@ -212,12 +212,50 @@ pub fn cases() -> Vec<Case> {
         ),
         with_solid(
             "material_kind_unknown",
-            "[[material]]\nname = \"a\"\nkind = \"glass\"\ncolor = [1, 1, 1]\n",
+            "[[material]]\nname = \"a\"\nkind = \"glas\"\ncolor = [1, 1, 1]\n",
             &[
                 "scene.toml:7:8",
-                "\"glass\" is not a value of kind",
+                "\"glas\" is not a value of kind",
+                "did you mean \"glass\"?",
                 "\"diffuse\"",
             ],
+        ),
+        with_solid(
+            "material_number_of_another_kind",
+            "[[material]]\nname = \"a\"\nkind = \"metal\"\ncolor = [1, 1, 1]\nior = 2\n",
+            &[
+                "scene.toml:9:7",
+                "ior is for \"plastic\" and \"glass\": this material is \"metal\"",
+            ],
+        ),
+        with_solid(
+            "material_number_of_a_diffuse_one",
+            "[[material]]\nname = \"a\"\ncolor = [1, 1, 1]\nroughness = 0.5\n",
+            &[
+                "scene.toml:8:13",
+                "roughness is for \"metal\", \"plastic\" and \"glass\"",
+                "this material is \"diffuse\"",
+            ],
+        ),
+        with_solid(
+            "material_strength_of_no_light",
+            "[[material]]\nname = \"a\"\ncolor = [1, 1, 1]\nstrength = 2\n",
+            &["scene.toml:8:12", "strength is for \"light\": this"],
+        ),
+        with_solid(
+            "material_without_color",
+            "[[material]]\nname = \"gold\"\nkind = \"metal\"\n",
+            &["scene.toml:6:8", "\"gold\" has no color", "from 0 to 1"],
+        ),
+        with_solid(
+            "sphere_light_without_radius",
+            "[[sphere_light]]\ncenter = [1, 1, 1]\n",
+            &["scene.toml:5:1", "missing field `radius`"],
+        ),
+        with_solid(
+            "light_as_a_single_table",
+            "[sphere_light]\ncenter = [1, 1, 1]\nradius = 1\n",
+            &["scene.toml:5:1", "write [[sphere_light]]"],
         ),
         with_solid(
             "material_unknown",

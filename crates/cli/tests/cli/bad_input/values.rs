@@ -142,6 +142,65 @@ pub fn cases() -> Vec<Case> {
             "[[material]]\nname = \"a\"\ncolor = [1, 1.5, 1]\n",
             &["scene.toml:7:9", "must be in [0, 1]"],
         ),
+        with_solid(
+            "material_roughness_above_one",
+            "[[material]]\nname = \"a\"\ncolor = [1, 1, 1]\nkind = \"metal\"\nroughness = 1.5\n",
+            &[
+                "scene.toml:9:13",
+                "roughness is 1.5: it must be between 0 and 1",
+            ],
+        ),
+        with_solid(
+            "material_ior_below_one",
+            "[[material]]\nname = \"a\"\nkind = \"glass\"\nior = 0.9\n",
+            &["scene.toml:8:7", "ior is 0.9: it must be between 1 and 10"],
+        ),
+        with_solid(
+            "material_strength_negative",
+            "[[material]]\nname = \"a\"\nkind = \"light\"\nstrength = -1\n",
+            &["scene.toml:8:12", "strength is -1: it must not be negative"],
+        ),
+        with_solid(
+            "point_light_too_far",
+            "[[point_light]]\nposition = [0, 1e60, 0]\n",
+            &[
+                "scene.toml:6:12",
+                "position has a coordinate of the size 1.0e60",
+            ],
+        ),
+        with_solid(
+            "sphere_light_radius_zero",
+            "[[sphere_light]]\ncenter = [0, 0, 0]\nradius = 0\n",
+            &["scene.toml:7:10", "radius is 0: it must be positive"],
+        ),
+        with_solid(
+            "sphere_light_radius_tiny",
+            "[[sphere_light]]\ncenter = [0, 0, 0]\nradius = 1e-60\n",
+            &["scene.toml:7:10", "radius is 1e-60: it must be between"],
+        ),
+        with_solid(
+            "sphere_light_strength_negative",
+            "[[sphere_light]]\ncenter = [0, 0, 0]\nradius = 1\nstrength = -3\n",
+            &["scene.toml:8:12", "strength is -3: it must not be negative"],
+        ),
+        with_solid(
+            "rectangle_light_edges_parallel",
+            "[[rectangle_light]]\ncorner = [0, 0, 0]\nedges = [[1, 2, 0], [-2, -4, 0]]\n",
+            &["scene.toml:7:9", "the edges are parallel", "edges = ["],
+        ),
+        with_solid(
+            "rectangle_light_edge_zero",
+            "[[rectangle_light]]\ncorner = [0, 0, 0]\nedges = [[1, 2, 0], [0, 0, 0]]\n",
+            &[
+                "scene.toml:7:21",
+                "the length of an edge is 0: it must be positive",
+            ],
+        ),
+        with_solid(
+            "rectangle_light_color_negative",
+            "[[rectangle_light]]\ncorner = [0, 0, 0]\nedges = [[1, 0, 0], [0, 1, 0]]\ncolor = [-1, 0, 0]\n",
+            &["scene.toml:8:9", "must not be negative"],
+        ),
     ]
 }
 

@@ -1,0 +1,138 @@
+//! The keys of materials, lights and cameras do what `docs/scene-file.md` says.
+
+use std::fs;
+
+use cyltrace::scene::{Color, Integrator, Light, LightShape, MaterialKind, SceneFile};
+use glam::DVec3;
+
+use super::keys::{BARK, SOLID, scene};
+
+#[test]
+fn kinds_of_materials_have_the_documented_defaults() {
+    let color = "color = [0.5, 0.25, 1]\n";
+    let gold = Color::Constant(DVec3::new(0.5, 0.25, 1.0));
+    let white = Color::Constant(DVec3::ONE);
+    let (roughness, ior) = (0.25, 2.5);
+    for (keys, color, kind) in [
+        (color.to_owned(), &gold, MaterialKind::Diffuse),
+        (
+            format!("kind = \"metal\"\n{color}"),
+            &gold,
+            MaterialKind::Metal { roughness: 0.3 },
+        ),
+        (
+            format!("kind = \"metal\"\n{color}roughness = 0.25"),
+            &gold,
+            MaterialKind::Metal { roughness },
+        ),
+        (
+            format!("kind = \"plastic\"\n{color}"),
+            &gold,
+            MaterialKind::Plastic {
+                roughness: 0.2,
+                ior: 1.5,
+            },
+        ),
+        (
+            format!("kind = \"plastic\"\n{color}ior = 2.5\nroughness = 0.25"),
+            &gold,
+            MaterialKind::Plastic { roughness, ior },
+        ),
+        (
+            "kind = \"glass\"".to_owned(),
+            &white,
+            MaterialKind::Glass {
+                roughness: 0.0,
+                ior: 1.5,
+            },
+        ),
+        (
+            format!("kind = \"glass\"\n{color}ior = 2.5\nroughness = 0.25"),
+            &gold,
+            MaterialKind::Glass { roughness, ior },
+        ),
+        (
+            "kind = \"light\"".to_owned(),
+            &white,
+            MaterialKind::Light { strength: 1.0 },
+        ),
+        (
+            format!("kind = \"light\"\n{color}strength = 40"),
+            &gold,
+            MaterialKind::Light { strength: 40.0 },
+        ),
+    ] {
+        let scene = scene(&format!("{SOLID}[[material]]\nname = \"a\"\n{keys}\n"));
+        assert_eq!(scene.materials[1].kind, kind, "{keys}");
+        assert_eq!(scene.materials[1].color, *color, "{keys}");
+    }
+}
+
+#[test]
+fn lights_with_a_place_are_points_then_spheres_then_rectangles() {
+    let scene = scene(&format!(
+        "{SOLID}[[rectangle_light]]\ncorner = [1, 2, 3]\nedges = [[2, 0, 0], [1, 1, 0]]\nstrength = 4\n\
+         [[sphere_light]]\ncenter = [4, 5, 6]\nradius = 0.5\ncolor = [3, 0, 1]\n\
+         [[point_light]]\nposition = [7, 8, 9]\n[[point_light]]\nposition = [0, 0, 9]\nstrength = 0\n"
+    ));
+    let light = |shape, color, strength| Light {
+        shape,
+        color,
+        strength,
+    };
+    let position = DVec3::new(7.0, 8.0, 9.0);
+    let near = DVec3::new(0.0, 0.0, 9.0);
+    let center = DVec3::new(4.0, 5.0, 6.0);
+    let expected = [
+        light(LightShape::Point { position }, DVec3::ONE, 1.0),
+        light(LightShape::Point { position: near }, DVec3::ONE, 0.0),
+        light(
+            LightShape::Sphere {
+                center,
+                radius: 0.5,
+            },
+            DVec3::new(3.0, 0.0, 1.0),
+            1.0,
+        ),
+        light(
+            LightShape::Rectangle {
+                corner: DVec3::new(1.0, 2.0, 3.0),
+                edges: [DVec3::X * 2.0, DVec3::new(1.0, 1.0, 0.0)],
+            },
+            DVec3::ONE,
+            4.0,
+        ),
+    ];
+    assert_eq!(scene.lights, expected);
+}
+
+#[test]
+fn integrator_by_default_shows_what_the_scene_states() {
+    let light = "[[point_light]]\nposition = [0, 0, 9]\n";
+    let glass = "[[material]]\nname = \"a\"\nkind = \"glass\"\n";
+    for (keys, integrator) in [
+        (BARK, Integrator::Sun),
+        (light, Integrator::Path),
+        (glass, Integrator::Path),
+        (
+            "[render]\nspp = 3\n[[material]]\nname = \"a\"\nkind = \"glass\"\n",
+            Integrator::Path,
+        ),
+        (
+            "[render]\nintegrator = \"sun\"\n[[point_light]]\nposition = [0, 0, 9]\n",
+            Integrator::Sun,
+        ),
+    ] {
+        assert_eq!(
+            scene(&format!("{keys}{SOLID}")).render.integrator,
+            integrator,
+            "{keys}"
+        );
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("scene.toml");
+        fs::write(&path, format!("{keys}{SOLID}")).expect("writing the scene");
+        let file = SceneFile::read(&path).expect("a scene file");
+        let (_, render) = file.picture().expect("a picture");
+        assert_eq!(render.integrator, integrator, "{keys}");
+    }
+}
