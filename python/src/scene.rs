@@ -338,7 +338,11 @@ impl PyScene {
             },
             _ => Frame::Auto,
         };
-        Arc::make_mut(&mut self.scene).camera = Camera { projection, frame };
+        Arc::make_mut(&mut self.scene).camera = Camera {
+            projection,
+            frame,
+            lens: None,
+        };
     }
 
     fn set_sun(&mut self, direction: Option<[f64; 3]>, color: [f64; 3], strength: f64) {

@@ -1,13 +1,14 @@
 //! Reads the `[camera]` table of a scene file.
 
 use glam::DVec3;
+use toml::Spanned;
 
 use super::defaults;
-use super::description::{Camera, Frame, Projection};
+use super::description::{Camera, Frame, Lens, Projection};
 use super::document::CameraKeys;
 use super::error::SceneError;
 use super::source::Source;
-use super::values::{Triple, vector};
+use super::values::{Number, Triple, vector};
 use crate::math::unit;
 use crate::solid::Cylinder;
 
@@ -17,60 +18,108 @@ const LEAST_UP_SINE: f64 = 1e-6;
 
 /// The camera of `[camera]`.
 pub(super) fn camera(source: &Source, keys: &CameraKeys) -> Result<Camera, SceneError> {
+    let projection = projection(source, keys)?;
     Ok(Camera {
-        projection: projection(source, keys)?,
+        projection,
         frame: frame(source, keys)?,
+        lens: lens(source, keys, projection)?,
     })
 }
 
 fn projection(source: &Source, keys: &CameraKeys) -> Result<Projection, SceneError> {
-    let orthographic = match &keys.r#type {
-        None => false,
-        Some(word) => source.choose(
-            "type",
-            word,
-            &[("perspective", false), ("orthographic", true)],
-        )?,
+    let perspective = Projection::Perspective {
+        fov_degrees: defaults::FOV_DEGREES,
     };
-    match (orthographic, &keys.fov_degrees, &keys.height) {
-        (true, Some(fov), _) => Err(source.error(
-            fov.span(),
-            "fov_degrees is for the perspective camera: an orthographic one has a height",
-        )),
-        (true, None, None) => Ok(Projection::Orthographic { height: None }),
-        (true, None, Some(key)) => {
-            let height = key.get_ref().0;
-            if height > 0.0 && height <= Cylinder::GREATEST {
-                return Ok(Projection::Orthographic {
-                    height: Some(height),
-                });
-            }
-            Err(source.error(
-                key.span(),
-                format!("height is {height}: it must be a positive number of scene units"),
-            ))
-        }
-        (false, _, Some(height)) => Err(source.error_with_help(
-            height.span(),
-            "height is for the orthographic camera: a perspective one has fov_degrees",
-            "the picture's height in pixels belongs to [film]",
-        )),
-        (false, None, None) => Ok(Projection::Perspective {
-            fov_degrees: defaults::FOV_DEGREES,
-        }),
-        (false, Some(key), None) => {
-            let fov_degrees = key.get_ref().0;
-            if fov_degrees > 0.0 && fov_degrees < 180.0 {
-                return Ok(Projection::Perspective { fov_degrees });
-            }
-            Err(source.error(
+    let types = [
+        ("perspective", perspective),
+        ("orthographic", Projection::Orthographic { height: None }),
+        ("panorama", Projection::Panorama),
+    ];
+    let mut projection = match &keys.r#type {
+        None => perspective,
+        Some(word) => source.choose("type", word, &types)?,
+    };
+    if let Some(key) = &keys.fov_degrees {
+        let Projection::Perspective { fov_degrees } = &mut projection else {
+            let message = match projection {
+                Projection::Panorama => {
+                    "fov_degrees is for the perspective camera: a panorama shows all directions"
+                }
+                _ => "fov_degrees is for the perspective camera: an orthographic one has a height",
+            };
+            return Err(source.error(key.span(), message));
+        };
+        *fov_degrees = key.get_ref().0;
+        if !(*fov_degrees > 0.0 && *fov_degrees < 180.0) {
+            return Err(source.error(
                 key.span(),
                 format!(
                     "fov_degrees is {fov_degrees}: it must be between 0 and 180, excluding both"
                 ),
-            ))
+            ));
         }
     }
+    if let Some(key) = &keys.height {
+        let Projection::Orthographic { height } = &mut projection else {
+            return Err(source.error_with_help(
+                key.span(),
+                match projection {
+                    Projection::Panorama => {
+                        "height is for the orthographic camera: a panorama shows all directions"
+                    }
+                    _ => "height is for the orthographic camera: a perspective one has fov_degrees",
+                },
+                "the picture's height in pixels belongs to [film]",
+            ));
+        };
+        let stated = key.get_ref().0;
+        if !(stated > 0.0 && stated <= Cylinder::GREATEST) {
+            return Err(source.error(
+                key.span(),
+                format!("height is {stated}: it must be a positive number of scene units"),
+            ));
+        }
+        *height = Some(stated);
+    }
+    Ok(projection)
+}
+
+/// The lens, if its diameter is not zero.
+fn lens(
+    source: &Source,
+    keys: &CameraKeys,
+    projection: Projection,
+) -> Result<Option<Lens>, SceneError> {
+    let Some(key) = keys.aperture.as_ref().or(keys.focus.as_ref()) else {
+        return Ok(None);
+    };
+    if projection == Projection::Panorama {
+        return Err(source.error(
+            key.span(),
+            "aperture and focus are for the perspective and the orthographic camera: a panorama has no lens",
+        ));
+    }
+    let number = |key: &Spanned<Number>| key.get_ref().0;
+    let aperture = keys.aperture.as_ref().map_or(0.0, number);
+    if !(0.0..=Cylinder::GREATEST).contains(&aperture) {
+        return Err(source.error(
+            key.span(),
+            format!("aperture is {aperture}: it must be the diameter of the lens in scene units, or 0 for no lens"),
+        ));
+    }
+    let focus = keys.focus.as_ref().map(number);
+    if let Some(key) = &keys.focus
+        && !(Cylinder::LEAST..=Cylinder::GREATEST).contains(&number(key))
+    {
+        return Err(source.error(
+            key.span(),
+            format!(
+                "focus is {}: it must be a distance, a positive number of scene units",
+                number(key)
+            ),
+        ));
+    }
+    Ok((aperture > 0.0).then_some(Lens { aperture, focus }))
 }
 
 fn frame(source: &Source, keys: &CameraKeys) -> Result<Frame, SceneError> {

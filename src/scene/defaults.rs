@@ -45,6 +45,7 @@ impl Scene {
                     fov_degrees: FOV_DEGREES,
                 },
                 frame: Frame::Auto,
+                lens: None,
             },
             film: FILM,
             render: RENDER,

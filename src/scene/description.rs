@@ -112,6 +112,19 @@ pub struct Camera {
     pub projection: Projection,
     /// The viewpoint.
     pub frame: Frame,
+    /// The lens; `None` shows everything sharp. A panorama has none.
+    pub lens: Option<Lens>,
+}
+
+/// A thin lens, which shows points in front of and behind one plane as disks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// The diameter in scene units, greater than 0.
+    pub aperture: f64,
+    /// The distance of the sharp plane along the view, in scene units and greater than 0. `None`
+    /// is the distance of the point that the camera looks at, or of the center of the scene's
+    /// box if the frame is automatic.
+    pub focus: Option<f64>,
 }
 
 /// How points are projected onto the picture.
@@ -127,12 +140,15 @@ pub enum Projection {
         /// Scene units across the picture's height; `None` fits the scene.
         height: Option<f64>,
     },
+    /// All directions, as on a map: longitude across and latitude upward.
+    Panorama,
 }
 
 /// The viewpoint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Frame {
-    /// Chosen so that the whole scene is in the picture.
+    /// Chosen so that the whole scene is in the picture; for a panorama, the center of the
+    /// scene's box.
     Auto,
     /// Stated by the user.
     LookAt {

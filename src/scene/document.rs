@@ -185,6 +185,8 @@ pub(super) struct CameraKeys {
     pub up: Option<Triple>,
     pub fov_degrees: Option<Spanned<Number>>,
     pub height: Option<Spanned<Number>>,
+    pub aperture: Option<Spanned<Number>>,
+    pub focus: Option<Spanned<Number>>,
 }
 
 /// `[film]`

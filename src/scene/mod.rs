@@ -71,7 +71,7 @@ pub use contents::{ExpectedCounts, ExpectedSolids, PlacedCount};
 pub(crate) use cylinder_list::SharedRecords;
 pub use cylinder_list::{CylinderList, Iter as CylinderIter};
 pub use description::{
-    Camera, Film, Frame, Integrator, Placement, Projection, Prototype, PrototypeIndex,
+    Camera, Film, Frame, Integrator, Lens, Placement, Projection, Prototype, PrototypeIndex,
     RenderSettings, Scene,
 };
 pub use error::{SceneError, Statement};

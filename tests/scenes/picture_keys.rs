@@ -136,3 +136,23 @@ fn integrator_by_default_shows_what_the_scene_states() {
         assert_eq!(render.integrator, integrator, "{keys}");
     }
 }
+
+#[test]
+fn camera_has_a_lens_if_it_states_an_aperture() {
+    let camera = |keys: &str| scene(&format!("{SOLID}[camera]\n{keys}\n")).camera;
+    assert_eq!(camera("").lens, None);
+    assert_eq!(camera("focus = 3").lens, None);
+    assert_eq!(camera("aperture = 0").lens, None);
+    let aperture = 0.25;
+    let lens = |focus| Some(Lens { aperture, focus });
+    assert_eq!(camera("aperture = 0.25").lens, lens(None));
+    assert_eq!(camera("aperture = 0.25\nfocus = 3").lens, lens(Some(3.0)));
+    let flat = camera("type = \"orthographic\"\naperture = 0.25");
+    assert_eq!(flat.lens, lens(None));
+}
+
+#[test]
+fn panorama_is_a_type_of_camera() {
+    let scene = scene(&format!("{SOLID}[camera]\ntype = \"panorama\"\n"));
+    assert_eq!(scene.camera.projection, Projection::Panorama);
+}

@@ -11,8 +11,8 @@ use std::sync::Arc;
 
 use cyltrace::math::{Bounds, Orientation, Random, Ray, power_of_two};
 use cyltrace::scene::{
-    Camera, Film, Frame, Integrator, Light, LightShape, Material, MaterialIndex, MaterialKind,
-    Projection, Prototype, RenderSettings, Scene, Sky, SolidRecord, Sun, load, save,
+    Camera, Film, Frame, Integrator, Lens, Light, LightShape, Material, MaterialIndex,
+    MaterialKind, Projection, Prototype, RenderSettings, Scene, Sky, SolidRecord, Sun, load, save,
 };
 use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 use cyltrace::tracer::{Options, Tracer};
@@ -180,6 +180,10 @@ fn extreme_numbers_saved_are_the_same() {
             look_at: far,
             up: DVec3::new(-0.0, 1e-310, 1e300),
         },
+        lens: Some(Lens {
+            aperture: tiny,
+            focus: Some(greatest),
+        }),
     };
     scene.background = DVec3::new(-0.0, f64::MAX, tiny);
     assert_same(&scene, &saved(&scene), "extreme numbers");
@@ -235,10 +239,18 @@ fn pictures_and_names_saved_are_the_same() {
         scene.camera.projection = match case {
             0 => Projection::Orthographic { height: None },
             1 => Projection::Perspective { fov_degrees: 1e-7 },
+            2 => Projection::Panorama,
             _ => Projection::Perspective { fov_degrees: 179.9 },
         };
         if case == 1 {
             scene.camera.frame = Frame::Auto;
+            scene.camera.lens = Some(Lens {
+                aperture: 0.1,
+                focus: None,
+            });
+        }
+        if case == 2 {
+            scene.camera.lens = None;
         }
         scene.sky = (case == 1).then_some(Sky {
             color: DVec3::new(0.1, 0.0, 7e100),

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use cyltrace::math::{Random, Ray};
+use cyltrace::math::{Bounds, Random, Ray};
 use cyltrace::scene::{
-    AimedCamera, Camera, CylinderRecord, Film, Frame, MaterialIndex, Projection, Prototype, Scene,
-    Solids,
+    AimedCamera, Camera, CylinderRecord, Film, Frame, Lens, MaterialIndex, Projection, Prototype,
+    Scene, Solids,
 };
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{Options, Tracer};
@@ -33,6 +33,7 @@ fn camera(random: &mut Random) -> Camera {
             look_at: position + random.direction(),
             up: random.direction(),
         },
+        lens: None,
     }
 }
 
@@ -82,7 +83,7 @@ fn solids_at_the_edges_of_a_picture_are_left_out_if_they_are_outside() {
         let size = DVec2::new(f64::from(film.width), f64::from(film.height));
         let (rays, scene) = at_edges(random, &camera, size);
         let options = Options {
-            view: Some(camera.view_volume()),
+            view: camera.view_volume(),
             ..Default::default()
         };
         let seen = Tracer::new(Arc::clone(&scene), &options).unwrap();
@@ -100,6 +101,39 @@ fn solids_at_the_edges_of_a_picture_are_left_out_if_they_are_outside() {
     }
 }
 
+/// Solids on any ray through a lens are kept.
+#[test]
+fn solids_on_rays_through_a_lens_are_seen() {
+    for number in 0..CAMERAS {
+        let random = &mut Random::new(SEED + 1, number);
+        let film = Film {
+            width: 200,
+            height: 100,
+        };
+        let lens = Lens {
+            aperture: random.log_uniform(1e-3, 20.0),
+            focus: Some(random.log_uniform(0.5, 50.0)),
+        };
+        let description = Camera {
+            lens: Some(lens),
+            ..camera(random)
+        };
+        let camera = AimedCamera::stated(&description, film).unwrap();
+        let view = camera.view_volume().expect("a part of space");
+        for ray_number in 0..300 {
+            let position = DVec2::new(random.uniform(0.0, 200.0), random.uniform(0.0, 100.0));
+            // Points of the rim reach farthest.
+            let ray = camera.ray_through_lens(position, (1.0, random.unit()));
+            let point = ray.at(random.log_uniform(1e-6, 1e3));
+            let case = format!("seed {}, camera {number}, ray {ray_number}", SEED + 1);
+            assert!(view.may_reach(&Bounds::at(point)), "{case}: {ray:?}");
+        }
+        // What is far beside the view is left out all the same.
+        let beside = camera.ray(DVec2::new(1e9, 50.0)).at(1.0);
+        assert!(!view.may_reach(&Bounds::at(beside)), "camera {number}");
+    }
+}
+
 #[test]
 fn a_frame_that_fits_the_scene_states_no_view() {
     let film = Film {
@@ -114,6 +148,16 @@ fn a_frame_that_fits_the_scene_states_no_view() {
         up: DVec3::Z,
     };
     for (projection, frame) in [(perspective, Frame::Auto), (fitted, here)] {
-        assert!(AimedCamera::stated(&Camera { projection, frame }, film).is_none());
+        assert!(
+            AimedCamera::stated(
+                &Camera {
+                    projection,
+                    frame,
+                    lens: None
+                },
+                film
+            )
+            .is_none()
+        );
     }
 }

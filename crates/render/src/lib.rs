@@ -70,7 +70,7 @@ impl Settings {
             Integrator::Normal => AimedCamera::stated(&scene.camera, self.film)?,
             Integrator::Ao | Integrator::Sun | Integrator::Path => return None,
         };
-        Some(camera.view_volume())
+        camera.view_volume()
     }
 
     /// Says whether a picture can be made with these settings.

@@ -88,6 +88,7 @@ fn greatest(values: impl Iterator<Item = f64>) -> f64 {
 mod tests {
     use super::*;
     use crate::math::Random;
+    use crate::scene::aimed_camera::Kind;
     use crate::scene::description::{Camera, Film, Frame, Projection};
     use glam::DVec2;
 
@@ -132,6 +133,7 @@ mod tests {
             let description = Camera {
                 projection,
                 frame: Frame::Auto,
+                lens: None,
             };
             let camera = AimedCamera::new(&description, &bounds, size);
             let mut touched = 0.0_f64;
@@ -154,8 +156,8 @@ mod tests {
                 "seed 7 case {case}: {least:?} to {most:?} is off the middle, {bounds:?}"
             );
             let nearest = -greatest(camera.corners(&bounds).iter().map(|c| -c.z));
-            let held_back =
-                camera.perspective && nearest < (CLEARANCE + 1e-3) * bounds.extent().length();
+            let held_back = camera.kind == Kind::Perspective
+                && nearest < (CLEARANCE + 1e-3) * bounds.extent().length();
             tight += usize::from(!held_back);
             assert!(
                 held_back || touched > 0.5 - 1.5 * MARGIN,

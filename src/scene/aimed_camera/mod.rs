@@ -2,15 +2,19 @@
 //!
 //! Film positions are in pixels, `x` to the right and `y` downward, with
 //! `(0, 0)` at the picture's upper left corner. Rays start at the eye
-//! (perspective) or on the plane through it (orthographic), at `t = 0`.
+//! (perspective, panorama) or on the plane through it (orthographic), at `t = 0`. `lens` moves
+//! them to a point of the lens.
 
 mod framing;
+mod lens;
+mod panorama;
 
 use glam::{DVec2, DVec3};
 
 use super::description::{Camera, Film, Frame, Projection};
 use super::view_volume::ViewVolume;
 use crate::math::{Bounds, Ray};
+use lens::AimedLens;
 
 /// The direction from the scene to the eye of an automatic frame: a three-quarter
 /// view, 28 degrees above the horizon. A sun at the default azimuth of 135 degrees
@@ -27,8 +31,17 @@ pub struct AimedCamera {
     /// Half of the picture, across and up: lengths at distance 1 in a
     /// perspective, scene units otherwise.
     half: DVec2,
-    perspective: bool,
+    kind: Kind,
     film: DVec2,
+    lens: Option<AimedLens>,
+}
+
+/// The kind of a projection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Perspective,
+    Orthographic,
+    Panorama,
 }
 
 impl AimedCamera {
@@ -54,8 +67,9 @@ impl AimedCamera {
             up: right.cross(forward),
             forward,
             half: shape,
-            perspective: matches!(description.projection, Projection::Perspective { .. }),
+            kind: Kind::of(description.projection),
             film: size,
+            lens: None,
         };
         let corners = camera.corners(bounds);
         let auto = description.frame == Frame::Auto;
@@ -74,7 +88,11 @@ impl AimedCamera {
                     .map_or_else(|| camera.fitting_half_height(bounds), |height| 0.5 * height);
                 camera.half = shape * half_height;
             }
+            Projection::Panorama => camera.level(unit(up)),
         }
+        camera.lens = description
+            .lens
+            .and_then(|lens| camera.aimed_lens(lens, description.frame, bounds));
         camera
     }
 
@@ -85,55 +103,62 @@ impl AimedCamera {
         let is_stated = match (description.frame, description.projection) {
             (Frame::Auto, _) => false,
             (Frame::LookAt { .. }, Projection::Orthographic { height }) => height.is_some(),
-            (Frame::LookAt { .. }, Projection::Perspective { .. }) => true,
+            (Frame::LookAt { .. }, Projection::Perspective { .. } | Projection::Panorama) => true,
         };
         is_stated.then(|| Self::new(description, &Bounds::at(DVec3::ZERO), film))
     }
 
-    /// The volume that the camera's rays cover.
+    /// The volume that the camera's rays cover; `None` if that is everything.
     #[must_use]
-    pub fn view_volume(&self) -> ViewVolume {
-        let side = |across: DVec3, half: f64| {
-            if self.perspective {
-                (self.forward * half - across, 0.0)
-            } else {
-                (-across, half)
-            }
+    pub fn view_volume(&self) -> Option<ViewVolume> {
+        let (radius, slope) = self.lens.map_or((0.0, 0.0), |lens| lens.reach());
+        let side = |across: DVec3, half: f64| match self.kind {
+            Kind::Perspective => (self.forward * (half + slope) - across, radius),
+            _ => (self.forward * slope - across, half + radius),
         };
         let (right, up) = (self.right, self.up);
-        ViewVolume::new(
-            self.eye,
-            [
-                side(right, self.half.x),
-                side(-right, self.half.x),
-                side(up, self.half.y),
-                side(-up, self.half.y),
-            ],
-        )
+        (self.kind != Kind::Panorama).then(|| {
+            ViewVolume::new(
+                self.eye,
+                [
+                    side(right, self.half.x),
+                    side(-right, self.half.x),
+                    side(up, self.half.y),
+                    side(-up, self.half.y),
+                ],
+            )
+        })
     }
 
-    /// The ray through a film position.
+    /// The ray through a film position, and through the middle of the lens if there is one.
     #[must_use]
     pub fn ray(&self, position: DVec2) -> Ray {
+        if self.kind == Kind::Panorama {
+            return Ray::new(self.eye, self.panorama_direction(position));
+        }
         let across = self.half.x * (2.0 * position.x / self.film.x - 1.0);
         let upward = self.half.y * (1.0 - 2.0 * position.y / self.film.y);
         let offset = self.right * across + self.up * upward;
-        if self.perspective {
-            Ray::new(self.eye, self.forward + offset)
-        } else {
-            Ray::new(self.eye + offset, self.forward)
+        match self.kind {
+            Kind::Perspective => Ray::new(self.eye, self.forward + offset),
+            _ => Ray::new(self.eye + offset, self.forward),
         }
     }
 
     /// The film position of a point; `None` behind the eye of a perspective. The
-    /// position may lie outside the picture.
+    /// position may lie outside the picture. With a lens, it is the middle of the point's disk.
     #[must_use]
     pub fn project(&self, point: DVec3) -> Option<DVec2> {
         let seen = self.coordinates(point);
-        let scale = if self.perspective { seen.z } else { 1.0 };
+        let scale = match self.kind {
+            Kind::Perspective => seen.z,
+            Kind::Orthographic => 1.0,
+            Kind::Panorama => return Some(self.panorama_position(seen)),
+        };
         let x = seen.x / (self.half.x * scale);
         let y = seen.y / (self.half.y * scale);
-        (!self.perspective || seen.z > 0.0).then(|| DVec2::new(1.0 + x, 1.0 - y) * 0.5 * self.film)
+        (self.kind == Kind::Orthographic || seen.z > 0.0)
+            .then(|| DVec2::new(1.0 + x, 1.0 - y) * 0.5 * self.film)
     }
 
     /// A point in camera coordinates: to the right, upward, forward.
@@ -154,6 +179,16 @@ impl AimedCamera {
             let side = |axis: usize| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
             self.coordinates(middle + half * DVec3::new(side(0), side(1), side(2)))
         })
+    }
+}
+
+impl Kind {
+    fn of(projection: Projection) -> Self {
+        match projection {
+            Projection::Perspective { .. } => Self::Perspective,
+            Projection::Orthographic { .. } => Self::Orthographic,
+            Projection::Panorama => Self::Panorama,
+        }
     }
 }
 
@@ -193,6 +228,7 @@ mod tests {
         Camera {
             projection,
             frame: Frame::Auto,
+            lens: None,
         }
     }
 
@@ -207,6 +243,7 @@ mod tests {
             Projection::Perspective { fov_degrees: 40.0 },
             Projection::Orthographic { height: None },
             Projection::Orthographic { height: Some(9.0) },
+            Projection::Panorama,
         ] {
             let camera = AimedCamera::new(&auto(projection), &bounds, film(640, 360));
             for case in 0..200 {
@@ -233,6 +270,7 @@ mod tests {
                 look_at: DVec3::ZERO,
                 up: DVec3::Z,
             },
+            lens: None,
         };
         let camera = AimedCamera::new(&description, &Bounds::EMPTY, film(200, 100));
         assert_eq!(camera.ray(DVec2::ZERO).origin, DVec3::new(-4.0, -10.0, 2.0));
@@ -252,6 +290,7 @@ mod tests {
                 look_at: DVec3::X,
                 up: DVec3::Z,
             },
+            lens: None,
         };
         let camera = AimedCamera::new(&description, &Bounds::EMPTY, film(100, 100));
         let direction = camera.ray(DVec2::new(50.0, 0.0)).direction;

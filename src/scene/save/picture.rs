@@ -42,6 +42,13 @@ fn camera(text: &mut Text, camera: &Camera) {
                 entry.number("height", height);
             }
         }
+        Projection::Panorama => entry.text("type", "panorama"),
+    }
+    if let Some(lens) = camera.lens {
+        entry.number("aperture", lens.aperture);
+        if let Some(focus) = lens.focus {
+            entry.number("focus", focus);
+        }
     }
     match camera.frame {
         Frame::Auto => entry.text("frame", "auto"),

@@ -163,6 +163,7 @@ const CAMERA: Camera = Camera {
         look_at: DVec3::new(0.5, 0.5, 0.5),
         up: DVec3::Z,
     },
+    lens: None,
 };
 
 /// As many pixels as usual pictures have, and square as the cube is.

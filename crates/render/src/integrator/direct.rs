@@ -14,12 +14,9 @@ use std::f64::consts::FRAC_1_PI;
 use cyltrace::tracer::HitFields;
 use glam::DVec3;
 
-use super::{Batch, RayCounts, Sample, View, facing_normal, spawn};
+use super::{Batch, RayCounts, SUN, Sample, View, facing_normal, spawn};
 use crate::bsdf::cosine_direction;
 use crate::frame::Frame;
-
-/// The dimension of the numbers that choose a point of the sun.
-const SUN: u32 = 0;
 
 impl View<'_> {
     pub(super) fn ambient_occlusion(

@@ -25,6 +25,10 @@ use cyltrace::tracer::{HitFields, PartialHit, Tracer};
 use occlusion::Occlusion;
 use path::Paths;
 
+/// The dimensions of numbers that samples need for some purposes only. Those of paths follow.
+const SUN: u32 = 0;
+const LENS: u32 = 1;
+
 /// How many rays were traced, by purpose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RayCounts {
@@ -136,7 +140,10 @@ impl<'a> View<'a> {
             let (across, down) = sample.sampler.place(sample.number);
             let (x, y) = sample.pixel;
             let position = DVec2::new(f64::from(x) + across, f64::from(y) + down);
-            self.camera.ray(position)
+            match self.camera.has_lens() {
+                true => self.camera.ray_through_lens(position, sample.pair(LENS)),
+                false => self.camera.ray(position),
+            }
         }));
         rays.camera += samples.len() as u64;
         batch.colors.clear();

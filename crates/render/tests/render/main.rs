@@ -1,5 +1,6 @@
 //! Light, and pictures that are the same on all paths.
 
+mod lens;
 mod light;
 mod path;
 mod same_pictures;

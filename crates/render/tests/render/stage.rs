@@ -37,6 +37,7 @@ pub fn scene(cylinders: &[(DVec3, DVec3, f64, Caps)]) -> Scene {
                 look_at: DVec3::ZERO,
                 up: DVec3::Y,
             },
+            lens: None,
         },
         film: scene::Film {
             width: SIZE,

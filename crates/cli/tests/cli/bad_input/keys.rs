@@ -206,6 +206,16 @@ pub fn cases() -> Vec<Case> {
             &["scene.toml:6:10", "a perspective one has fov_degrees"],
         ),
         with_solid(
+            "fov_of_a_panorama",
+            "[camera]\ntype = \"panorama\"\nfov_degrees = 30\n",
+            &["scene.toml:7:15", "a panorama shows all directions"],
+        ),
+        with_solid(
+            "aperture_of_a_panorama",
+            "[camera]\ntype = \"panorama\"\naperture = 0.5\n",
+            &["scene.toml:7:12", "a panorama has no lens"],
+        ),
+        with_solid(
             "sun_with_direction_and_azimuth",
             "[sun]\ndirection = [0, 0, 1]\nazimuth_degrees = 3\n",
             &["scene.toml:6:13", "direction excludes"],

@@ -122,6 +122,16 @@ pub fn cases() -> Vec<Case> {
             ],
         ),
         with_solid(
+            "aperture_negative",
+            "[camera]\naperture = -1\n",
+            &["scene.toml:6:12", "aperture is -1", "diameter of the lens"],
+        ),
+        with_solid(
+            "focus_zero",
+            "[camera]\nfocus = 0\naperture = 1\n",
+            &["scene.toml:6:9", "focus is 0", "positive number"],
+        ),
+        with_solid(
             "sun_strength_negative",
             "[sun]\nstrength = -1\n",
             &["scene.toml:6:12", "strength is -1", "not be negative"],
