@@ -54,7 +54,9 @@ class Scene:
     def load(path: str | os.PathLike[str]) -> Scene: ...
     def save(self, folder: str | os.PathLike[str], stem: str) -> None: ...
     def add_prototype(self, name: str) -> int: ...
-    def add_material(self, name: str, color: list[float]) -> int: ...
+    def add_material(
+        self, name: str, color: list[float], kind: str, numbers: list[float | None]
+    ) -> int: ...
     def add_cylinders(
         self,
         rows: Rows,
@@ -110,9 +112,22 @@ class Scene:
         orthographic: bool,
         fov_degrees: float,
         height: float | None,
+        lens: tuple[float, float | None] | None,
     ) -> None: ...
     def set_sun(
-        self, direction: list[float] | None, color: list[float], strength: float
+        self,
+        direction: list[float] | None,
+        color: list[float],
+        strength: float,
+        angle_degrees: float,
+    ) -> None: ...
+    def add_light(
+        self,
+        place: list[float],
+        radius: float | None,
+        edges: list[list[float]] | None,
+        color: list[float],
+        strength: float,
     ) -> None: ...
     def set_sky(self, color: list[float] | None, strength: float) -> None: ...
     def set_background(self, color: list[float]) -> None: ...

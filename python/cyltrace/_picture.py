@@ -54,7 +54,7 @@ def render(
     scene: Scene | Tracer,
     size: tuple[int, int] | None = None,
     spp: int | None = None,
-    integrator: Literal["sun", "normal", "ao"] | None = None,
+    integrator: Literal["sun", "normal", "ao", "path"] | None = None,
     seed: int = 0,
     threads: int | None = None,
     progress: Progress | None = None,
@@ -69,8 +69,10 @@ def render(
         In pixels; the scene's own otherwise, which is 1280 x 720 unless its file says more.
     spp : int, optional
         Samples a pixel; the scene's own otherwise, 4 by default.
-    integrator : "sun", "normal" or "ao", optional
-        Sun and sky with shadows, normals as colors, or ambient occlusion.
+    integrator : "sun", "normal", "ao" or "path", optional
+        Sun and sky with shadows, normals as colors, ambient occlusion, or light that is
+        scattered any number of times, by materials of all kinds. ``sun`` by default, or ``path``
+        if the scene has a material that is not diffuse or a light with a place.
     seed : int
         Chooses the random numbers.
     threads : int, optional

@@ -12,6 +12,8 @@ from . import _core
 from ._arrays import vector
 from ._prototype import Prototype
 
+Kind = Literal["diffuse", "metal", "plastic", "glass", "light"]
+
 
 class Scene(Prototype):
     """A scene: solids, placed prototypes, materials, lights and a camera.
@@ -95,23 +97,46 @@ class Scene(Prototype):
             self._prototypes[name] = Prototype(self, index, name)
         return self._prototypes[name]
 
-    def add_material(self, name: str, color: npt.ArrayLike) -> str:
-        """Adds a diffuse material and returns its name.
+    def add_material(
+        self,
+        name: str,
+        color: npt.ArrayLike | None = None,
+        kind: Kind = "diffuse",
+        *,
+        roughness: float | None = None,
+        ior: float | None = None,
+        strength: float | None = None,
+    ) -> str:
+        """Adds a material and returns its name.
 
         Parameters
         ----------
         name : str
             Not empty, and not the name of another material.
         color : (3,)
-            Linear RGB reflectance, each in [0, 1].
+            Linear RGB, each in [0, 1]: the reflectance, or what glass lets through, or the
+            color of a light. Glass and lights are white by default.
+        kind : "diffuse", "metal", "plastic", "glass" or "light"
+        roughness : float in [0, 1], optional
+            Of metal (0.3 by default), plastic (0.2) and glass (0).
+        ior : float in [1, 10], optional
+            The index of refraction of plastic and glass: 1.5 by default.
+        strength : float, optional
+            Factor on the color of a light, which is its radiance: 1 by default.
         """
         if not name or name in self._materials:
             reason = "is in use" if name else "is empty"
             raise ValueError(f"the name {name!r} of a material {reason}")
+        if color is None:
+            if kind not in ("glass", "light"):
+                raise ValueError(f"the material {name!r} has no color")
+            color = (1.0, 1.0, 1.0)
         reflectance = vector("color", color)
         if not all(0.0 <= part <= 1.0 for part in reflectance):
             raise ValueError(f"color is {reflectance}: each number must be in [0, 1]")
-        self._materials[name] = self._core.add_material(name, reflectance)
+        numbers = [roughness, ior, strength]
+        stated = [None if number is None else float(number) for number in numbers]
+        self._materials[name] = self._core.add_material(name, reflectance, kind, stated)
         return name
 
     def set_camera(
@@ -123,6 +148,8 @@ class Scene(Prototype):
         fov_degrees: float = 40.0,
         orthographic: bool = False,
         height: float | None = None,
+        aperture: float = 0.0,
+        focus: float | None = None,
     ) -> None:
         """Aims the camera. Without ``position`` and ``look_at``, the whole scene is in the picture.
 
@@ -138,6 +165,10 @@ class Scene(Prototype):
             Whether lines of sight are parallel.
         height : float, optional
             Scene units across the height of an orthographic picture; fits the scene otherwise.
+        aperture : float
+            The diameter of the lens in scene units; with 0, everything is sharp.
+        focus : float, optional
+            The distance of what a lens shows sharply; that of ``look_at`` otherwise.
         """
         if (position is None) != (look_at is None):
             raise ValueError("position and look_at go together: give both or neither")
@@ -145,6 +176,10 @@ class Scene(Prototype):
             raise ValueError(f"fov_degrees is {fov_degrees}: it must be between 0 and 180")
         if height is not None and not 0.0 < height < np.inf:
             raise ValueError(f"height is {height}: it must be positive")
+        if not 0.0 <= aperture < np.inf:
+            raise ValueError(f"aperture is {aperture}: it must be finite and not negative")
+        if focus is not None and not 0.0 < focus < np.inf:
+            raise ValueError(f"focus is {focus}: it must be positive")
         upward = np.array(vector("up", up))
         if position is not None and look_at is not None:
             eye = np.array(vector("position", position))
@@ -163,6 +198,7 @@ class Scene(Prototype):
             orthographic,
             float(fov_degrees),
             None if height is None else float(height),
+            (float(aperture), None if focus is None else float(focus)) if aperture else None,
         )
 
     def set_sun(
@@ -173,6 +209,7 @@ class Scene(Prototype):
         azimuth_degrees: float = 135.0,
         color: npt.ArrayLike = (1.0, 0.95, 0.9),
         strength: float = 3.0,
+        angle_degrees: float = 0.53,
     ) -> None:
         """Adds the sun, or replaces it.
 
@@ -188,7 +225,11 @@ class Scene(Prototype):
             Linear RGB, not negative.
         strength : float
             Factor on ``color``: irradiance on a surface that faces the sun.
+        angle_degrees : float in [0, 90]
+            The angle that the sun spans. With 0, shadows are sharp.
         """
+        if not 0.0 <= angle_degrees <= 90.0:
+            raise ValueError(f"angle_degrees is {angle_degrees}: it must be in [0, 90]")
         if direction is None:
             if not -90.0 <= elevation_degrees <= 90.0:
                 raise ValueError(
@@ -204,7 +245,8 @@ class Scene(Prototype):
         if not 0.0 < length < np.inf:
             raise ValueError(f"direction is {towards.tolist()}: it must not be zero")
         unit = (towards / length).tolist()
-        self._core.set_sun(unit, _light("color", color), _strength(strength))
+        light = (_light("color", color), _strength(strength))
+        self._core.set_sun(unit, *light, float(angle_degrees))
 
     def set_sky(self, color: npt.ArrayLike = (0.5, 0.7, 1.0), strength: float = 1.0) -> None:
         """Adds light from every direction, which is also seen behind the scene.
@@ -217,6 +259,70 @@ class Scene(Prototype):
             Factor on ``color``.
         """
         self._core.set_sky(_light("color", color), _strength(strength))
+
+    def add_point_light(
+        self, position: npt.ArrayLike, color: npt.ArrayLike = (1, 1, 1), strength: float = 1.0
+    ) -> None:
+        """Adds a light without an extent, for pictures with the integrator ``path``.
+
+        ``strength`` is the factor on ``color``, linear RGB: the radiant intensity.
+        """
+        self._add_light(vector("position", position), None, None, color, strength)
+
+    def add_sphere_light(
+        self,
+        center: npt.ArrayLike,
+        radius: float,
+        color: npt.ArrayLike = (1, 1, 1),
+        strength: float = 1.0,
+    ) -> None:
+        """Adds a sphere that emits light outward, for pictures with the integrator ``path``.
+
+        ``strength`` is the factor on ``color``, linear RGB: the radiance.
+        """
+        if not 0.0 < radius < np.inf:
+            raise ValueError(f"radius is {radius}: it must be positive")
+        self._add_light(vector("center", center), float(radius), None, color, strength)
+
+    def add_rectangle_light(
+        self,
+        corner: npt.ArrayLike,
+        edges: npt.ArrayLike,
+        color: npt.ArrayLike = (1, 1, 1),
+        strength: float = 1.0,
+    ) -> None:
+        """Adds a rectangle that emits light on one side, for pictures with the integrator
+        ``path``.
+
+        Parameters
+        ----------
+        corner : (3,)
+        edges : (2, 3)
+            From that corner. Light leaves to the side of their cross product.
+        color : (3,)
+            Linear RGB, not negative.
+        strength : float
+            Factor on ``color``: the radiance.
+        """
+        both = np.asarray(edges, dtype=np.float64)
+        if both.shape != (2, 3) or not np.isfinite(both).all():
+            raise ValueError(f"edges are {both.tolist()}: they must be two finite vectors")
+        lengths = float(np.prod(np.linalg.norm(both, axis=1)))
+        # As a scene file demands.
+        if not float(np.linalg.norm(np.cross(both[0], both[1]))) >= 1e-6 * lengths > 0.0:
+            raise ValueError("the edges are parallel: they must span the rectangle")
+        self._add_light(vector("corner", corner), None, both.tolist(), color, strength)
+
+    def _add_light(
+        self,
+        place: list[float],
+        radius: float | None,
+        edges: list[list[float]] | None,
+        color: npt.ArrayLike,
+        strength: float,
+    ) -> None:
+        light = (_light("color", color), _strength(strength))
+        self._core.add_light(place, radius, edges, *light)
 
     def set_background(self, color: npt.ArrayLike) -> None:
         """The linear RGB that is seen where a scene without a sky is not hit."""

@@ -7,6 +7,7 @@
 mod arrays;
 mod check;
 mod found;
+mod look;
 mod picture;
 mod placement;
 mod rows;

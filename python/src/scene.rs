@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use cyltrace::scene::{
-    Camera, CylinderList, Film, Frame, Integrator, Material, MaterialIndex, Placement, Projection,
-    Prototype, Records, SaveError, Scene, Sky, SolidRecord, Sun,
+    Camera, CylinderList, Frame, Integrator, Lens, MaterialIndex, MaterialKind, Placement,
+    Projection, Prototype, Records, SaveError, Scene, Sky, SolidRecord, Sun,
 };
 use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 use cyltrace_output::NewFile;
@@ -16,6 +16,7 @@ use pyo3::exceptions::{PyOSError, PyOverflowError};
 use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, Quaternions, Vectors, value_error};
+use crate::look;
 use crate::placement::placement;
 use crate::rows::{Rows, has_no_size, is_degenerate};
 use crate::solid::{PySolid, orientation};
@@ -30,6 +31,15 @@ pub struct PyScene {
 }
 
 impl PyScene {
+    /// Makes `path` the integrator of a scene with more than diffuse materials, a sun and a sky,
+    /// as it is that of such a file that states none.
+    fn trace_paths(&mut self) {
+        let render = &mut Arc::make_mut(&mut self.scene).render;
+        if render.integrator == Integrator::Sun {
+            render.integrator = Integrator::Path;
+        }
+    }
+
     pub(crate) fn prototype(&mut self, index: u32) -> PyResult<&mut Prototype> {
         let prototypes = &mut Arc::make_mut(&mut self.scene).prototypes;
         let prototype = prototypes.get_mut(index as usize);
@@ -148,11 +158,23 @@ impl PyScene {
         self.next.len() as u32 - 1
     }
 
-    fn add_material(&mut self, name: String, color: [f64; 3]) -> PyResult<u16> {
+    /// `numbers` are the roughness, the index of refraction and the strength.
+    fn add_material(
+        &mut self,
+        name: String,
+        color: [f64; 3],
+        kind: &str,
+        numbers: [Option<f64>; 3],
+    ) -> PyResult<u16> {
+        let material = look::material(name, color, kind, numbers)?;
         let materials = &mut Arc::make_mut(&mut self.scene).materials;
         let number = u16::try_from(materials.len())
             .map_err(|_| value_error(format!("a scene has at most {} materials", u16::MAX)))?;
-        materials.push(Material::diffuse(name, color.into()));
+        let is_diffuse = material.kind == MaterialKind::Diffuse;
+        materials.push(material);
+        if !is_diffuse {
+            self.trace_paths();
+        }
         Ok(number)
     }
 
@@ -324,6 +346,7 @@ impl PyScene {
         orthographic: bool,
         fov_degrees: f64,
         height: Option<f64>,
+        lens: Option<(f64, Option<f64>)>,
     ) {
         let projection = if orthographic {
             Projection::Orthographic { height }
@@ -341,16 +364,22 @@ impl PyScene {
         Arc::make_mut(&mut self.scene).camera = Camera {
             projection,
             frame,
-            lens: None,
+            lens: lens.map(|(aperture, focus)| Lens { aperture, focus }),
         };
     }
 
-    fn set_sun(&mut self, direction: Option<[f64; 3]>, color: [f64; 3], strength: f64) {
+    fn set_sun(
+        &mut self,
+        direction: Option<[f64; 3]>,
+        color: [f64; 3],
+        strength: f64,
+        angle_degrees: f64,
+    ) {
         Arc::make_mut(&mut self.scene).sun = direction.map(|direction| Sun {
             direction: direction.into(),
             color: color.into(),
             strength,
-            angle_degrees: Sun::ANGLE_DEGREES,
+            angle_degrees,
         });
     }
 
@@ -361,17 +390,21 @@ impl PyScene {
         });
     }
 
-    fn set_background(&mut self, color: [f64; 3]) {
-        Arc::make_mut(&mut self.scene).background = color.into();
+    fn add_light(
+        &mut self,
+        place: [f64; 3],
+        radius: Option<f64>,
+        edges: Option<[[f64; 3]; 2]>,
+        color: [f64; 3],
+        strength: f64,
+    ) {
+        let light = look::light(place, radius, edges, color, strength);
+        Arc::make_mut(&mut self.scene).lights.push(light);
+        self.trace_paths();
     }
 
-    fn set_render(&mut self, width: u32, height: u32, spp: u32, integrator: &str) -> PyResult<()> {
-        let integrator = integrator_of(integrator)?;
-        let scene = Arc::make_mut(&mut self.scene);
-        scene.film = Film { width, height };
-        scene.render.spp = spp;
-        scene.render.integrator = integrator;
-        Ok(())
+    fn set_background(&mut self, color: [f64; 3]) {
+        Arc::make_mut(&mut self.scene).background = color.into();
     }
 
     /// The names of prototypes; the root's is empty.

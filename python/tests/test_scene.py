@@ -241,6 +241,23 @@ def test_materials_have_names() -> None:
         scene.add_material("bark", [0, 0, 0])
 
 
+def test_materials_of_all_kinds_have_the_numbers_of_their_kind() -> None:
+    scene = Scene()
+    scene.add_material("steel", [0.6, 0.6, 0.6], "metal", roughness=0.4)
+    scene.add_material("window", kind="glass", ior=1.3)
+    scene.add_material("lamp", kind="light", strength=20)
+    with pytest.raises(ValueError, match="'paint' has no color"):
+        scene.add_material("paint", kind="plastic")
+    with pytest.raises(ValueError, match="roughness is 2: it must be between 0 and 1"):
+        scene.add_material("paint", [1, 0, 0], "plastic", roughness=2)
+    with pytest.raises(ValueError, match='ior is for "plastic" and "glass": this material is "m'):
+        scene.add_material("tin", [1, 1, 1], "metal", ior=1.5)
+    with pytest.raises(ValueError, match="strength is inf: it must be finite"):
+        scene.add_material("tin", [1, 1, 1], "light", strength=np.inf)
+    with pytest.raises(ValueError, match='kind is "wood": it must be one of diffuse, metal'):
+        scene.add_material("tin", [1, 1, 1], "wood")  # type: ignore[arg-type]
+
+
 def test_chains_of_operations_are_flat() -> None:
     solid = Solid.sphere([0, 0, 0], 10)
     for place in range(200):
@@ -293,8 +310,13 @@ def test_saved_scenes_load_to_the_same(tmp_path: Path) -> None:
     scene.add_instances(
         part, positions=rng.normal(size=(30, 3)), quaternions=rng.normal(size=(30, 4))
     )
-    scene.set_camera([9, 8, 7], [0, 0, 0])
-    scene.set_sun(rng.normal(size=3))
+    scene.add_material("lamp", kind="light", strength=4)
+    scene.add_spheres([0, 0, 3], 0.5, material="lamp")
+    scene.add_sphere_light([3, 0, 3], 0.25, strength=9)
+    scene.add_point_light([0, 4, 2], [1, 0.5, 0])
+    scene.add_rectangle_light([0, 0, 8], [[0, 1, 0], [1, 0, 0]], strength=2)
+    scene.set_camera([9, 8, 7], [0, 0, 0], aperture=0.1, focus=12)
+    scene.set_sun(rng.normal(size=3), angle_degrees=2)
     scene.save(tmp_path / "saved.toml")
     again = cyltrace.load(tmp_path / "saved.toml")
     origins, directions = 5 * rng.normal(size=(20_000, 3)), rng.normal(size=(20_000, 3))
@@ -303,7 +325,9 @@ def test_saved_scenes_load_to_the_same(tmp_path: Path) -> None:
     for name in ("ray", "t", "normal", "uv", "primitive", "solid", "prototype", "material"):
         assert_array_equal(getattr(found, name), getattr(hits, name), name)
     assert_array_equal(found.instance[0], hits.instance[0])
-    assert_array_equal(*(cyltrace.render(one, size=(40, 30), spp=2) for one in (scene, again)))
+    for integrator in ("sun", "path"):
+        pictures = [cyltrace.render(one, (40, 30), 2, integrator) for one in (scene, again)]
+        assert_array_equal(*pictures)
 
 
 def test_names_of_files_and_folders_are_checked(tmp_path: Path) -> None:

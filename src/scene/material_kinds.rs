@@ -39,44 +39,73 @@ pub(super) struct KindNumbers<'a> {
     pub strength: Option<&'a Spanned<Number>>,
 }
 
+/// A number that a kind of material cannot have.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct MaterialKindError {
+    /// The position of the number among roughness, index of refraction and strength.
+    number: usize,
+    message: String,
+}
+
+impl MaterialKind {
+    /// The kind of a name, with its default numbers.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        KINDS.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// The kind with the stated numbers: roughness, index of refraction and strength.
+    ///
+    /// # Errors
+    /// If the kind does not have a number that is stated, or a number is out of its range.
+    pub fn with_numbers(mut self, stated: [Option<f64>; 3]) -> Result<Self, MaterialKindError> {
+        for (number, value) in stated.into_iter().enumerate() {
+            let Some(value) = value else {
+                continue;
+            };
+            let (name, range) = &NUMBERS[number];
+            let message = match &mut numbers(&mut self)[number] {
+                Some(kept) if range.contains(&value) && value.is_finite() => {
+                    **kept = value;
+                    continue;
+                }
+                Some(_) => {
+                    let accepted = match range.end().is_finite() {
+                        true => format!("be between {} and {}", range.start(), range.end()),
+                        false if value < 0.0 => "not be negative".to_owned(),
+                        false => "be finite".to_owned(),
+                    };
+                    format!("{name} is {value}: it must {accepted}")
+                }
+                None => format!(
+                    "{name} is for {}: this material is {}",
+                    kinds_with(number),
+                    quoted(self.name())
+                ),
+            };
+            return Err(MaterialKindError { number, message });
+        }
+        Ok(self)
+    }
+}
+
 /// The kind of a material with its numbers.
 pub(super) fn kind(
     source: &Source,
     word: Option<&Spanned<String>>,
     stated: &KindNumbers,
 ) -> Result<MaterialKind, SceneError> {
-    let mut kind = match word {
+    let kind = match word {
         None => MaterialKind::default(),
         Some(word) => source.choose("kind", word, &KINDS.map(|kind| (kind.name(), kind)))?,
     };
     let keys = [stated.roughness, stated.ior, stated.strength];
-    for (index, key) in keys.into_iter().enumerate() {
-        let Some(key) = key else {
-            continue;
-        };
-        let (name, range) = &NUMBERS[index];
-        let number = key.get_ref().0;
-        match &mut numbers(&mut kind)[index] {
-            Some(value) if range.contains(&number) => **value = number,
-            Some(_) => {
-                let accepted = match range.end().is_finite() {
-                    true => format!("be between {} and {}", range.start(), range.end()),
-                    false => "not be negative".to_owned(),
-                };
-                let message = format!("{name} is {number}: it must {accepted}");
-                return Err(source.error(key.span(), message));
-            }
-            None => {
-                let message = format!(
-                    "{name} is for {}: this material is {}",
-                    kinds_with(index),
-                    quoted(kind.name())
-                );
-                return Err(source.error(key.span(), message));
-            }
-        }
-    }
-    Ok(kind)
+    let with_numbers = kind.with_numbers(keys.map(|key| Some(key?.get_ref().0)));
+    with_numbers.map_err(|error| {
+        let place = keys[error.number].map_or(0..0, Spanned::span);
+        source.error(place, error.message)
+    })
 }
 
 /// The numbers of a kind with their keys, for saving.

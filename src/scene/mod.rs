@@ -80,6 +80,7 @@ pub use hit_table::{GivenHit, GivenHits};
 pub use light::{Light, LightShape, Sky, Sun};
 pub use limits::*;
 pub use material::{Color, Material, MaterialKind};
+pub use material_kinds::MaterialKindError;
 pub use number_table::{NumberColumns, NumberRow, NumberTable};
 pub use origins::{Origin, Origins};
 pub use record::{

@@ -7,6 +7,8 @@ mod broadleaf;
 mod conifer;
 mod forest;
 mod lattice;
+mod neuron;
+mod pipes;
 mod skeleton;
 
 use std::fmt::Write;
@@ -30,6 +32,8 @@ pub fn all() -> Vec<Table> {
     tables.extend(conifer::tables());
     tables.extend(forest::tables());
     tables.extend(lattice::tables());
+    tables.extend(neuron::tables());
+    tables.extend(pipes::tables());
     tables
 }
 
