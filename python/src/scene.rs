@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use cyltrace::scene::{
-    Camera, CylinderList, Frame, Integrator, Lens, MaterialIndex, MaterialKind, Placement,
-    Projection, Prototype, Records, SaveError, Scene, Sky, SolidRecord, Sun,
+    Background, Camera, CylinderList, Frame, Integrator, Lens, MaterialIndex, MaterialKind,
+    Placement, Projection, Prototype, Records, SaveError, Scene, Sky, SolidRecord, Sun,
 };
 use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 use cyltrace_output::NewFile;
@@ -404,7 +404,7 @@ impl PyScene {
     }
 
     fn set_background(&mut self, color: [f64; 3]) {
-        Arc::make_mut(&mut self.scene).background = color.into();
+        Arc::make_mut(&mut self.scene).background = Background::Color(color.into());
     }
 
     /// The names of prototypes; the root's is empty.

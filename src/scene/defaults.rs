@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use super::background::Background;
 use super::description::{
     Camera, Film, Frame, Integrator, Projection, Prototype, RenderSettings, Scene,
 };
@@ -22,7 +23,7 @@ pub(super) const RENDER: RenderSettings = RenderSettings {
     ao_distance: f64::INFINITY,
 };
 
-pub(super) const BACKGROUND: DVec3 = DVec3::new(0.8, 0.9, 1.0);
+pub(super) const BACKGROUND: Background = Background::Color(DVec3::new(0.8, 0.9, 1.0));
 
 /// The reflectance of solids without a material.
 const REFLECTANCE: f64 = 0.5;

@@ -1,6 +1,7 @@
 //! The validated description of a scene: everything that `tracer` and `render` need,
 //! independent of the files it came from.
 
+use super::background::Background;
 use super::light::{Light, Sky, Sun};
 use super::material::Material;
 use super::origins::Origins;
@@ -29,8 +30,8 @@ pub struct Scene {
     pub sky: Option<Sky>,
     /// The lights with a place, which integrator `path` sees.
     pub lights: Vec<Light>,
-    /// Linear RGB of camera rays that miss, if the scene has no sky.
-    pub background: DVec3,
+    /// What camera rays see that miss.
+    pub background: Background,
     /// The number of table rows skipped because of `degenerate = "skip"`.
     pub skipped_rows: u64,
     /// Notes on the files for the user, such as ignored columns.

@@ -5,6 +5,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::background::BackgroundKey;
 use super::defaults;
 use super::description::Integrator;
 use super::formats::{
@@ -101,7 +102,7 @@ for_each_solid_format! {
 
     /// The whole file.
     Document {
-        pub background: Option<Triple>,
+        pub background: Option<Spanned<BackgroundKey>>,
         pub records: Option<Spanned<String>>,
         pub camera: Option<Keys<CameraKeys>>,
         pub film: Option<Keys<FilmKeys>>,

@@ -6,6 +6,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 use toml::Spanned;
 
+use super::background::background;
 use super::camera::camera;
 use super::description::{Prototype, PrototypeIndex, Scene};
 use super::document::{Body, Document, PrototypeKeys, ScatterKeys};
@@ -64,12 +65,7 @@ pub(super) fn lower(
     let integrator = document.default_integrator();
     let sun = document.sun.map(|Keys(keys)| keys);
     let sky = document.sky.map(|Keys(keys)| keys);
-    let lights = lights(
-        source,
-        sun.as_ref(),
-        sky.as_ref(),
-        document.background.as_ref(),
-    )?;
+    let lights = lights(source, sun.as_ref(), sky.as_ref())?;
     let notes = bodies.iter().flat_map(|body| body.notes.clone());
     let table_notes = bodies.iter().flat_map(|body| body.table_notes.clone());
     let notes = notes.chain(table_notes).collect();
@@ -80,7 +76,7 @@ pub(super) fn lower(
         sun: lights.sun,
         sky: lights.sky,
         lights: placed_lights,
-        background: lights.background,
+        background: background(source, document.background.as_ref())?,
         skipped_rows: bodies.iter().map(|body| body.skipped).sum(),
         notes,
         prototypes: bodies.into_iter().map(|body| body.prototype).collect(),

@@ -21,6 +21,7 @@
 //! program.
 
 mod aimed_camera;
+mod background;
 mod camera;
 mod contents;
 mod cylinder_list;
@@ -67,6 +68,7 @@ mod values;
 mod view_volume;
 
 pub use aimed_camera::AimedCamera;
+pub use background::Background;
 pub use contents::{ExpectedCounts, ExpectedSolids, PlacedCount};
 pub(crate) use cylinder_list::SharedRecords;
 pub use cylinder_list::{CylinderList, Iter as CylinderIter};

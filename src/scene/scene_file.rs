@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 
+use super::background::{Background, background};
 use super::contents::{ExpectedCounts, ExpectedSolids, mark_used, placed_counts};
 use super::description::{Film, PrototypeIndex, RenderSettings, Scene};
 use super::document::{Body, Document};
@@ -91,6 +92,14 @@ impl SceneFile {
                 self.document.default_integrator(),
             )?,
         ))
+    }
+
+    /// What is behind the scene.
+    ///
+    /// # Errors
+    /// If the value is wrong, as when the scene is loaded.
+    pub fn background(&self) -> Result<Background, SceneError> {
+        background(&self.source, self.document.background.as_ref())
     }
 
     /// Upper bounds of the contents of the prototypes, in their order. Tables are counted by

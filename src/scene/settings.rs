@@ -33,7 +33,6 @@ const DEFAULT_SKY: Sky = Sky {
 pub(super) struct Lights {
     pub sun: Option<Sun>,
     pub sky: Option<Sky>,
-    pub background: DVec3,
 }
 
 /// The lights of the scene file. The renderer chooses lights for a scene without any.
@@ -41,7 +40,6 @@ pub(super) fn lights(
     source: &Source,
     sun: Option<&SunKeys>,
     sky_keys: Option<&SkyKeys>,
-    background: Option<&Triple>,
 ) -> Result<Lights, SceneError> {
     let sky = |keys: &SkyKeys| {
         Ok(Sky {
@@ -52,7 +50,6 @@ pub(super) fn lights(
     Ok(Lights {
         sun: sun.map(|keys| self::sun(source, keys)).transpose()?,
         sky: sky_keys.map(sky).transpose()?,
-        background: color(source, background, defaults::BACKGROUND)?,
     })
 }
 

@@ -6,8 +6,8 @@ use std::fs;
 use std::path::Path;
 
 use cyltrace::scene::{
-    Frame, Integrator, Material, MaterialIndex, Placement, Projection, Prototype, Records, Scene,
-    load,
+    Background, Frame, Integrator, Material, MaterialIndex, Placement, Projection, Prototype,
+    Records, Scene, load,
 };
 use cyltrace::solid::Caps;
 use glam::{DAffine3, DMat3, DVec3};
@@ -99,7 +99,10 @@ fn least_scene_has_the_documented_defaults() {
     assert_eq!((scene.film.width, scene.film.height), (1280, 720));
     assert_eq!(scene.render.integrator, Integrator::Sun);
     assert_eq!(scene.render.spp, 4);
-    assert_eq!(scene.background, DVec3::new(0.8, 0.9, 1.0));
+    assert_eq!(
+        scene.background,
+        Background::Color(DVec3::new(0.8, 0.9, 1.0))
+    );
     assert_eq!((scene.sun, scene.sky), (None, None));
     assert_eq!(scene.materials.len(), 1);
     assert_eq!(scene.prototypes.len(), 1);
@@ -136,13 +139,26 @@ fn records_in_f32_are_the_rounded_numbers_and_say_so() {
 }
 
 #[test]
+fn background_is_a_color_or_transparent() {
+    let stated = |value: &str| scene(&format!("background = {value}\n{SOLID}")).background;
+    assert_eq!(stated("\"transparent\""), Background::Transparent);
+    assert_eq!(
+        stated("[1, 0, 0.5]"),
+        Background::Color(DVec3::new(1.0, 0.0, 0.5))
+    );
+}
+
+#[test]
 fn picture_keys_are_read() {
     let scene = scene(&format!(
         "background = [0, 0.5, 2]\n[camera]\ntype = \"perspective\"\nposition = [1, 2, 3]\nlook_at = [4, 5, 6]\n\
          up = [0, 1, 0]\nfov_degrees = 25.5\n[film]\nwidth = 65536\nheight = 1\n\
          [render]\nintegrator = \"normal\"\nspp = 9\n{SOLID}"
     ));
-    assert_eq!(scene.background, DVec3::new(0.0, 0.5, 2.0));
+    assert_eq!(
+        scene.background,
+        Background::Color(DVec3::new(0.0, 0.5, 2.0))
+    );
     assert_eq!(
         scene.camera.projection,
         Projection::Perspective { fov_degrees: 25.5 }

@@ -2,7 +2,9 @@
 
 use std::fs;
 
-use cyltrace::scene::{Color, Integrator, Light, LightShape, MaterialKind, SceneFile};
+use cyltrace::scene::{
+    Color, Integrator, Lens, Light, LightShape, MaterialKind, Projection, SceneFile,
+};
 use glam::DVec3;
 
 use super::keys::{BARK, SOLID, scene};

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use cyltrace::math::{Bounds, Orientation, Random, Ray, power_of_two};
 use cyltrace::scene::{
-    Camera, Film, Frame, Integrator, Lens, Light, LightShape, Material, MaterialIndex,
+    Background, Camera, Film, Frame, Integrator, Lens, Light, LightShape, Material, MaterialIndex,
     MaterialKind, Projection, Prototype, RenderSettings, Scene, Sky, SolidRecord, Sun, load, save,
 };
 use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
@@ -185,8 +185,10 @@ fn extreme_numbers_saved_are_the_same() {
             focus: Some(greatest),
         }),
     };
-    scene.background = DVec3::new(-0.0, f64::MAX, tiny);
+    scene.background = Background::Color(DVec3::new(-0.0, f64::MAX, tiny));
     assert_same(&scene, &saved(&scene), "extreme numbers");
+    scene.background = Background::Transparent;
+    assert_same(&scene, &saved(&scene), "transparent");
 }
 
 #[test]

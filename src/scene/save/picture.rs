@@ -2,6 +2,7 @@
 
 use super::text::Text;
 use super::{SaveError, check_names};
+use crate::scene::background::Background;
 use crate::scene::defaults;
 use crate::scene::description::{Camera, Frame, Projection, Scene};
 use crate::scene::light::{Light, LightShape};
@@ -9,7 +10,10 @@ use crate::scene::material_kinds::keys_of;
 use crate::scene::settings::is_unit;
 
 pub(super) fn state(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
-    text.top().vector("background", scene.background);
+    match scene.background {
+        Background::Color(color) => text.top().vector("background", color),
+        Background::Transparent => text.top().text("background", Background::TRANSPARENT),
+    }
     camera(text, &scene.camera);
 
     let mut film = text.table("[film]");

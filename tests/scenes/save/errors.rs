@@ -3,8 +3,8 @@
 use std::io;
 
 use cyltrace::scene::{
-    Color, Composition, CylinderList, CylinderRecord, Material, MaterialIndex, Placement,
-    Prototype, PrototypeIndex, Records, Scene, SolidRecord, Sun, save,
+    Background, Color, Composition, CylinderList, CylinderRecord, Material, MaterialIndex,
+    Placement, Prototype, PrototypeIndex, Records, Scene, SolidRecord, Sun, save,
 };
 use cyltrace::solid::{Caps, Cylinder, Disk, Sphere};
 use glam::{DAffine3, DVec3};
@@ -78,7 +78,7 @@ fn what_scene_files_cannot_state_is_an_error() {
             "default one",
         ),
         (
-            changed(|scene| scene.background.y = f64::INFINITY),
+            changed(|scene| scene.background = Background::Color(DVec3::INFINITY)),
             "background is inf",
         ),
         (

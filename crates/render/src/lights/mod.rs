@@ -124,7 +124,7 @@ impl Lights {
         Self {
             sun,
             sky: radiance.filter(|&radiance| radiance != DVec3::ZERO),
-            miss: miss.unwrap_or(scene.background),
+            miss: miss.unwrap_or(scene.background.color()),
             choice: Choice::new(&powers),
             shapes,
             emitters,
@@ -283,12 +283,13 @@ fn default_sky() -> Sky {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use cyltrace::scene::Background;
 
     fn scene(sun: Option<Sun>, sky: Option<Sky>) -> Scene {
         Scene {
             sun,
             sky,
-            background: DVec3::new(0.1, 0.2, 0.3),
+            background: Background::Color(DVec3::new(0.1, 0.2, 0.3)),
             ..Scene::new(Vec::new())
         }
     }

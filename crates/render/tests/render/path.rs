@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use cyltrace::math::Orientation;
 use cyltrace::scene::{
-    Color, Frame, Integrator, Light, LightShape, Material, MaterialIndex, MaterialKind, Projection,
-    Scene, Sky, SolidRecord, Sun,
+    Background, Color, Frame, Integrator, Light, LightShape, Material, MaterialIndex, MaterialKind,
+    Projection, Scene, Sky, SolidRecord, Sun,
 };
 use cyltrace::solid::{AnySolid, Caps, Cuboid, Cylinder, Disk, Sphere};
 use glam::DVec3;
@@ -18,7 +18,7 @@ const REFLECTANCE: DVec3 = DVec3::new(0.5, 0.25, 1.0);
 /// A point of the ground, as a square of 2 mm shows it.
 fn ground() -> Scene {
     let mut scene = stage::scene(&[GROUND]);
-    scene.background = DVec3::ZERO;
+    scene.background = Background::Color(DVec3::ZERO);
     scene.render.integrator = Integrator::Path;
     scene.camera.projection = Projection::Orthographic {
         height: Some(0.002),
@@ -274,7 +274,7 @@ fn slabs_of_glass_transmit_what_their_faces_do() {
     ];
     for (slabs, transmitted, what) in cases {
         let mut scene = stage::scene(&[]);
-        scene.background = DVec3::ZERO;
+        scene.background = Background::Color(DVec3::ZERO);
         scene.render.integrator = Integrator::Path;
         scene.render.max_depth = 100;
         for &(low, high) in slabs {
@@ -302,7 +302,7 @@ fn touching_glasses_of_two_indices_have_three_faces() {
         transmission(1.0 - through, reflectance(one, other))
     });
     let mut scene = stage::scene(&[]);
-    scene.background = DVec3::ZERO;
+    scene.background = Background::Color(DVec3::ZERO);
     scene.render.integrator = Integrator::Path;
     scene.render.max_depth = 100;
     for (low, high, ior) in [(0.0, 1.0, 1.25), (1.0, 2.0, 1.5), (-3.0, -2.0, 0.0)] {

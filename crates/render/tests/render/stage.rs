@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use cyltrace::scene::{
-    self, Camera, CylinderRecord, Frame, Material, MaterialIndex, Projection, Prototype, Scene,
-    Solids,
+    self, Background, Camera, CylinderRecord, Frame, Material, MaterialIndex, Projection,
+    Prototype, Scene, Solids,
 };
 use cyltrace::solid::{Caps, Cylinder};
 use cyltrace::tracer::{Options, Tracer, workers};
@@ -43,7 +43,7 @@ pub fn scene(cylinders: &[(DVec3, DVec3, f64, Caps)]) -> Scene {
             width: SIZE,
             height: SIZE,
         },
-        background: DVec3::new(0.0, 0.5, 0.25),
+        background: Background::Color(DVec3::new(0.0, 0.5, 0.25)),
         ..Scene::new(vec![root])
     }
 }
