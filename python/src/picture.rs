@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use cyltrace::scene::Film;
-use cyltrace_output::{Output, OutputError, film_png_bytes};
+use cyltrace_output::{Contents, Output, OutputError, film_png_bytes};
 use cyltrace_render::{RenderError, Settings};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError};
@@ -40,6 +40,7 @@ pub fn render<'py>(
         spp: spp.unwrap_or(of_scene.spp),
         integrator: integrator.map_or(Ok(of_scene.integrator), integrator_of)?,
         seed,
+        ..of_scene
     };
     settings
         .check()
@@ -84,7 +85,7 @@ pub fn write_picture(
     pixels: PyReadonlyArray1<'_, f32>,
 ) -> PyResult<()> {
     let film = film(width, height, &pixels)?;
-    let output = Output::create(&path).map_err(output_error)?;
+    let output = Output::create(&path, Contents::default()).map_err(output_error)?;
     output.write(&film).map_err(output_error)
 }
 

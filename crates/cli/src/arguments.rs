@@ -20,6 +20,7 @@ mod farm;
 mod names;
 mod numbers;
 mod parts;
+mod picture;
 
 pub use bench::{AccuracyArguments, Bench, BenchArguments, ScaleArguments, TraversalArguments};
 pub use check::{CheckArguments, Rays};
@@ -27,6 +28,7 @@ pub use farm::{Farm, FarmArguments, SlurmScriptArguments};
 use names::one_of;
 use numbers::{count_up_to, parse_seed, parse_segments, parse_size, parse_threads};
 pub use parts::{MergeArguments, PartArguments, PartsArguments, WorkerArguments};
+pub use picture::PictureArguments;
 
 use super::exit_codes;
 use super::limit::MemoryArguments;
@@ -102,8 +104,8 @@ pub struct RenderArguments {
     /// The scene file
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// Write the picture to FILE: `.png` (8-bit sRGB, clamped to [0, 1]) or `.exr`
-    /// (32-bit linear, not clamped)
+    /// Write the picture to FILE: `.png` (8-bit sRGB, clamped to [0, 1] unless there is a tone
+    /// map) or `.exr` (32-bit linear, not clamped)
     #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
     /// Render W by H pixels, at most 2^28 in all [default: the scene's, else 1280x720]
@@ -125,6 +127,8 @@ pub struct RenderArguments {
         allow_negative_numbers = true
     )]
     pub seed: u64,
+    #[command(flatten)]
+    pub picture: PictureArguments,
     #[command(flatten)]
     pub part: PartArguments,
     #[command(flatten)]

@@ -23,6 +23,7 @@ mod outputs;
 mod parts;
 mod print;
 mod progress;
+mod reached;
 #[cfg(test)]
 mod reference;
 mod render;

@@ -3,19 +3,19 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use anyhow::anyhow;
+use anyhow::{anyhow, bail};
 use cyltrace::scene::SceneFile;
 use cyltrace::tracer::{Options, Tracer};
-use cyltrace_output::Output;
+use cyltrace_output::{Contents, Format, Output};
 use cyltrace_parts::{Header, PartWriter};
-use cyltrace_render::{RayCounts, RenderError, Settings, Tiles};
+use cyltrace_render::{Channels, RayCounts, Reached, RenderError, Settings, Tiles};
 use serde_json::{Value, json};
 
 use super::arguments::RenderArguments;
 use super::limit::{MemoryLimit, Need};
 use super::outputs::Files;
 use super::parts::{self, Work};
-use super::{interrupt, json, memory, print, progress, scene, text};
+use super::{interrupt, json, memory, print, progress, reached, scene, text};
 
 /// The times of the command's parts, in seconds.
 struct Times {
@@ -41,7 +41,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     files.check()?;
     parts::check(&arguments.part, &arguments.output)?;
     if arguments.part.part.is_none() {
-        Output::check(&arguments.output)?;
+        check_output(arguments)?;
     }
     json::check(common)?;
 
@@ -76,7 +76,10 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let cancelled = interrupt::end_in_order();
     let target = match &header {
         Some(header) => Target::Part(parts::create(&arguments.output, header)?),
-        None => Target::Picture(Output::create(&arguments.output)?),
+        None => Target::Picture(Output::create(
+            &arguments.output,
+            contents(arguments, &settings),
+        )?),
     };
     let workers = scene::workers(common)?;
     let all = Tiles::of(settings.film);
@@ -109,6 +112,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         settings: &settings,
         tracer: &tracer,
         rays: rendered.rays,
+        reached: rendered.reached,
         skipped: &rendered.skipped,
         times,
         threads: workers.current_num_threads(),
@@ -116,12 +120,15 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     };
     let figures = run.figures();
     match target {
-        Target::Picture(output) => {
+        Target::Picture(mut output) => {
+            if let Some(reached) = rendered.reached {
+                output.state_error(reached.error);
+            }
             let film = settings.film;
             output.write_bands((film.width, film.height), rendered.bands(film))?;
         }
         Target::Part(mut part) => {
-            parts::render::write(&mut part, &rendered.pixels)?;
+            parts::render::write(&mut part, &rendered)?;
             part.finish(&json!({ "figures": figures, "seconds": run.times.all() }))?;
         }
     }
@@ -130,6 +137,16 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         true => print(&run.text()),
         false => Ok(()),
     }
+}
+
+/// How many samples a pixel gets.
+pub fn samples_text(settings: &Settings) -> String {
+    let at_most = if settings.target.is_some() {
+        "at most "
+    } else {
+        ""
+    };
+    format!("{at_most}{} samples per pixel", settings.spp)
 }
 
 /// What a run writes to.
@@ -143,11 +160,46 @@ pub fn output_files(arguments: &RenderArguments) -> Files<'_> {
     Files::new(&arguments.scene, arguments.common.json.as_deref()).output("-o", &arguments.output)
 }
 
+/// Samples of a pixel unless the command line says otherwise, with `--error` or `--time`.
+const MOST_SAMPLES: u32 = 16_384;
+
+/// Checks that the picture can be written, as far as this is known before the scene is read.
+pub fn check_output(arguments: &RenderArguments) -> anyhow::Result<()> {
+    let picture = &arguments.picture;
+    let contents = Contents {
+        channels: Channels::new(picture.channels.iter().copied(), false).list(),
+        ..Contents::default()
+    };
+    Output::check(&arguments.output, &contents)?;
+    let is_shown = picture.exposure.is_some() || picture.tonemap.is_some();
+    if is_shown && Format::of(&arguments.output)? == Format::Exr {
+        bail!("--exposure and --tonemap are of a .png: an .exr has the colors as they are");
+    }
+    Ok(())
+}
+
+/// What the file of the picture has beside its colors.
+fn contents(arguments: &RenderArguments, settings: &Settings) -> Contents {
+    Contents {
+        channels: settings.channels.list(),
+        display: arguments.picture.display(),
+        error: None,
+    }
+}
+
 /// The settings of the command line, and of the scene where that leaves a choice.
 pub fn settings(arguments: &RenderArguments, file: &SceneFile) -> anyhow::Result<Settings> {
     // The error's text is the whole message; its source would repeat a part.
     let stated = file.picture().map_err(|error| anyhow!("{error}"))?;
-    let mut settings = Settings::new(stated);
+    let background = file.background().map_err(|error| anyhow!("{error}"))?;
+    let mut settings = Settings::new(stated, background);
+    let picture = &arguments.picture;
+    let channels = picture.channels.iter().copied();
+    settings.channels = Channels::new(channels, background.is_transparent());
+    settings.target = picture.target();
+    if settings.target.is_some() {
+        settings.spp = MOST_SAMPLES;
+    }
     settings.seed = arguments.seed;
     if let Some(size) = arguments.size {
         settings.film = size;
@@ -172,7 +224,11 @@ pub fn work<'a>(
         command: "render",
         unit: "tiles",
         whole: Tiles::of(settings.film).count(),
-        settings: parts::render::settings(settings, arguments.decisions.exact),
+        settings: parts::render::settings(
+            settings,
+            arguments.picture.display(),
+            arguments.decisions.exact,
+        ),
         scene,
         long_table: None,
     }
@@ -184,6 +240,7 @@ struct Run<'a> {
     settings: &'a Settings,
     tracer: &'a Tracer,
     rays: RayCounts,
+    reached: Option<Reached>,
     skipped: &'a [String],
     times: Times,
     threads: usize,
@@ -233,6 +290,14 @@ impl Run<'_> {
             "threads": self.threads,
             "records": json::records(scene),
         });
+        if !settings.channels.list().is_empty() {
+            let list = settings.channels.list();
+            let names = list.iter().map(|channel| channel.name);
+            figures["channels"] = json!(names.collect::<Vec<_>>());
+        }
+        if let Some(reached) = &self.reached {
+            figures[reached::KEY] = reached::figures(reached);
+        }
         if let Some(header) = self.header {
             figures["part"] = json!(header.number.to_string());
         }
@@ -249,14 +314,17 @@ impl Run<'_> {
             None => String::new(),
         };
         let mut text = format!(
-            "{}: {of_whole}{}x{}, {} samples per pixel, {}\n{}",
+            "{}: {of_whole}{}x{}, {}, {}\n{}",
             arguments.output.display(),
             settings.film.width,
             settings.film.height,
-            settings.spp,
+            samples_text(settings),
             settings.integrator.name(),
             text::solids(statistics),
         );
+        if let Some(reached) = &self.reached {
+            text += &reached::text(reached, settings);
+        }
         text += &format!(
             "memory: {} of records, {} in Embree {} ({})\n",
             memory::readable(statistics.records_bytes as u64),

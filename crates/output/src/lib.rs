@@ -13,6 +13,7 @@ mod size;
 mod srgb;
 mod table;
 mod text_file;
+mod tone_map;
 mod unfinished;
 
 pub use csv::csv;
@@ -20,9 +21,12 @@ pub use figure::{Figure, Mark, Series, Symbol};
 pub use film::Film;
 pub use html::Page;
 pub use new_file::{FileError, NewFile, followed};
-pub use picture::{Bands, Format, Output, OutputError, film_png_bytes, png_bytes};
+pub use picture::{
+    Band, Bands, Channel, Contents, Format, Numbers, Output, OutputError, film_png_bytes, png_bytes,
+};
 pub use size::{parse_size, readable};
 pub use srgb::encode as srgb_encode;
 pub use table::{Table, figure};
 pub use text_file::write_text;
+pub use tone_map::{Display, ToneMap};
 pub use unfinished::{UnfinishedGuard, is_unfinished, remove_unfinished};

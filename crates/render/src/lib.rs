@@ -6,58 +6,75 @@
 //! it: [`Tiles`] numbers its tiles.
 
 mod bsdf;
+mod channels;
 mod colors;
 mod disk;
 mod frame;
 mod integrator;
 mod lights;
+mod place;
+mod rendering;
 mod sampler;
 mod tiles;
+mod until_error;
 
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
-use cyltrace_output::{Bands, Film};
+use cyltrace_output::{Band, Bands, Film};
 use rayon::ThreadPool;
 
+pub use channels::{ChannelGroup, Channels, NO_ID};
 pub use cyltrace::scene::GREATEST_PIXELS;
 pub use integrator::RayCounts;
 pub use lights::{Lights, SunLight};
 pub use tiles::Tiles;
+pub use until_error::{Reached, Target};
 
-use cyltrace::scene::{self, AimedCamera, Integrator, RenderSettings, Scene, ViewVolume};
+use cyltrace::scene::{
+    self, AimedCamera, Background, Integrator, RenderSettings, Scene, ViewVolume,
+};
 use cyltrace::tracer::Tracer;
 use integrator::View;
+use rendering::Work;
+use until_error::LEAST_SAMPLES;
 
 /// What to render, where the scene leaves a choice.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Size of the picture; at least 1 x 1.
     pub film: scene::Film,
     /// Samples a pixel, at least 1. The first `n` are the same for any number
-    /// of samples; powers of two are spread most evenly.
+    /// of samples; powers of two are spread most evenly. With a target, the most that a pixel
+    /// gets, at least 2.
     pub spp: u32,
     /// What a pixel shows.
     pub integrator: Integrator,
     /// Chooses the random numbers.
     pub seed: u64,
+    /// The channels beside the colors.
+    pub channels: Channels,
+    /// When a pixel has enough samples; `None` gives every pixel the same number.
+    pub target: Option<Target>,
 }
 
 impl Settings {
     /// The settings of the scene, with seed 0.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
-        Self::new((scene.film, scene.render))
+        Self::new((scene.film, scene.render), scene.background)
     }
 
     /// These settings of a scene, with seed 0.
     #[must_use]
-    pub fn new((film, render): (scene::Film, RenderSettings)) -> Self {
+    pub fn new((film, render): (scene::Film, RenderSettings), background: Background) -> Self {
         Self {
             film,
             spp: render.spp,
             integrator: render.integrator,
             seed: 0,
+            channels: Channels::new([], background.is_transparent()),
+            target: None,
         }
     }
 
@@ -76,7 +93,7 @@ impl Settings {
     /// Says whether a picture can be made with these settings.
     ///
     /// # Errors
-    /// When there is no pixel, no sample, or there are too many pixels.
+    /// When there is no pixel, no sample, there are too many pixels, or the target is wrong.
     pub fn check(&self) -> Result<(), RenderError> {
         let scene::Film { width, height } = self.film;
         let pixels = u64::from(width) * u64::from(height);
@@ -86,7 +103,13 @@ impl Settings {
         if self.spp == 0 {
             return Err(RenderError::NoSamples);
         }
-        Ok(())
+        match self.target {
+            Some(target) if !(0.0..f64::INFINITY).contains(&target.error) => {
+                Err(RenderError::Error(target.error))
+            }
+            Some(_) if self.spp < LEAST_SAMPLES => Err(RenderError::FewSamples(self.spp)),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -95,6 +118,10 @@ impl Settings {
 pub struct Picture {
     /// The colours.
     pub film: Film,
+    /// The words of the channels of each pixel, in the order of [`Channels::list`].
+    pub words: Vec<u32>,
+    /// What was reached, if the settings have a target.
+    pub reached: Option<Reached>,
     /// The rays traced.
     pub rays: RayCounts,
     /// Work that the scene did not need.
@@ -102,7 +129,7 @@ pub struct Picture {
 }
 
 /// An error of a rendering.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
     /// The size is zero or too large.
@@ -118,6 +145,14 @@ pub enum RenderError {
     /// The number of samples is zero.
     #[error("invalid number of samples per pixel 0: it must be at least 1")]
     NoSamples,
+    /// The number of samples is too small to estimate an error.
+    #[error(
+        "at most {0} samples per pixel are too few to estimate an error: allow at least {LEAST_SAMPLES}"
+    )]
+    FewSamples(u32),
+    /// The error that is to be reached is wrong.
+    #[error("invalid error {0}: it must be a finite number from 0")]
+    Error(f64),
     /// The caller cancelled the rendering.
     #[error("the rendering was cancelled")]
     Cancelled,
@@ -128,6 +163,12 @@ pub enum RenderError {
 pub struct RenderedTiles {
     /// The colours of the tiles in their order, those of a tile row by row.
     pub pixels: Vec<[f32; 3]>,
+    /// The words of the channels of each pixel, in the order of the pixels.
+    pub words: Vec<u32>,
+    /// The number of words of a pixel.
+    pub words_each: usize,
+    /// What was reached, if the settings have a target.
+    pub reached: Option<Reached>,
     /// The rays traced.
     pub rays: RayCounts,
     /// Work that the scene did not need.
@@ -141,27 +182,18 @@ impl RenderedTiles {
     /// # Panics
     /// If they are not.
     pub fn bands(&self, size: scene::Film) -> impl Bands {
-        let tiles = Tiles::of(size);
-        let (mut row, mut rest) = (0, &self.pixels[..]);
-        move |band: &mut Vec<[f32; 3]>| {
+        let (tiles, each) = (Tiles::of(size), self.words_each);
+        let (mut row, mut rest, mut words) = (0, &self.pixels[..], &self.words[..]);
+        move |band: &mut Band| {
             let pixels = tiles.pixels(tiles.row(row)) as usize;
             let (colors, later) = rest.split_at(pixels);
-            tiles.arrange(row, colors, band);
-            rest = later;
+            tiles.arrange(row, 1, colors, &mut band.colors);
+            let (own, later_words) = words.split_at(pixels * each);
+            tiles.arrange(row, each, own, &mut band.words);
+            (rest, words) = (later, later_words);
             row += 1;
             Ok(())
         }
-    }
-
-    /// The picture of this size of which these are all tiles.
-    ///
-    /// # Panics
-    /// If they are not.
-    #[must_use]
-    pub fn film(&self, size: scene::Film) -> Film {
-        let mut pixels = Vec::new();
-        Tiles::of(size).arrange(0, &self.pixels, &mut pixels);
-        Film::new(size.width, size.height, pixels)
     }
 }
 
@@ -186,8 +218,14 @@ pub fn render(
     let tiles = Tiles::of(settings.film);
     let all = 0..tiles.count();
     let rendered = render_tiles(tracer, settings, all, workers, progress, cancelled)?;
+    let (mut pixels, mut words) = (Vec::new(), Vec::new());
+    tiles.arrange(0, 1, &rendered.pixels, &mut pixels);
+    tiles.arrange(0, rendered.words_each, &rendered.words, &mut words);
+    let scene::Film { width, height } = settings.film;
     Ok(Picture {
-        film: rendered.film(settings.film),
+        film: Film::new(width, height, pixels),
+        words,
+        reached: rendered.reached,
         rays: rendered.rays,
         skipped: rendered.skipped,
     })
@@ -215,10 +253,22 @@ pub fn render_tiles(
     let scene = tracer.scene();
     let camera = AimedCamera::new(&scene.camera, &tracer.bounds(), settings.film);
     let view = View::new(tracer, camera, settings.integrator);
-    let (pixels, rays) =
-        workers.install(|| tiles::render(&view, settings, tiles, progress, cancelled))?;
+    let work = Work {
+        view: &view,
+        settings,
+        progress,
+        cancelled,
+    };
+    let (pixels, rays, reached) = workers.install(|| match settings.target {
+        None => rendering::render(&work, tiles).map(|(pixels, rays)| (pixels, rays, None)),
+        Some(target) => until_error::render(&work, tiles, target)
+            .map(|(pixels, rays, reached)| (pixels, rays, Some(reached))),
+    })?;
     Ok(RenderedTiles {
-        pixels,
+        pixels: pixels.colors,
+        words: pixels.words,
+        words_each: settings.channels.list().len(),
+        reached,
         rays,
         skipped: skipped(settings.integrator, &view.lights),
     })

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use anyhow::{Context, bail};
-use cyltrace_output::Output;
 use cyltrace_parts::{PartSet, Survey};
 use serde_json::{Value, json};
 
@@ -12,7 +11,7 @@ use crate::arguments::MergeArguments;
 use crate::output_sink::{OutputSink, is_standard_stream};
 use crate::outputs::Files;
 use crate::print::print;
-use crate::{CHECK_FAILED, GOOD, interrupt, json};
+use crate::{CHECK_FAILED, GOOD, interrupt, json, reached};
 
 /// Puts the parts together. The exit code is that of the command that made them.
 pub fn run(arguments: &MergeArguments) -> anyhow::Result<u8> {
@@ -35,13 +34,16 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<u8> {
     let set = PartSet::read(&paths)?;
     let command = set.header().command.as_str();
     if command == "render" {
-        Output::check(output)?;
+        render::check(&set, output)?;
     }
     interrupt::end_in_order();
     let (code, figures, text) = match command {
         "render" => {
             render::merge(&set, output)?;
-            let figures = sums(&set, "rays", &["camera", "shadow", "ao"]);
+            let mut figures = sums(&set, "rays", &["camera", "shadow", "ao"]);
+            if let Some(reached) = reached::of_parts(&set) {
+                figures[reached::KEY] = reached::figures(&reached);
+            }
             let rays = figures["rays"].as_object().into_iter().flatten();
             let rays: u64 = rays.filter_map(|(_, count)| count.as_u64()).sum();
             (GOOD, figures, format!("{rays} rays\n"))

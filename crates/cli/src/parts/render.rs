@@ -1,37 +1,80 @@
-//! Parts of a picture: the pixels of a run of tiles as they are, three f32 each, little-endian.
+//! Parts of a picture: the pixels of a run of tiles as they are, little-endian: three f32 of the
+//! color, and a word of four bytes for each channel.
 
 use std::io::{self, Read, Write};
 use std::path::Path;
 
 use anyhow::bail;
 use cyltrace::scene::{Film, GREATEST_PIXELS};
-use cyltrace_output::Output;
+use cyltrace_output::{Band, Contents, Display, Output, ToneMap};
 use cyltrace_parts::{PartFile, PartSet, PartWriter, Payload};
-use cyltrace_render::{Settings, Tiles};
+use cyltrace_render::{ChannelGroup, Channels, RenderedTiles, Settings, Tiles};
 use serde_json::{Value, json};
 
 use super::value;
+use crate::reached;
 
-/// Bytes of a pixel.
-const PIXEL: usize = 12;
+/// Bytes of a color, and of a word.
+const COLOR: usize = 12;
+const WORD: usize = 4;
 
 /// The settings that determine a picture.
-pub fn settings(settings: &Settings, exact: bool) -> Value {
+pub fn settings(settings: &Settings, display: Display, exact: bool) -> Value {
+    let channels = settings.channels.groups().iter();
     json!({
         "size": [settings.film.width, settings.film.height],
         "spp": settings.spp,
         "integrator": settings.integrator.name(),
         "seed": settings.seed,
         "exact": exact,
+        "channels": channels.map(|group| group.name()).collect::<Vec<_>>(),
+        "opacity": settings.channels.has_opacity(),
+        "exposure": display.exposure,
+        "tonemap": display.tone_map.name(),
+        "error": settings.target.map(|target| target.error),
     })
 }
 
 /// Writes the payload.
-pub fn write(part: &mut PartWriter, pixels: &[[f32; 3]]) -> io::Result<()> {
-    for color in pixels.as_flattened() {
-        part.write_all(&color.to_le_bytes())?;
+pub fn write(part: &mut PartWriter, tiles: &RenderedTiles) -> io::Result<()> {
+    let each = tiles.words_each;
+    for (number, color) in tiles.pixels.iter().enumerate() {
+        for value in color {
+            part.write_all(&value.to_le_bytes())?;
+        }
+        for word in &tiles.words[number * each..][..each] {
+            part.write_all(&word.to_le_bytes())?;
+        }
     }
     Ok(())
+}
+
+/// What the file of the picture has beside its colors.
+fn contents(set: &PartSet) -> anyhow::Result<Contents> {
+    let (first, stated) = (&set.parts()[0], &set.header().settings);
+    let groups: Vec<String> = value(first, &stated["channels"])?;
+    let group = |name: &String| ChannelGroup::ALL.into_iter().find(|one| one.name() == name);
+    let groups: Option<Vec<_>> = groups.iter().map(group).collect();
+    let tone_map: String = value(first, &stated["tonemap"])?;
+    let mut tone_maps = ToneMap::ALL.into_iter();
+    let tone_map = tone_maps.find(|one| one.name() == tone_map);
+    let (Some(groups), Some(tone_map)) = (groups, tone_map) else {
+        bail!("{:?} is a part that this version cannot read", first.path());
+    };
+    let display = Display {
+        exposure: value(first, &stated["exposure"])?,
+        tone_map,
+    };
+    Ok(Contents {
+        channels: Channels::new(groups, value(first, &stated["opacity"])?).list(),
+        display,
+        error: reached::of_parts(set).map(|reached| reached.error),
+    })
+}
+
+/// Checks that the picture of a whole set can be written.
+pub fn check(set: &PartSet, output: &Path) -> anyhow::Result<()> {
+    Ok(Output::check(output, &contents(set)?)?)
 }
 
 /// Writes the picture of a whole set, a row of tiles at a time.
@@ -43,23 +86,27 @@ pub fn merge(set: &PartSet, output: &Path) -> anyhow::Result<()> {
     if !(1..=GREATEST_PIXELS).contains(&pixels) {
         bail!("{:?} is of a picture of {width}x{height}", first.path());
     }
+    let contents = contents(set)?;
+    let words = contents.channels.len();
+    let bytes = COLOR + words * WORD;
     let tiles = Tiles::of(film);
     for part in set.parts() {
         let header = part.header();
         let pixels = tiles.pixels(header.range.clone());
-        if header.whole != tiles.count() || part.payload_bytes() != pixels * PIXEL as u64 {
+        if header.whole != tiles.count() || part.payload_bytes() != pixels * bytes as u64 {
             bail!("{:?} has more or fewer pixels than its tiles", part.path());
         }
     }
-    let mut pixels = Pixels::new(set.parts());
-    let (mut row, mut colors) = (0, Vec::new());
-    let bands = |band: &mut Vec<[f32; 3]>| {
-        pixels.read(tiles.pixels(tiles.row(row)), &mut colors)?;
-        tiles.arrange(row, &colors, band);
+    let mut pixels = Pixels::new(set.parts(), words);
+    let (mut row, mut read) = (0, Band::default());
+    let bands = |band: &mut Band| {
+        pixels.read(tiles.pixels(tiles.row(row)), &mut read)?;
+        tiles.arrange(row, 1, &read.colors, &mut band.colors);
+        tiles.arrange(row, words, &read.words, &mut band.words);
         row += 1;
         Ok(())
     };
-    Output::create(output)?.write_bands((width, height), bands)?;
+    Output::create(output, contents)?.write_bands((width, height), bands)?;
     Ok(())
 }
 
@@ -68,20 +115,24 @@ struct Pixels<'a> {
     parts: std::slice::Iter<'a, PartFile>,
     payload: Option<Payload>,
     bytes: Vec<u8>,
+    /// Words of a pixel.
+    words: usize,
 }
 
 impl<'a> Pixels<'a> {
-    fn new(parts: &'a [PartFile]) -> Self {
+    fn new(parts: &'a [PartFile], words: usize) -> Self {
         Self {
             parts: parts.iter(),
             payload: None,
             bytes: Vec::new(),
+            words,
         }
     }
 
     /// Reads the next `count` pixels.
-    fn read(&mut self, count: u64, colors: &mut Vec<[f32; 3]>) -> io::Result<()> {
-        self.bytes.resize(count as usize * PIXEL, 0);
+    fn read(&mut self, count: u64, pixels: &mut Band) -> io::Result<()> {
+        let each = COLOR + self.words * WORD;
+        self.bytes.resize(count as usize * each, 0);
         let mut filled = 0;
         while filled < self.bytes.len() {
             let read = match &mut self.payload {
@@ -94,13 +145,14 @@ impl<'a> Pixels<'a> {
                 self.payload = Some(part.payload().map_err(io::Error::other)?);
             }
         }
-        let number = |bytes: &[u8]| f32::from_le_bytes(bytes.try_into().expect("four bytes"));
-        colors.clear();
-        colors.extend(
-            self.bytes
-                .chunks_exact(PIXEL)
-                .map(|pixel| [0, 4, 8].map(|at| number(&pixel[at..at + 4]))),
-        );
+        pixels.clear();
+        for pixel in self.bytes.chunks_exact(each) {
+            let (words, _) = pixel.as_chunks();
+            let mut words = words.iter().map(|&word| u32::from_le_bytes(word));
+            let color = [(); 3].map(|()| f32::from_bits(words.next().unwrap_or_default()));
+            pixels.colors.push(color);
+            pixels.words.extend(words);
+        }
         Ok(())
     }
 }

@@ -14,7 +14,6 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow, bail};
 use clap::ValueEnum;
-use cyltrace_output::Output;
 use cyltrace_parts::{PartNumber, PartSet};
 use indicatif::ProgressBar;
 use rustix::process::{Pid, Signal, kill_process};
@@ -27,8 +26,8 @@ use crate::arguments::RenderArguments;
 use crate::interrupt;
 use crate::limit::MemoryLimit;
 use crate::print::{note, print};
-use crate::render::{output_files, settings, work};
-use crate::{COULD_NOT_RUN, json, progress, scene};
+use crate::render::{check_output, output_files, samples_text, settings, work};
+use crate::{COULD_NOT_RUN, json, progress, reached, scene};
 
 /// Parts for each worker, unless `--parts` gives their number: at the end a worker is idle
 /// for half a part's time on average, and every part costs a start.
@@ -48,7 +47,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     };
     let files = output_files(arguments);
     files.check()?;
-    Output::check(output)?;
+    check_output(arguments)?;
     json::check(common)?;
     let start = Instant::now();
     let file = scene::read(&arguments.scene, MemoryLimit::of(&arguments.memory))?;
@@ -104,12 +103,14 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         return Ok(());
     }
     let film = settings.film;
+    let reached = reached::of_parts(&set);
+    let reached = reached.map_or_else(String::new, |one| reached::text(&one, &settings));
     print(&format!(
-        "{}: {}x{}, {} samples per pixel, {}\ntime: {:.2} s for {parts} parts by {workers} workers\n",
+        "{}: {}x{}, {}, {}\n{reached}time: {:.2} s for {parts} parts by {workers} workers\n",
         output.display(),
         film.width,
         film.height,
-        settings.spp,
+        samples_text(&settings),
         settings.integrator.name(),
         start.elapsed().as_secs_f64(),
     ))
@@ -134,6 +135,15 @@ fn passed_on(arguments: &RenderArguments, workers: usize) -> anyhow::Result<Vec<
         arguments.integrator.as_ref().and_then(name_of),
     );
     option("seed", Some(arguments.seed.to_string()));
+    let picture = &arguments.picture;
+    let channels: Vec<_> = picture.channels.iter().map(|group| group.name()).collect();
+    option(
+        "channels",
+        (!channels.is_empty()).then(|| channels.join(",")),
+    );
+    option("exposure", picture.exposure.map(|stops| stops.to_string()));
+    option("tonemap", picture.tonemap.map(|one| one.name().to_owned()));
+    option("error", picture.error.map(|error| error.to_string()));
     let share = arguments
         .memory
         .max_memory
@@ -302,6 +312,9 @@ fn figures(arguments: &RenderArguments, set: &PartSet, workers: usize, seconds: 
         .iter()
         .map(|one| one["memory"]["peak_rss_bytes"].as_u64());
     figures["memory"]["peak_rss_bytes"] = json!(peak.max().flatten());
+    if let Some(reached) = reached::of_parts(set) {
+        figures[reached::KEY] = reached::figures(&reached);
+    }
     figures["output"] = json!(arguments.output);
     figures["workers"] = json!(workers);
     figures["parts"] = json!(set.parts().len());
@@ -317,8 +330,8 @@ mod tests {
     use crate::arguments::{Arguments, Command};
 
     /// Options that a worker does not have, or that have its own values.
-    const OWN: [&str; 7] = [
-        "output", "json", "quiet", "part", "resume", "workers", "parts",
+    const OWN: [&str; 8] = [
+        "output", "json", "quiet", "part", "resume", "workers", "parts", "time",
     ];
 
     fn render(words: &[OsString]) -> RenderArguments {
@@ -333,7 +346,8 @@ mod tests {
     #[test]
     fn every_option_of_render_reaches_the_workers() {
         let line = "render -o p.png --size 3x2 --spp 5 --integrator ao --seed 7 --max-memory 1GB \
-                    --layout block --exact --threads 6 --max-isa avx2 --workers 2 -- -s.toml";
+                    --layout block --exact --threads 6 --max-isa avx2 --channels ids,depth --exposure -0.5 \
+                    --tonemap agx --error 0.05 --workers 2 -- -s.toml";
         let words: Vec<OsString> = line.split_whitespace().map(OsString::from).collect();
         let arguments = render(&words);
         let mut passed = passed_on(&arguments, 2).expect("processors");
@@ -355,10 +369,12 @@ mod tests {
             let integrator = format!("{:?}", arguments.integrator);
             let scene = arguments.scene.clone();
             let numbers = (arguments.size, arguments.spp, arguments.seed);
+            let picture = format!("{:?}", arguments.picture);
             let max_isa = arguments.common.max_isa;
             (
                 scene,
                 numbers,
+                picture,
                 integrator,
                 layout,
                 arguments.decisions.exact,

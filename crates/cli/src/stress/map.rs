@@ -4,8 +4,8 @@ use std::path::Path;
 
 use cyltrace_bench::stress::{Contender, to_bits, ulp_map};
 use cyltrace_oracle::cases::{Family, Inputs};
-use cyltrace_output::Output;
 use cyltrace_output::Table;
+use cyltrace_output::{Contents, Output};
 
 use crate::arguments::StressArguments;
 use crate::print::print;
@@ -20,9 +20,9 @@ pub fn run(
     let directory = arguments.report.as_deref().unwrap_or(Path::new("."));
     let name = format!("ulp_map_{}_{}.png", family.name(), inputs.name());
     let path = directory.join(name);
-    Output::check(&path)?;
+    Output::check(&path, &Contents::default())?;
     let map = ulp_map(contenders, family, inputs, arguments.seed);
-    Output::create(&path)?.write(&map.film)?;
+    Output::create(&path, Contents::default())?.write(&map.film)?;
     if arguments.common.prints() {
         let mut table = Table::new(&["tile", "wrong %"], 1);
         for (name, wrong) in &map.tiles {

@@ -3,6 +3,7 @@
 mod arguments;
 mod bad_input;
 mod bench;
+mod channels;
 mod check;
 mod check_meshes;
 mod exact;

@@ -5,8 +5,11 @@ use std::io::{self, Cursor, Write};
 use image::{ImageBuffer, ImageError, ImageFormat, Rgba};
 use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter, StreamWriter};
 
-use super::Bands;
-use crate::{Film, srgb};
+use super::{Band, Bands, Contents};
+use crate::Film;
+
+/// The keyword of the text with the estimated error.
+const ERROR: &str = "relative error";
 
 /// Bytes of compressed data in a chunk of the file. Each chunk adds 12 bytes.
 const CHUNK: usize = 1 << 16;
@@ -33,55 +36,47 @@ pub fn png_bytes(width: u32, height: u32, pixels: &[[u8; 4]]) -> Result<Vec<u8>,
 /// If the encoder fails.
 pub fn film_png_bytes(film: &Film) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    write_film(&mut bytes, film)?;
+    let size = (film.width(), film.height());
+    write_bands(&mut bytes, size, &Contents::default(), film.bands())?;
     Ok(bytes)
 }
 
-/// Writes a film.
-pub(super) fn write_film(target: impl Write, film: &Film) -> io::Result<()> {
-    encode(target, (film.width(), film.height()), |rows| {
-        rows.write(film.pixels())
-    })
-}
-
-/// Writes a picture that comes in bands of rows.
+/// Writes a picture that comes in bands of rows. Its only channel can be opacity.
 pub(super) fn write_bands(
     target: impl Write,
     (width, height): (u32, u32),
+    contents: &Contents,
     mut bands: impl Bands,
 ) -> io::Result<()> {
-    encode(target, (width, height), |rows| {
-        let mut missing = u64::from(width) * u64::from(height);
-        let mut band = Vec::new();
-        while missing > 0 {
-            band.clear();
-            bands(&mut band)?;
-            rows.write(&band)?;
-            missing = missing.saturating_sub(band.len() as u64);
-        }
-        Ok(())
-    })
-}
-
-/// Encodes a picture whose rows `write` writes.
-fn encode<W: Write>(
-    target: W,
-    (width, height): (u32, u32),
-    write: impl FnOnce(&mut Rows<W>) -> io::Result<()>,
-) -> io::Result<()> {
+    let opacity = contents.opacity();
     let mut encoder = Encoder::new(target, width, height);
-    encoder.set_color(ColorType::Rgb);
+    encoder.set_color(match opacity {
+        Some(_) => ColorType::Rgba,
+        None => ColorType::Rgb,
+    });
     encoder.set_depth(BitDepth::Eight);
     encoder.set_compression(Compression::Fast);
     encoder.set_filter(Filter::Adaptive);
+    if let Some(error) = contents.error {
+        let added = encoder.add_text_chunk(ERROR.into(), error.to_string());
+        added.map_err(system)?;
+    }
     let mut writer = encoder.write_header().map_err(system)?;
     {
         let mut rows = Rows {
             stream: writer.stream_writer_with_size(CHUNK).map_err(system)?,
+            contents,
+            opacity,
             codes: Vec::new(),
-            row: 3 * width as usize,
         };
-        write(&mut rows)?;
+        let mut missing = u64::from(width) * u64::from(height);
+        let mut band = Band::default();
+        while missing > 0 {
+            band.clear();
+            bands(&mut band)?;
+            rows.write(&band, width as usize)?;
+            missing = missing.saturating_sub(band.colors.len() as u64);
+        }
         rows.stream.finish().map_err(system)?;
     }
     writer.finish().map_err(system)
@@ -90,18 +85,38 @@ fn encode<W: Write>(
 /// Takes the rows of a picture.
 struct Rows<'a, W: Write> {
     stream: StreamWriter<'a, W>,
+    contents: &'a Contents,
+    /// The place of opacity among the words of a pixel.
+    opacity: Option<usize>,
     codes: Vec<u8>,
-    /// Bytes of a row.
-    row: usize,
 }
 
 impl<W: Write> Rows<'_, W> {
-    fn write(&mut self, pixels: &[[f32; 3]]) -> io::Result<()> {
+    fn write(&mut self, band: &Band, width: usize) -> io::Result<()> {
+        let display = self.contents.display;
+        let words = self.contents.channels.len();
         // Row by row, so that the codes of a large film take no memory.
-        for row in pixels.as_flattened().chunks(self.row) {
+        for (row, colors) in band.colors.chunks(width).enumerate() {
             self.codes.clear();
-            self.codes
-                .extend(row.iter().map(|&value| srgb::encode(value)));
+            match self.opacity {
+                None => {
+                    let codes = colors.iter().flat_map(|&color| display.codes(color));
+                    self.codes.extend(codes);
+                }
+                Some(place) => {
+                    let pixels = band.words[row * width * words..].chunks(words);
+                    let codes = colors.iter().zip(pixels).flat_map(|(&color, pixel)| {
+                        let opacity = f32::from_bits(pixel[place]);
+                        let alone = match opacity > 0.0 {
+                            true => color.map(|value| value / opacity),
+                            false => [0.0; 3],
+                        };
+                        let [red, green, blue] = display.codes(alone);
+                        [red, green, blue, (opacity * 255.0 + 0.5) as u8]
+                    });
+                    self.codes.extend(codes);
+                }
+            }
             self.stream.write_all(&self.codes)?;
         }
         Ok(())

@@ -111,6 +111,16 @@ pub(super) struct Batch {
     paths: Paths,
 }
 
+impl Batch {
+    /// Whether the camera ray of a sample hit something.
+    pub(super) fn is_hit(&self, sample: usize) -> bool {
+        match self.paths.is_hit(sample) {
+            Some(is_hit) => is_hit,
+            None => self.hits[sample].is_some(),
+        }
+    }
+}
+
 impl<'a> View<'a> {
     /// The view of a picture of this integrator.
     pub fn new(tracer: &'a Tracer, camera: AimedCamera, integrator: Integrator) -> Self {

@@ -52,6 +52,15 @@ pub(super) struct Paths {
     to_solids: Vec<ToSolid>,
     rays: Vec<Ray>,
     hits: Vec<Option<PartialHit>>,
+    /// Whether the camera rays hit something.
+    are_hits: Vec<bool>,
+}
+
+impl Paths {
+    /// Whether the camera ray of a sample hit something; `None` without paths.
+    pub fn is_hit(&self, sample: usize) -> Option<bool> {
+        self.are_hits.get(sample).copied()
+    }
 }
 
 /// A path up to a ray.
@@ -146,6 +155,8 @@ impl View<'_> {
         });
         batch.paths.paths.clear();
         batch.paths.paths.extend(first);
+        batch.paths.are_hits.clear();
+        batch.paths.are_hits.resize(samples.len(), false);
         let fields = self.path_fields();
         while !batch.paths.paths.is_empty() {
             batch.rays.clear();
@@ -182,7 +193,9 @@ impl View<'_> {
         for (path, hit) in paths.paths.iter().zip(&batch.hits) {
             let t = hit.as_ref().map_or(f64::INFINITY, PartialHit::t);
             let color = &mut batch.colors[path.sample];
-            if let Some(light) = self.lights.on(&path.ray, t, path.point) {
+            let light = self.lights.on(&path.ray, t, path.point);
+            paths.are_hits[path.sample] |= light.is_some() || hit.is_some();
+            if let Some(light) = light {
                 *color += path.weighted(light);
                 continue;
             }

@@ -5,3 +5,4 @@ mod light;
 mod path;
 mod same_pictures;
 mod stage;
+mod until_error;

@@ -1,0 +1,345 @@
+//! Samples until the error of a tile is small enough.
+//!
+//! # The error
+//! A pixel has two sequences of samples, each scrambled on its own (`sampler`), so that their
+//! means `a` and `b` of `n` samples each are independent and equally distributed. The pixel's
+//! value is `(a + b)/2`. As `E (a - b)² = 2 Var a` and `Var (a + b)/2 = (Var a)/2`,
+//!
+//! `v = (a - b)²/4`
+//!
+//! estimates the variance of the pixel's value without bias, although the samples of a sequence
+//! are not independent: that they are spread evenly is in `a - b`. The error of a tile is the
+//! root of the mean of `v` over its pixels and the components of their colors, divided by the
+//! mean of these components, or by [`DARK`] where the tile is darker.
+//!
+//! # No bias
+//! To stop when a tile looks good is a bias if the samples that are kept made it look so: a tile
+//! that has not found its bright light yet looks good and is too dark. So the pixels of a
+//! tile are divided at random into two halves, and each half stops by the error of the other
+//! one. The number `N` of samples of a pixel is then a function of samples of other pixels,
+//! which are independent of its own, and of nothing else. For every `n` the mean `M(n)` of its
+//! samples has the expectation `I`, the pixel's true value, because every point of a scrambled
+//! sequence is uniform. So `E M(N) = Σ P(N = n) E M(n) = I`. Until both halves have stopped,
+//! both are sampled; what the one that stopped first gets after that is not used for its own
+//! pixels. (The idea is that of the dual buffers of Rousselle, Knaus, Zwicker, "Adaptive
+//! Rendering with Non-Local Means Filtering", ACM Transactions on Graphics 31(6), 2012, with
+//! pixels in place of buffers, so that no pixel has half of its samples.)
+//!
+//! A limit of time stops all tiles whatever their values are.
+//!
+//! # The promise
+//! A tile stops when the error is small enough with a probability of about 95 %. With `S` the
+//! sum of `v` over the values of a half, normal `a` and `b` make each `v` its variance `σ²`
+//! times a chi-squared variable of one degree of freedom, so that `E v² = 3 σ⁴`. The squared
+//! error that the half will have varies by `2 Σ σ⁴`, `S` itself by as much, together by
+//! `4/3 Σ v²`. Of a tile of two such halves the relative deviation is `1/√2` of that. So a half
+//! stops where `S + 1.645/√2 √(4/3 Σ v²)` is at most what was asked. The components of a color
+//! are taken as one value, since they vary together.
+//!
+//! Decisions are at numbers of samples that grow by a third or a half ([`next`]): finer steps
+//! would decide more often, and so stop by luck; coarser ones take more than is needed.
+
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+use cyltrace::math::Random;
+use rayon::prelude::*;
+
+use super::integrator::Sample;
+use super::place::{Pixels, Place, Sums, write};
+use super::rendering::{Work, pixels, stream, trace};
+use super::sampler::PixelSampler;
+use super::{RayCounts, RenderError, Tiles};
+
+/// Mean below which the error of a tile is no longer relative to it: 1 % of white. Black tiles
+/// would never be done.
+const DARK: f64 = 0.01;
+
+/// Samples of a sequence before the first decision. Fewer would decide by luck.
+const FIRST: u32 = 4;
+
+/// Sequences of a pixel.
+const SEQUENCES: usize = 2;
+
+/// The least number of samples of a pixel, one of each sequence.
+pub(super) const LEAST_SAMPLES: u32 = SEQUENCES as u32;
+
+/// The stream of random numbers of a pixel that decides its half, beside those of its sequences,
+/// 1 and 2. Stream 0 has the samples of pictures with the same number everywhere.
+const STREAM_OF_HALVES: u64 = 3;
+
+/// The one-sided quantile of 95 % of a normal variable, over √2.
+const QUANTILE: f64 = 1.644_853_626_951_472_7 * std::f64::consts::FRAC_1_SQRT_2;
+
+/// When a picture has enough samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// The greatest relative error of a tile; 0 is never reached.
+    pub error: f64,
+    /// The time after which the rendering ends in any case, each tile with the samples that it
+    /// has; each has a few. With it, the picture depends on the speed of the machine.
+    pub time: Option<Duration>,
+}
+
+/// What a picture with a [`Target`] has reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reached {
+    /// The greatest error of a tile, as estimated from its own samples.
+    pub error: f32,
+    /// The number of tiles whose estimated error is greater than the target's.
+    pub tiles_above: u64,
+    /// The samples of all pixels.
+    pub samples: u64,
+}
+
+impl Reached {
+    /// What both have reached together.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            error: self.error.max(other.error),
+            tiles_above: self.tiles_above + other.tiles_above,
+            samples: self.samples + other.samples,
+        }
+    }
+}
+
+/// Renders some tiles on the rayon pool that this is called in.
+pub(super) fn render(
+    work: &Work,
+    numbers: Range<u64>,
+    target: Target,
+) -> Result<(Pixels, RayCounts, Reached), RenderError> {
+    let tiles = Tiles::of(work.settings.film);
+    let words = work.settings.channels.list().len();
+    let mut all = Pixels::new(tiles.pixels(numbers.clone()), words);
+    let places = all.places(tiles, numbers, words);
+    let started = places.into_par_iter().with_max_len(1);
+    let started = started.map(|place| TileSamples::new(work, target.error, place));
+    // A time that is too long to be added never ends.
+    let deadline = target
+        .time
+        .and_then(|time| Instant::now().checked_add(time));
+    let outcomes: Vec<(RayCounts, Reached)> = match deadline {
+        // One tile after the other, so that few are in memory.
+        None => started
+            .map(|mut tile| {
+                while !tile.is_done() {
+                    tile.advance()?;
+                }
+                Ok(tile.outcome())
+            })
+            .collect::<Result<_, RenderError>>()?,
+        // All tiles side by side, so that none has much less when the time is over.
+        Some(deadline) => {
+            let mut tiles: Vec<_> = started.collect();
+            loop {
+                let rest = tiles.par_iter_mut().with_max_len(1);
+                rest.filter(|tile| !tile.is_done()).try_for_each(|tile| {
+                    match tile.taken > 0 && Instant::now() >= deadline {
+                        true => {
+                            tile.stop();
+                            Ok(())
+                        }
+                        false => tile.advance(),
+                    }
+                })?;
+                if tiles.iter().all(TileSamples::is_done) {
+                    break;
+                }
+            }
+            tiles.into_iter().map(TileSamples::outcome).collect()
+        }
+    };
+    let mut sums = (RayCounts::default(), Reached::default());
+    for (rays, reached) in outcomes {
+        sums = (sums.0 + rays, sums.1.and(reached));
+    }
+    Ok((all, sums.0, sums.1))
+}
+
+/// A number of samples of a sequence after `taken`: 4, 6, 8, 12, 16, 24 and so on.
+fn next(taken: u32) -> u32 {
+    match taken {
+        0 => FIRST,
+        _ if taken.is_power_of_two() => taken / 2 * 3,
+        _ => taken / 3 * 4,
+    }
+}
+
+/// A tile while it is sampled.
+struct TileSamples<'a> {
+    work: &'a Work<'a>,
+    error: f64,
+    place: Place<'a>,
+    /// Column, row and half of each pixel.
+    pixels: Vec<((u32, u32), usize)>,
+    samplers: [Vec<PixelSampler>; SEQUENCES],
+    sums: [Sums; SEQUENCES],
+    /// Samples of each sequence so far.
+    taken: u32,
+    /// What each half has come to, once it has stopped.
+    stopped: [Option<Spread>; 2],
+    rays: RayCounts,
+    samples: u64,
+}
+
+impl<'a> TileSamples<'a> {
+    fn new(work: &'a Work<'a>, error: f64, place: Place<'a>) -> Self {
+        let settings = work.settings;
+        let all = [1, 2].map(|sequence| pixels(&place.tile, settings, sequence));
+        let half = |position| {
+            let stream = stream(position, settings, STREAM_OF_HALVES);
+            Random::new(settings.seed, stream).below(2) as usize
+        };
+        let halves = all[0]
+            .iter()
+            .map(|&(position, _)| (position, half(position)));
+        let sums = Sums::new(all[0].len(), &settings.channels);
+        Self {
+            work,
+            error,
+            place,
+            pixels: halves.collect(),
+            samplers: all.map(|pixels| pixels.into_iter().map(|(_, sampler)| sampler).collect()),
+            sums: [sums.clone(), sums],
+            taken: 0,
+            stopped: [None, None],
+            rays: RayCounts::default(),
+            samples: 0,
+        }
+    }
+
+    fn is_done(&self) -> bool {
+        self.stopped.iter().all(Option::is_some)
+    }
+
+    /// Takes samples up to the next decision, and decides.
+    fn advance(&mut self) -> Result<(), RenderError> {
+        let most = (self.work.settings.spp / LEAST_SAMPLES).max(1);
+        let end = next(self.taken).min(most);
+        for (samplers, sums) in self.samplers.iter().zip(&mut self.sums) {
+            let more = u64::from(end - self.taken);
+            let pixel = |number: u64| (number / more) as usize;
+            let sample = |number: u64| Sample {
+                pixel: self.pixels[pixel(number)].0,
+                sampler: samplers[pixel(number)],
+                number: self.taken + (number % more) as u32,
+            };
+            let count = self.pixels.len() as u64 * more;
+            trace(self.work, count, sample, &mut self.rays, |first, batch| {
+                sums.add(batch, |sample| pixel(first + sample as u64));
+            })?;
+        }
+        self.taken = end;
+        let spreads = [0, 1].map(|half| self.spread(half));
+        for half in [0, 1] {
+            let by_other = spreads[1 - half].is_within(self.error);
+            if self.stopped[half].is_none() && (by_other || end == most) {
+                self.stop_half(half);
+            }
+        }
+        Ok(())
+    }
+
+    /// Stops with the samples so far.
+    fn stop(&mut self) {
+        for half in [0, 1] {
+            if self.stopped[half].is_none() {
+                self.stop_half(half);
+            }
+        }
+    }
+
+    fn stop_half(&mut self, half: usize) {
+        let pixels = self.pixels.iter().enumerate();
+        let own = pixels.filter(|(_, (_, of))| *of == half);
+        let own = own.map(|(pixel, (position, _))| (pixel, *position));
+        let samples = SEQUENCES as u32 * self.taken;
+        let count = own.clone().count() as u64;
+        let [first, second] = &self.sums;
+        let (view, channels) = (self.work.view, &self.work.settings.channels);
+        let place = &mut self.place;
+        write(
+            place,
+            own,
+            &[first, second],
+            samples,
+            channels,
+            view,
+            &mut self.rays,
+        );
+        self.stopped[half] = Some(self.spread(half));
+        self.samples += count * u64::from(samples);
+        (self.work.progress)(count);
+    }
+
+    /// How the values of a half spread.
+    fn spread(&self, half: usize) -> Spread {
+        let mut spread = Spread::default();
+        for (pixel, (_, of)) in self.pixels.iter().enumerate() {
+            if *of == half {
+                let count = f64::from(self.taken);
+                let [first, second] = [0, 1].map(|of| self.sums[of].color(pixel) / count);
+                let variance = (first - second).length_squared() / 12.0;
+                spread.pixels += 1.0;
+                spread.values += (first + second).element_sum() / 6.0;
+                spread.variances += variance;
+                spread.squares += variance * variance;
+            }
+        }
+        spread
+    }
+
+    fn outcome(self) -> (RayCounts, Reached) {
+        let halves = self.stopped.map(Option::unwrap_or_default);
+        let error = halves[0].and(halves[1]).error();
+        let reached = Reached {
+            error: error as f32,
+            tiles_above: u64::from(error > self.error),
+            samples: self.samples,
+        };
+        (self.rays, reached)
+    }
+}
+
+/// How the values of some pixels spread.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spread {
+    pixels: f64,
+    /// The sum of the pixels' values, each the mean of its color's components.
+    values: f64,
+    /// The sum of the estimated variances `v`.
+    variances: f64,
+    /// The sum of `v²`.
+    squares: f64,
+}
+
+impl Spread {
+    fn and(self, other: Self) -> Self {
+        Self {
+            pixels: self.pixels + other.pixels,
+            values: self.values + other.values,
+            variances: self.variances + other.variances,
+            squares: self.squares + other.squares,
+        }
+    }
+
+    /// What errors are relative to.
+    fn scale(&self) -> f64 {
+        (self.values / self.pixels).max(DARK)
+    }
+
+    /// The relative error.
+    fn error(&self) -> f64 {
+        (self.variances / self.pixels).sqrt() / self.scale()
+    }
+
+    /// Whether the error is at most `target` with the probability of the promise. No pixels say
+    /// nothing.
+    fn is_within(&self, target: f64) -> bool {
+        let limit = target * self.scale();
+        let greatest = self.variances + QUANTILE * (4.0 / 3.0 * self.squares).sqrt();
+        self.pixels > 0.0 && greatest <= limit * limit * self.pixels
+    }
+}
