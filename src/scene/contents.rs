@@ -20,6 +20,8 @@ pub struct ExpectedCounts {
     pub solids: ExpectedSolids,
     /// Its own placements, by placed prototype.
     pub placed: Vec<PlacedCount>,
+    /// The bytes of the values for data colors, and in the root those of images.
+    pub values_bytes: u64,
     /// Whether it is the root, or the root places it directly or through others.
     pub is_used: bool,
 }
@@ -120,15 +122,20 @@ impl Scene {
     #[must_use]
     pub fn contents(&self) -> Vec<ExpectedCounts> {
         let prototypes = self.prototypes.iter();
-        let contents = prototypes.map(|prototype| ExpectedCounts {
-            name: prototype.name.clone(),
-            solids: ExpectedSolids {
-                counts: prototype.solids.counts(),
-                bytes: prototype.solids.records_bytes() as u64,
-            },
-            placed: prototype.placed(),
-            is_used: false,
-        });
+        let images = self.images_bytes() as u64;
+        let images = std::iter::once(images).chain(std::iter::repeat(0));
+        let contents = prototypes
+            .zip(images)
+            .map(|(prototype, images)| ExpectedCounts {
+                name: prototype.name.clone(),
+                solids: ExpectedSolids {
+                    counts: prototype.solids.counts(),
+                    bytes: prototype.solids.records_bytes() as u64,
+                },
+                placed: prototype.placed(),
+                values_bytes: prototype.values_bytes() as u64 + images,
+                is_used: false,
+            });
         let mut contents: Vec<_> = contents.collect();
         mark_used(&mut contents);
         contents
@@ -146,6 +153,7 @@ mod tests {
             name: name.to_owned(),
             solids: ExpectedSolids::default(),
             placed: placed_counts(placed.iter().copied()),
+            values_bytes: 0,
             is_used: false,
         };
         let mut contents = [

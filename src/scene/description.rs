@@ -2,8 +2,9 @@
 //! independent of the files it came from.
 
 use super::background::Background;
+use super::colors::{PlacementValues, ValueList};
 use super::light::{Light, Sky, Sun};
-use super::material::Material;
+use super::material::{Color, Material};
 use super::origins::Origins;
 use super::record::Records;
 use super::solid_lists::Solids;
@@ -50,6 +51,16 @@ impl Scene {
         }
     }
 
+    /// The bytes of the images on surfaces.
+    #[must_use]
+    pub fn images_bytes(&self) -> usize {
+        let bytes = self.materials.iter().map(|material| match &material.color {
+            Color::Image(image) => image.bytes(),
+            Color::Constant(_) | Color::Checker(_) | Color::Stripes(_) | Color::Data(_) => 0,
+        });
+        bytes.sum()
+    }
+
     /// The greatest difference of a stored number from the stated one.
     #[must_use]
     pub fn rounding(&self) -> f64 {
@@ -77,6 +88,10 @@ pub struct Prototype {
     pub solids: Solids,
     /// The placements, in the order of their instance numbers.
     pub placements: Vec<Placement>,
+    /// The values of solids whose material has a data color, by primitive number.
+    pub solid_values: ValueList,
+    /// The values of placements for data colors, by column.
+    pub placement_values: Vec<PlacementValues>,
     /// The source files of the solids.
     pub solid_origins: Origins,
     /// The source files of the placements.
@@ -87,6 +102,14 @@ impl Prototype {
     /// As [`Solids::simple`].
     pub fn singles(&self) -> impl Iterator<Item = (u32, AnySolid)> {
         self.solids.simple()
+    }
+
+    /// The bytes of the values for data colors.
+    #[must_use]
+    pub fn values_bytes(&self) -> usize {
+        let placements = self.placement_values.iter();
+        let placements = placements.map(|column| column.values.bytes());
+        self.solid_values.bytes() + placements.sum::<usize>()
     }
 
     /// As [`Solids::find_simple`].

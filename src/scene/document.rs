@@ -6,6 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::background::BackgroundKey;
+use super::colors::ValueKeys;
 use super::defaults;
 use super::description::Integrator;
 use super::formats::{
@@ -239,6 +240,7 @@ pub(super) struct InstanceKeys {
     pub rotate_z: Option<Number>,
     pub rotate: Option<Vec<Keys<RotationKeys>>>,
     pub translate: Option<Triple>,
+    pub values: Option<Spanned<ValueKeys>>,
     pub matrix: Option<Spanned<List<List<Number, 4>, 3>>>,
 }
 

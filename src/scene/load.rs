@@ -8,6 +8,7 @@ use toml::Spanned;
 
 use super::background::background;
 use super::camera::camera;
+use super::colors::{DataColumns, Found};
 use super::description::{Prototype, PrototypeIndex, Scene};
 use super::document::{Body, Document, PrototypeKeys, ScatterKeys};
 use super::error::SceneError;
@@ -20,7 +21,7 @@ use super::origins::Origins;
 use super::placed_lights::placed_lights;
 use super::placing::{Edge, Placements};
 use super::pose;
-use super::record::Records;
+use super::record::{MaterialIndex, Records};
 use super::scatter::{Pattern, Scatter};
 use super::set_operations::{CompositionKeys, Operation};
 use super::settings::{film, lights, render};
@@ -39,22 +40,33 @@ pub(super) fn lower(
     memory: Option<u64>,
 ) -> Result<Scene, SceneError> {
     let memory = PipeMemory::new(memory);
-    let materials = Materials::new(source, &document.material)?;
+    let mut materials = Materials::new(source, &document.material)?;
+    let colors = document
+        .material
+        .iter()
+        .map(|Keys(keys)| keys.color.as_ref());
+    let columns = DataColumns::new(source, &materials.list, colors)?;
     let index = prototype_index(source, &document.prototype)?;
     let loader = Loader {
         source,
         memory: &memory,
         records: records(source, document.records.as_ref())?,
         materials: &materials,
+        columns: &columns,
         prototypes: &index,
     };
     // Prototypes are loaded side by side; the first error in their order is the one reported.
     let bodies: Vec<Body> = document.bodies().collect();
     let bodies = bodies.par_iter().with_max_len(1);
     let bodies: Vec<_> = bodies.map(|body| loader.body(body)).collect();
-    let bodies = bodies.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let mut bodies = bodies.into_iter().collect::<Result<Vec<_>, _>>()?;
     let nodes: Vec<Node> = bodies.iter().map(Lowered::node).collect();
     graph::check(source, &nodes)?;
+    let mut found = Found::default();
+    for body in &mut bodies {
+        found.extend(std::mem::take(&mut body.found));
+    }
+    columns.complete(source, &mut materials.list, &found)?;
 
     let placed_lights = placed_lights(
         source,
@@ -122,6 +134,7 @@ struct Loader<'a> {
     memory: &'a PipeMemory,
     records: Records,
     materials: &'a Materials,
+    columns: &'a DataColumns,
     prototypes: &'a HashMap<String, PrototypeIndex>,
 }
 
@@ -133,6 +146,7 @@ struct Lowered {
     skipped: u64,
     notes: Vec<String>,
     table_notes: Vec<String>,
+    found: Found,
 }
 
 impl Lowered {
@@ -172,7 +186,7 @@ impl Loader<'_> {
         }
         self.sort(&mut solids)?;
 
-        let mut placements = Placements::default();
+        let mut placements = Placements::new(self.columns);
         let mut placement_origins = Origins::default();
         for Keys(keys) in body.instance {
             placements.add_instance(source, keys, self.placed(&keys.of)?)?;
@@ -192,11 +206,16 @@ impl Loader<'_> {
         solids.solids.trim();
         solids.solids.cylinders.arrange();
         placements.list.shrink_to_fit();
+        solids.values.finish();
+        let mut found = solids.found;
+        let placement_values = placements.values(&mut found);
         Ok(Lowered {
             prototype: Prototype {
                 name: body.name.to_owned(),
                 solids: solids.solids,
                 placements: placements.list,
+                solid_values: solids.values,
+                placement_values,
                 solid_origins: solids.origins,
                 placement_origins,
             },
@@ -205,6 +224,7 @@ impl Loader<'_> {
             skipped: solids.skipped,
             notes: solids.notes,
             table_notes: tables.into_notes(),
+            found,
         })
     }
 
@@ -219,6 +239,7 @@ impl Loader<'_> {
             source: self.source,
             tables,
             materials: self.materials,
+            columns: self.columns,
         };
         for file in body.files() {
             solids.begin_file(file.file().get_ref(), file.has_rows());
@@ -240,6 +261,7 @@ impl Loader<'_> {
             self.number(solids, keys.primitive())?;
             let pushed = solids.push_any(&solid, material);
             pushed.map_err(|refusal| self.refused(keys.place(), &refusal))?;
+            self.value(solids, material, keys)?;
         }
         Ok(())
     }
@@ -257,6 +279,33 @@ impl Loader<'_> {
             self.number(solids, keys.primitive())?;
             let pushed = solids.push_composition(solid, material);
             pushed.map_err(|refusal| self.refused(keys.of().span(), &refusal))?;
+            self.value(solids, material, keys)?;
+        }
+        Ok(())
+    }
+
+    /// Sets the value of the solid that was added last, if its table states one that is shown.
+    fn value(
+        &self,
+        solids: &mut SolidCollector,
+        material: MaterialIndex,
+        keys: &impl SolidTable,
+    ) -> Result<(), SceneError> {
+        let Some(column) = self.columns.of(material) else {
+            return Ok(());
+        };
+        match column.stated(self.source, keys.values())? {
+            Some(value) => {
+                solids.found.material(material);
+                solids.value(material, value);
+            }
+            None => {
+                let values = keys
+                    .values()
+                    .into_iter()
+                    .flat_map(|keys| keys.get_ref().keys());
+                solids.found.others(values);
+            }
         }
         Ok(())
     }

@@ -1,6 +1,10 @@
 //! How surfaces scatter and emit light, as a scene states it.
 
+use std::sync::Arc;
+
 use glam::DVec3;
+
+use super::colors::{Checker, DataColor, Stripes, Texture};
 
 /// How a surface scatters or emits light.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,14 +34,38 @@ impl Material {
 pub enum Color {
     /// The same everywhere: each component in [0, 1].
     Constant(DVec3),
+    /// A pattern of rectangles.
+    Checker(Checker),
+    /// A pattern of stripes.
+    Stripes(Stripes),
+    /// An image.
+    Image(Arc<Texture>),
+    /// Shows the value of a solid in a column.
+    Data(DataColor),
 }
 
 impl Color {
-    /// One color for uses that cannot show several.
+    /// One color for uses that cannot show several: the mean of a pattern or an image, and the
+    /// middle of a gradient.
     #[must_use]
     pub fn average(&self) -> DVec3 {
         match self {
             Self::Constant(color) => *color,
+            Self::Checker(checker) => (checker.colors[0] + checker.colors[1]) / 2.0,
+            Self::Stripes(stripes) => {
+                stripes.colors.iter().sum::<DVec3>() / stripes.colors.len() as f64
+            }
+            Self::Image(image) => image.average(),
+            Self::Data(data) => data.middle(),
+        }
+    }
+
+    /// The column that it shows, if it shows one.
+    #[must_use]
+    pub fn column(&self) -> Option<&str> {
+        match self {
+            Self::Data(data) => Some(&data.column),
+            Self::Constant(_) | Self::Checker(_) | Self::Stripes(_) | Self::Image(_) => None,
         }
     }
 }

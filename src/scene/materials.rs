@@ -6,6 +6,7 @@ use glam::DVec3;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::colors::{ColorKeys, color};
 use super::defaults;
 use super::error::SceneError;
 use super::material::{Color, Material, MaterialKind};
@@ -13,7 +14,7 @@ use super::material_kinds::{self, KindNumbers};
 use super::names::{quoted, suggestion};
 use super::record::MaterialIndex;
 use super::source::Source;
-use super::values::{Keys, Number, Triple, vector};
+use super::values::{Keys, Number};
 
 /// `[[material]]`
 #[derive(Deserialize)]
@@ -21,7 +22,7 @@ use super::values::{Keys, Number, Triple, vector};
 pub(super) struct MaterialKeys {
     pub name: Spanned<String>,
     pub kind: Option<Spanned<String>>,
-    pub color: Option<Triple>,
+    pub color: Option<ColorKeys>,
     pub roughness: Option<Spanned<Number>>,
     pub ior: Option<Spanned<Number>>,
     pub strength: Option<Spanned<Number>>,
@@ -67,7 +68,7 @@ impl Materials {
             strength: keys.strength.as_ref(),
         };
         let kind = material_kinds::kind(source, keys.kind.as_ref(), &numbers)?;
-        let color = color(source, keys, kind)?;
+        let color = color_of(source, keys, kind)?;
         let index = u16::try_from(self.list.len()).map_err(|_| {
             source.error(
                 keys.name.span(),
@@ -104,30 +105,18 @@ impl Materials {
 }
 
 /// The color of a material. Glass and lights are white by default.
-fn color(source: &Source, keys: &MaterialKeys, kind: MaterialKind) -> Result<Color, SceneError> {
-    let Some(key) = &keys.color else {
-        return match kind {
-            MaterialKind::Glass { .. } | MaterialKind::Light { .. } => {
-                Ok(Color::Constant(DVec3::ONE))
-            }
-            _ => Err(source.error_with_help(
-                keys.name.span(),
-                format!("the material {} has no color", quoted(keys.name.get_ref())),
-                "such as color = [0.8, 0.5, 0.2], from 0 to 1 in linear RGB",
-            )),
-        };
-    };
-    let color = vector(key);
-    if (color.cmpge(DVec3::ZERO) & color.cmple(DVec3::ONE)).all() {
-        return Ok(Color::Constant(color));
+fn color_of(source: &Source, keys: &MaterialKeys, kind: MaterialKind) -> Result<Color, SceneError> {
+    match (&keys.color, kind) {
+        (Some(key), _) => color(source, key),
+        (None, MaterialKind::Glass { .. } | MaterialKind::Light { .. }) => {
+            Ok(Color::Constant(DVec3::ONE))
+        }
+        (None, _) => Err(source.error_with_help(
+            keys.name.span(),
+            format!("the material {} has no color", quoted(keys.name.get_ref())),
+            "such as color = [0.8, 0.5, 0.2], from 0 to 1 in linear RGB",
+        )),
     }
-    Err(source.error(
-        key.span(),
-        format!(
-            "color is [{}, {}, {}]: a material's components must be in [0, 1]",
-            color.x, color.y, color.z
-        ),
-    ))
 }
 
 /// Checks that no name is empty and that names are unique.

@@ -5,7 +5,7 @@
 //! 1. `document` contains the keys as written, with their places.
 //! 2. The entries are turned into solids, placements and settings, one kind in each
 //!    file: `solids` with their `pose`, `set_operations`, the `formats` of files,
-//!    `placing`, `scatter`, `camera`, `materials` with `material_kinds`, `placed_lights` and
+//!    `placing`, `scatter`, `camera`, `materials` with `material_kinds` and `colors`, `placed_lights` and
 //!    `settings`. Rows of tables are streamed;
 //!    `named_table` opens the tables and `table` reads them. `solid_collector` collects
 //!    and numbers the solids of a prototype.
@@ -23,6 +23,7 @@
 mod aimed_camera;
 mod background;
 mod camera;
+mod colors;
 mod contents;
 mod cylinder_list;
 mod defaults;
@@ -69,6 +70,9 @@ mod view_volume;
 
 pub use aimed_camera::AimedCamera;
 pub use background::Background;
+pub use colors::{
+    Along, Checker, ColorMap, DataColor, PlacementValues, Stripes, Texture, TextureError, ValueList,
+};
 pub use contents::{ExpectedCounts, ExpectedSolids, PlacedCount};
 pub(crate) use cylinder_list::SharedRecords;
 pub use cylinder_list::{CylinderList, Iter as CylinderIter};

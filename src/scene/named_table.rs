@@ -139,6 +139,16 @@ impl NamedTable<'_> {
         })
     }
 
+    /// Whether any column has the name of a key.
+    pub fn has(&self, key: &ColumnKey) -> bool {
+        self.rows.layout().names(key)
+    }
+
+    /// The names of all columns.
+    pub fn header(&self) -> &[String] {
+        self.rows.layout().header()
+    }
+
     /// The columns of a point or a vector.
     pub fn three(&self, keys: &ThreeColumns) -> Result<[Column; 3], SceneError> {
         let [x, y, z] = &keys.0;

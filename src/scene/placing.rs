@@ -7,6 +7,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 use toml::Spanned;
 
+use super::colors::{DataColumn, DataColumns, Found, PlacementValues, ValueList, union};
 use super::description::{Placement, PrototypeIndex};
 use super::document::{InstanceKeys, InstanceTableKeys};
 use super::error::SceneError;
@@ -20,11 +21,21 @@ use super::values::{Keys, NumberOrList, vector};
 use crate::math::{rotation, sin_cos_degrees};
 
 /// The placements of one prototype.
-#[derive(Default)]
-pub(super) struct Placements {
+pub(super) struct Placements<'c> {
     pub list: Vec<Placement>,
     /// The entries of the scene file that place prototypes.
     pub edges: Vec<Edge>,
+    /// The columns of data colors, each with its values and whether an entry has it.
+    columns: Vec<PlacedColumn<'c>>,
+    /// The columns of tables that lack one of these.
+    others: Vec<String>,
+}
+
+/// A column of data colors.
+struct PlacedColumn<'c> {
+    column: &'c DataColumn,
+    values: ValueList,
+    is_found: bool,
 }
 
 /// An entry of a scene file that places a prototype, once or many times.
@@ -36,7 +47,47 @@ pub(super) struct Edge {
     pub reach: Reach,
 }
 
-impl Placements {
+impl<'c> Placements<'c> {
+    /// No placements, which may have values of these columns.
+    pub fn new(columns: &'c DataColumns) -> Self {
+        let columns = columns.iter().map(|column| PlacedColumn {
+            column,
+            values: ValueList::default(),
+            is_found: false,
+        });
+        Self {
+            list: Vec::new(),
+            edges: Vec::new(),
+            columns: columns.collect(),
+            others: Vec::new(),
+        }
+    }
+
+    /// The values of the placements, and which columns were found.
+    pub fn values(&mut self, found: &mut Found) -> Vec<PlacementValues> {
+        found.others(self.others.drain(..));
+        let mut all = Vec::new();
+        for PlacedColumn {
+            column,
+            mut values,
+            is_found,
+        } in self.columns.drain(..)
+        {
+            if is_found {
+                found.placed(&column.name);
+            }
+            values.finish();
+            let known = values.iter().map(|(_, value)| value);
+            let known = known.filter(|value| !value.is_nan());
+            if let Some(range) = known.map(|value| [value; 2]).reduce(union) {
+                found.placed_range(&column.name, range);
+                let column = column.name.clone();
+                all.push(PlacementValues { column, values });
+            }
+        }
+        all
+    }
+
     /// Adds an `[[instance]]`.
     pub fn add_instance(
         &mut self,
@@ -54,6 +105,18 @@ impl Placements {
         let reach =
             checked(&parent_from_child).map_err(|error| source.error(blame, error.to_string()))?;
         self.make_room(source, &keys.of, 1)?;
+        let number = self.list.len() as u32;
+        for PlacedColumn {
+            column,
+            values,
+            is_found,
+        } in &mut self.columns
+        {
+            if let Some(value) = column.stated(source, keys.values.as_ref())? {
+                *is_found = true;
+                values.push(number, value);
+            }
+        }
         self.list.push(Placement {
             of,
             parent_from_child,
@@ -75,19 +138,42 @@ impl Placements {
             delimiter: keys.delimiter.as_ref(),
             decimal: keys.decimal.as_ref(),
         };
-        let mut table = tables.open(table, &keys.columns.get_ref().0.all())?;
+        let mut wanted = keys.columns.get_ref().0.all();
+        wanted.extend(self.columns.iter().map(|placed| placed.column.key()));
+        let mut table = tables.open(table, &wanted)?;
         let layout = Layout::new(source, &table, &keys.columns)?;
-        table.note_unread(&layout.all());
+        let mut read = layout.all();
+        let mut cells = Vec::with_capacity(self.columns.len());
+        for placed in &mut self.columns {
+            let cell = placed.column.in_table(&table, keys.columns.span())?;
+            if cell.is_some() {
+                placed.is_found = true;
+                placed.values.reserve(table.most_rows());
+            } else {
+                self.others.extend(table.header().iter().cloned());
+            }
+            read.extend(cell);
+            cells.push(cell);
+        }
+        table.note_unread(&read);
+        let values_bytes = cells.iter().flatten().count() * size_of::<f32>();
         let mut reach = Reach::default();
         let before = self.list.len();
         // If the reservation fails, `make_room` allocates row by row.
         let _ = self.list.try_reserve_exact(table.most_rows());
-        while let Some(row) = table.next_row(size_of::<Placement>())? {
+        while let Some(row) = table.next_row(size_of::<Placement>() + values_bytes)? {
             let parent_from_child = layout.placement(&row).map_err(|fault| row.refused(fault))?;
             let row_reach =
                 checked(&parent_from_child).map_err(|error| row.error(None, error.to_string()))?;
             reach = reach.union(row_reach);
             self.make_room(source, &keys.of, 1)?;
+            let number = self.list.len() as u32;
+            for (placed, cell) in self.columns.iter_mut().zip(&cells) {
+                if let Some(cell) = cell {
+                    let value = placed.column.value(&row, *cell)?;
+                    placed.values.push(number, value);
+                }
+            }
             self.list.push(Placement {
                 of,
                 parent_from_child,

@@ -1,11 +1,12 @@
 //! A scene file that has been read, before the files that it names are read.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 
 use super::background::{Background, background};
+use super::colors::{ValueList, header_bytes};
 use super::contents::{ExpectedCounts, ExpectedSolids, mark_used, placed_counts};
 use super::description::{Film, PrototypeIndex, RenderSettings, Scene};
 use super::document::{Body, Document};
@@ -72,8 +73,26 @@ impl SceneFile {
             names.extend(body.files().map(SolidFile::file));
             names.extend(body.instance_table.iter().map(|Keys(keys)| &keys.file));
         }
+        names.extend(self.images());
         let paths = names.iter().map(|name| self.source.resolve(name.get_ref()));
         paths.collect()
+    }
+
+    /// The image files of materials.
+    fn images(&self) -> impl Iterator<Item = &Spanned<String>> {
+        let colors = self.document.material.iter();
+        colors.filter_map(|Keys(keys)| keys.color.as_ref()?.get_ref().image())
+    }
+
+    /// The names of the materials that show a column, and the number of different columns.
+    fn shown(&self) -> (HashSet<&str>, u64) {
+        let materials = self.document.material.iter();
+        let shown = materials.filter_map(|Keys(keys)| {
+            let column = keys.color.as_ref()?.get_ref().column()?;
+            Some((keys.name.get_ref().as_str(), column.get_ref().as_str()))
+        });
+        let (materials, columns): (HashSet<_>, HashSet<_>) = shown.unzip();
+        (materials, columns.len() as u64)
     }
 
     /// The size of the picture, and how it is rendered.
@@ -112,17 +131,29 @@ impl SceneFile {
             .zip(self.document.bodies())
             .map(|(number, body)| (body.name, PrototypeIndex(number)))
             .collect();
+        let (shown, columns) = self.shown();
+        let value = ValueList::VALUE_BYTES + ValueList::RUN_BYTES;
         let of = |name: &Spanned<String>| index.get(name.get_ref().as_str()).copied();
         let count = |body: Body| {
+            let mut values_bytes = columns * value * body.instance.len() as u64;
             let single = body.instance.iter();
             let single = single.map(|Keys(keys)| (of(&keys.of), 1));
+            let mut placed_rows = 0_u64;
             let tables = body.instance_table.iter();
             let tables = tables.map(|Keys(keys)| {
                 let Keys(columns) = keys.columns.get_ref();
                 let rows = table_rows(&self.source, &keys.file, columns.all().first());
+                placed_rows = placed_rows.saturating_add(rows);
                 (of(&keys.of), rows)
             });
             let mut placed: Vec<_> = single.chain(tables).collect();
+            let placed_values = placed_rows.saturating_mul(columns * ValueList::VALUE_BYTES);
+            values_bytes = values_bytes.saturating_add(placed_values);
+            if body.name.is_empty() {
+                let images = self.images();
+                let images = images.map(|name| header_bytes(&self.source.resolve(name.get_ref())));
+                values_bytes = values_bytes.saturating_add(images.sum());
+            }
             // Loading rejects larger numbers before it makes anything.
             let mut total: u64 = placed.iter().map(|(_, count)| count).sum();
             for Keys(keys) in body.scatter {
@@ -135,10 +166,12 @@ impl SceneFile {
             let placed = placed
                 .into_iter()
                 .filter_map(|(of, count)| Some((of?, count)));
+            let (solids, solid_values) = self.solids(&body, records, &shown);
             ExpectedCounts {
                 name: body.name.to_owned(),
-                solids: self.solids(&body, records),
+                solids,
                 placed: placed_counts(placed),
+                values_bytes: values_bytes.saturating_add(solid_values),
                 is_used: false,
             }
         };
@@ -161,14 +194,34 @@ impl SceneFile {
         bytes.into_iter().take(threads).sum()
     }
 
-    /// The numbers of solids that a prototype itself contains.
-    fn solids(&self, body: &Body, records: Records) -> ExpectedSolids {
+    /// The numbers of solids that a prototype itself contains, and the bytes of their values.
+    fn solids(
+        &self,
+        body: &Body,
+        records: Records,
+        shown: &HashSet<&str>,
+    ) -> (ExpectedSolids, u64) {
         let mut solids = ExpectedSolids::default();
+        let mut values_bytes = 0_u64;
+        for file in body.files() {
+            let before = solids.counts.total();
+            file.count(&self.source, records, &mut solids);
+            let material = file.material().map(|name| name.get_ref().as_str());
+            if material.is_some_and(|name| shown.contains(name)) {
+                let more = u64::try_from(solids.counts.total() - before).unwrap_or(u64::MAX);
+                let bytes = more.saturating_mul(file.value_bytes());
+                values_bytes = values_bytes.saturating_add(bytes + ValueList::RUN_BYTES);
+            }
+        }
+        if !shown.is_empty() {
+            let stated: usize = body.solids().map(|(_, stated)| stated).sum();
+            let operations = body.operations().map(|(_, tables)| tables.len());
+            let stated = stated + operations.iter().sum::<usize>();
+            let value = ValueList::VALUE_BYTES + ValueList::RUN_BYTES;
+            values_bytes = values_bytes.saturating_add(value * stated as u64);
+        }
         for (kind, stated) in body.solids() {
             solids.add(kind, stated as u64, records);
-        }
-        for file in body.files() {
-            file.count(&self.source, records, &mut solids);
         }
         for (operation, tables) in body.operations() {
             for Keys(keys) in tables {
@@ -176,7 +229,7 @@ impl SceneFile {
                 solids.add_operands(operand_count(keys));
             }
         }
-        solids
+        (solids, values_bytes)
     }
 
     /// Reads the files that the scene names, and validates the scene.

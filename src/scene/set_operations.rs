@@ -184,16 +184,17 @@ fn closed(source: &Source, stated: &Spanned<&dyn SolidKeys>) -> Result<Compositi
     })
 }
 
-/// Checks that a part of a set operation has no material or number of its own.
+/// Checks that a part of a set operation has no material, number or values of its own.
 fn check_part<T: SolidTable + ?Sized>(source: &Source, keys: &T) -> Result<(), SceneError> {
     let wrong = |place, what| {
         let message =
             format!("a set operation has one {what}: set it next to the key of, not in a part");
         Err(source.error(place, message))
     };
-    match (keys.material(), keys.primitive()) {
-        (None, None) => Ok(()),
-        (Some(material), _) => wrong(material.span(), "material"),
-        (None, Some(primitive)) => wrong(primitive.span(), "primitive number"),
+    match (keys.material(), keys.primitive(), keys.values()) {
+        (None, None, None) => Ok(()),
+        (Some(material), ..) => wrong(material.span(), "material"),
+        (None, Some(primitive), _) => wrong(primitive.span(), "primitive number"),
+        (None, None, Some(values)) => wrong(values.span(), "value of a column"),
     }
 }

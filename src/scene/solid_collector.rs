@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use toml::Spanned;
 
+use super::colors::{Found, ValueList};
 use super::cylinder_list::CylinderList;
 use super::error::SceneError;
 use super::origins::Origins;
@@ -31,6 +32,8 @@ pub(super) struct SolidCollector {
     pub solids: Solids,
     /// The next primitive number.
     next: u32,
+    /// The number that was left unused last.
+    free: Option<u32>,
     /// Where the scene file first states a primitive number.
     pub numbered_at: Option<Range<usize>>,
     /// Rows that were skipped; they keep their numbers.
@@ -41,6 +44,10 @@ pub(super) struct SolidCollector {
     pub notes: Vec<String>,
     /// The source files of the solids.
     pub origins: Origins,
+    /// The values of solids whose material has a data color.
+    pub values: ValueList,
+    /// What was found of the columns of data colors.
+    pub found: Found,
     /// The file that is being read.
     file: Option<File>,
 }
@@ -136,6 +143,18 @@ impl SolidCollector {
         // The greatest u32 is left out: Embree's mark for "no primitive".
         self.next = number.checked_add(1).ok_or(Refusal::Numbers)?;
         Ok(number)
+    }
+
+    /// Sets the value of the solid that was added last; NaN is no value. A number that was left
+    /// unused gets none, but keeps its place among those of the file.
+    pub fn value(&mut self, material: MaterialIndex, value: f32) {
+        let number = self.next - 1;
+        let value = match self.free == Some(number) {
+            true => f32::NAN,
+            false => value,
+        };
+        self.values.push(number, value);
+        self.found.value(material, value);
     }
 
     /// Continues the primitive numbers from one that the scene file states at a place.
@@ -240,7 +259,8 @@ impl SolidCollector {
 
     /// Leaves the next primitive number unused.
     pub fn leave_free(&mut self) -> Result<(), Refusal> {
-        self.number().map(drop)
+        self.free = Some(self.number()?);
+        Ok(())
     }
 }
 

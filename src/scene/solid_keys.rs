@@ -3,6 +3,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::colors::ValueKeys;
 use super::values::{Keys, Number, Triple, Whole};
 use crate::solid::Caps;
 
@@ -35,6 +36,7 @@ pub(super) const CAPS: [(&str, Caps); 4] = [
 pub(super) trait SolidTable {
     fn material(&self) -> Option<&Spanned<String>>;
     fn primitive(&self) -> Option<&Spanned<Whole>>;
+    fn values(&self) -> Option<&Spanned<ValueKeys>>;
     fn pose(&self) -> PoseKeys<'_>;
 }
 
@@ -49,6 +51,7 @@ macro_rules! solid_table {
             $($key: $kind,)*
             material: Option<toml::Spanned<String>>,
             primitive: Option<toml::Spanned<$crate::scene::values::Whole>>,
+            values: Option<toml::Spanned<$crate::scene::colors::ValueKeys>>,
             rotate_x: Option<$crate::scene::values::Number>,
             rotate_y: Option<$crate::scene::values::Number>,
             rotate_z: Option<$crate::scene::values::Number>,
@@ -63,6 +66,10 @@ macro_rules! solid_table {
 
             fn primitive(&self) -> Option<&toml::Spanned<$crate::scene::values::Whole>> {
                 self.primitive.as_ref()
+            }
+
+            fn values(&self) -> Option<&toml::Spanned<$crate::scene::colors::ValueKeys>> {
+                self.values.as_ref()
             }
 
             fn pose(&self) -> $crate::scene::solid_keys::PoseKeys<'_> {

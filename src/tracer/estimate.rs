@@ -88,7 +88,8 @@ impl Layout {
 /// An estimate of a scene's memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MemoryEstimate {
-    /// The records of solids and placements, including those that are not built.
+    /// The records of solids and placements with their values for data colors, including those
+    /// that are not built, and images.
     pub records_bytes: u64,
     /// The filters of blocks, and the numbers of their records.
     pub copies_bytes: u64,
@@ -109,6 +110,7 @@ impl MemoryEstimate {
             let placements = prototype.placements();
             let records = placements.saturating_mul(size_of::<Placement>() as u64);
             let records = records.saturating_add(prototype.solids.bytes);
+            let records = records.saturating_add(prototype.values_bytes);
             sum.records_bytes = sum.records_bytes.saturating_add(records);
             if !prototype.is_used {
                 continue;
@@ -288,6 +290,7 @@ mod tests {
             name: String::new(),
             solids,
             placed: Vec::new(),
+            values_bytes: 0,
             is_used: true,
         }]
     }

@@ -95,12 +95,12 @@ pub(super) fn skipped(
     general.chain(unbuilt).collect()
 }
 
-/// The memory of solids and placements in the description.
+/// The memory of solids, placements and their values, and of images, in the description.
 fn described_bytes(scene: &Scene) -> usize {
     let prototypes = scene.prototypes.iter();
-    prototypes
-        .map(|prototype| {
-            prototype.solids.records_bytes() + prototype.placements.len() * size_of::<Placement>()
-        })
-        .sum()
+    let bytes = prototypes.map(|prototype| {
+        let placements = prototype.placements.len() * size_of::<Placement>();
+        prototype.solids.records_bytes() + placements + prototype.values_bytes()
+    });
+    bytes.sum::<usize>() + scene.images_bytes()
 }

@@ -6,6 +6,7 @@ use toml::Spanned;
 
 use super::{Context, SolidFile, SolidFormat};
 use crate::math::unit;
+use crate::scene::colors::{DataColumn, ValueList};
 use crate::scene::contents::ExpectedSolids;
 use crate::scene::error::SceneError;
 use crate::scene::named_table::{NamedTable, TableKeys, keys_of, table_rows};
@@ -54,6 +55,18 @@ impl SolidFile for CylinderTableKeys {
         &self.file
     }
 
+    fn material(&self) -> Option<&Spanned<String>> {
+        self.material.as_ref()
+    }
+
+    fn value_bytes(&self) -> u64 {
+        // Stated numbers may all differ by more than 1.
+        match self.columns.get_ref().0.primitive {
+            None => ValueList::VALUE_BYTES,
+            Some(_) => ValueList::VALUE_BYTES + ValueList::RUN_BYTES,
+        }
+    }
+
     fn has_rows(&self) -> bool {
         true
     }
@@ -74,12 +87,31 @@ impl SolidFile for CylinderTableKeys {
             decimal: self.decimal.as_ref(),
         };
         let columns = &self.columns;
-        let mut table = context.tables.open(table, &columns.get_ref().0.all())?;
+        let shown = context.columns.of(look.material);
+        let mut wanted = columns.get_ref().0.all();
+        wanted.extend(shown.map(DataColumn::key));
+        let mut table = context.tables.open(table, &wanted)?;
         let layout = Layout::new(source, &table, columns)?;
-        table.note_unread(&layout.all());
+        let shown = match shown {
+            Some(shown) => shown
+                .in_table(&table, columns.span())?
+                .map(|cell| (shown, cell)),
+            None => None,
+        };
+        let mut read = layout.all();
+        match shown {
+            Some((_, cell)) => {
+                solids.found.material(look.material);
+                solids.values.reserve(table.most_rows());
+                read.push(cell);
+            }
+            None => solids.found.others(table.header()),
+        }
+        table.note_unread(&read);
         let mut is_empty = true;
         solids.solids.cylinders.reserve(table.most_rows());
-        while let Some(row) = table.next_row(size_of::<CylinderRecord>())? {
+        let bytes = size_of::<CylinderRecord>() + self.value_bytes() as usize;
+        while let Some(row) = table.next_row(bytes)? {
             is_empty = false;
             let numbered = match layout.primitive {
                 None => Ok(()),
@@ -97,6 +129,9 @@ impl SolidFile for CylinderTableKeys {
                     row.error_with_help(None, message, help)
                 })
             })?;
+            if let Some((shown, cell)) = shown {
+                solids.value(look.material, shown.value(&row, cell)?);
+            }
         }
         if is_empty {
             return Err(source.error(self.file.span(), "the table has a header but no rows"));

@@ -12,6 +12,7 @@ mod swc;
 use serde::de::DeserializeOwned;
 use toml::Spanned;
 
+use super::colors::{DataColumn, DataColumns, ValueList};
 use super::contents::ExpectedSolids;
 use super::error::SceneError;
 use super::materials::Materials;
@@ -44,6 +45,14 @@ pub(super) trait SolidFormat: SolidFile + DeserializeOwned {
 pub(super) trait SolidFile {
     /// The file.
     fn file(&self) -> &Spanned<String>;
+
+    /// The material of its solids.
+    fn material(&self) -> Option<&Spanned<String>>;
+
+    /// An upper bound of the bytes of a solid's value, if its material shows a column.
+    fn value_bytes(&self) -> u64 {
+        ValueList::VALUE_BYTES
+    }
 
     /// Whether a solid's number is that of its row in the file.
     fn has_rows(&self) -> bool {
@@ -98,11 +107,28 @@ pub(super) struct Context<'a> {
     pub source: &'a Source,
     pub tables: &'a Tables<'a>,
     pub materials: &'a Materials,
+    pub columns: &'a DataColumns,
 }
 
 impl Context<'_> {
     fn material(&self, name: Option<&Spanned<String>>) -> Result<MaterialIndex, SceneError> {
         self.materials.find(self.source, name)
+    }
+
+    /// The column that a material shows, of a file with these columns.
+    fn known_column<T: Copy>(
+        &self,
+        material: MaterialIndex,
+        known: &[(&str, T)],
+        solids: &mut SolidCollector,
+    ) -> Option<(&DataColumn, T)> {
+        let column = self.columns.of(material)?;
+        let Some((_, meaning)) = known.iter().find(|(name, _)| *name == column.name) else {
+            solids.found.others(known.iter().map(|(name, _)| *name));
+            return None;
+        };
+        solids.found.material(material);
+        Some((column, *meaning))
     }
 
     fn look(

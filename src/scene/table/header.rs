@@ -273,6 +273,11 @@ impl Layout {
         !places(&self.header, key).is_empty()
     }
 
+    /// The names of the columns; empty if the table has none.
+    pub(in crate::scene) fn header(&self) -> &[String] {
+        &self.header
+    }
+
     fn missing_help(&self, name: &str) -> String {
         if self.header.is_empty() {
             return "its first line contains numbers: add a header with column names, or give columns by their numbers from 0".to_owned();

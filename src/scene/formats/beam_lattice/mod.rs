@@ -41,6 +41,7 @@ use self::lattice::{Beam, End, Lattice};
 use self::model::{Model, UNITS};
 use self::part::{Part, parsed};
 use super::{Context, SolidFile, SolidFormat};
+use crate::scene::colors::stored;
 use crate::scene::contents::ExpectedSolids;
 use crate::scene::error::SceneError;
 use crate::scene::record::{MaterialIndex, Records};
@@ -86,6 +87,10 @@ impl SolidFile for BeamLatticeKeys {
         let _ = count(source, &self.file, records, solids);
     }
 
+    fn material(&self) -> Option<&Spanned<String>> {
+        self.material.as_ref()
+    }
+
     fn add(&self, context: &Context, solids: &mut SolidCollector) -> Result<(), SceneError> {
         let (source, file) = (context.source, &self.file);
         let keys = self.stated(context)?;
@@ -96,6 +101,9 @@ impl SolidFile for BeamLatticeKeys {
         for note in &model.notes {
             solids.note(note);
         }
+        let shows_radius = context
+            .known_column(keys.material, &[("radius", ())], solids)
+            .is_some();
         let units = keys
             .unit
             .map_or((1.0, 1.0), |unit| lowest(model.unit, unit));
@@ -108,6 +116,7 @@ impl SolidFile for BeamLatticeKeys {
                     place,
                     units,
                     keys: &keys,
+                    shows_radius,
                     solids: &mut *solids,
                 };
                 lowering.add(&placed.lattice)?;
@@ -166,6 +175,8 @@ struct Lowering<'a, 'input> {
     /// The factor and divisor of lengths; they cause one rounding if one of them is 1.
     units: (f64, f64),
     keys: &'a BeamLattice,
+    /// Whether the material shows the radius.
+    shows_radius: bool,
     solids: &'a mut SolidCollector,
 }
 
@@ -194,9 +205,11 @@ impl Lowering<'_, '_> {
                 self.solids
                     .skip()
                     .map_err(|refusal| self.refused(&refusal))?;
+                self.value(f64::NAN);
                 continue;
             };
             self.push(&solid)?;
+            self.value((radii[0] + radii[1]) / 2.0);
             for end in [0, 1] {
                 let half = Half {
                     vertex: beam.vertices[end],
@@ -218,6 +231,7 @@ impl Lowering<'_, '_> {
             let ball = Sphere::new(points[vertex], radius);
             let ball = ball.map_err(|error| self.root.error(error.to_string()))?;
             self.push(&ball.into())?;
+            self.value(radius);
         }
         for half in halves {
             if balls
@@ -227,6 +241,7 @@ impl Lowering<'_, '_> {
                 let solid = half.solid().map_err(|message| self.root.error(message))?;
                 let pushed = self.solids.push_composition(solid, self.keys.material);
                 pushed.map_err(|refusal| self.refused(&refusal))?;
+                self.value(half.radius);
             }
         }
         Ok(())
@@ -235,6 +250,13 @@ impl Lowering<'_, '_> {
     fn push(&mut self, solid: &AnySolid) -> Result<(), SceneError> {
         let pushed = self.solids.push_any(solid, self.keys.material);
         pushed.map_err(|refusal| self.refused(&refusal))
+    }
+
+    /// Sets the radius of the solid that was added last as its value, if it is shown.
+    fn value(&mut self, radius: f64) {
+        if self.shows_radius {
+            self.solids.value(self.keys.material, stored(radius));
+        }
     }
 
     /// The error that a solid cannot be added.

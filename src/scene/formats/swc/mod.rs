@@ -4,8 +4,9 @@
 //! radii of both.
 //!
 //! `samples` reads the lines, `tree` finds the parents, and `soma` finds the balls and
-//! cylinders of cell bodies.
+//! cylinders of cell bodies. `measures` has the columns for data colors.
 
+mod measures;
 mod samples;
 mod soma;
 mod tree;
@@ -31,6 +32,7 @@ use crate::solid::{
     AnySolid, Caps, Cone, ConeError, Cylinder, CylinderError, RoundedCone, SolidKind, Sphere,
     SphereError,
 };
+use measures::Measure;
 use samples::{Sample, SwcFile};
 use soma::Somata;
 
@@ -182,6 +184,10 @@ impl SolidFile for SwcKeys {
         }
     }
 
+    fn material(&self) -> Option<&Spanned<String>> {
+        self.material.as_ref()
+    }
+
     /// The bytes of all samples, which are read before the first solid is made.
     fn reading_bytes(&self, source: &Source) -> u64 {
         rows(source, &self.file).saturating_mul(SAMPLE_BYTES)
@@ -198,7 +204,10 @@ impl SolidFile for SwcKeys {
         let neuron = input::open(&path)
             .and_then(|input| Neuron::read(&file, input, context.tables))
             .map_err(|error| source.unreadable(&self.file, error))?;
-        neuron.parts(shape, look, |sample, part| {
+        let shown = context.known_column(look.material, &Measure::NAMES, solids);
+        let values = shown.map(|(_, measure)| neuron.measures(measure));
+        neuron.parts(shape, look, |place, part| {
+            let sample = &neuron.samples[place];
             match part {
                 Part::Solid(Ok(solid)) => solids.push_any(&solid, look.material),
                 Part::Solid(Err(fault))
@@ -217,7 +226,11 @@ impl SolidFile for SwcKeys {
                 refusal.in_row(source, &self.file, |message, help| {
                     file.error(sample.line, None, message, help)
                 })
-            })
+            })?;
+            if let Some(values) = &values {
+                solids.value(look.material, values[place]);
+            }
+            Ok(())
         })
     }
 }
@@ -267,12 +280,13 @@ impl Neuron {
         Ok(Self { samples, parents })
     }
 
-    /// Calls `add` with the parts of the neuron, in the order of their numbers.
+    /// Calls `add` with the parts of the neuron and the positions of their samples, in the order
+    /// of their numbers.
     fn parts(
         &self,
         shape: Shape,
         look: Look,
-        mut add: impl FnMut(&Sample, Part) -> Result<(), SceneError>,
+        mut add: impl FnMut(usize, Part) -> Result<(), SceneError>,
     ) -> Result<(), SceneError> {
         let somata = match shape.has_soma {
             true => Somata::of(&self.samples, &self.parents),
@@ -296,13 +310,13 @@ impl Neuron {
                 Some(_) => Part::Free,
                 None => Part::Solid(shape.joints.segment(&self.samples[parent], sample, look)),
             };
-            add(sample, part)?;
+            add(place, part)?;
         }
         for &place in &somata.balls {
             let sample = &self.samples[place];
             let ball = Sphere::new(sample.point, sample.radius);
             add(
-                sample,
+                place,
                 Part::Solid(ball.map(AnySolid::from).map_err(Fault::of_sphere)),
             )?;
         }

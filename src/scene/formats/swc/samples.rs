@@ -31,10 +31,18 @@ const SOMA: i64 = 1;
 pub(super) struct Sample {
     pub line: u64,
     pub id: i64,
-    pub is_soma: bool,
+    /// The number of the type.
+    pub kind: i64,
     pub point: DVec3,
     pub radius: f64,
     pub parent: i64,
+}
+
+impl Sample {
+    /// Whether it is part of a soma.
+    pub fn is_soma(&self) -> bool {
+        self.kind == SOMA
+    }
 }
 
 /// A file that is being read.
@@ -170,7 +178,7 @@ impl SwcFile<'_> {
         Ok(Sample {
             line,
             id: whole(0)?,
-            is_soma: whole(TYPE)? == SOMA,
+            kind: whole(TYPE)?,
             point: DVec3::new(number(2)?, number(3)?, number(4)?),
             radius: number(5)?,
             parent: whole(6)?,

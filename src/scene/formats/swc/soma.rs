@@ -44,12 +44,12 @@ impl Somata {
         let mut children = vec![0_u8; samples.len()];
         let parent_in_soma = |place: usize| {
             let parent = parents[place]?;
-            (samples[place].is_soma && samples[parent].is_soma).then_some(parent)
+            (samples[place].is_soma() && samples[parent].is_soma()).then_some(parent)
         };
         for parent in (0..samples.len()).filter_map(parent_in_soma) {
             children[parent] = (children[parent] + 1).min(3);
         }
-        let is_top = |place: usize| samples[place].is_soma && parent_in_soma(place).is_none();
+        let is_top = |place: usize| samples[place].is_soma() && parent_in_soma(place).is_none();
         let balls = (0..samples.len()).filter(|&place| is_top(place) && children[place] == 0);
         let mut somata = Self {
             balls: balls.collect(),
