@@ -53,6 +53,7 @@ impl Scene {
             sun: None,
             sky: None,
             lights: Vec::new(),
+            legend: None,
             background: BACKGROUND,
             skipped_rows: 0,
             notes: Vec::new(),

@@ -3,6 +3,7 @@
 
 use super::background::Background;
 use super::colors::{PlacementValues, ValueList};
+use super::legend::Legend;
 use super::light::{Light, Sky, Sun};
 use super::material::{Color, Material};
 use super::origins::Origins;
@@ -31,6 +32,8 @@ pub struct Scene {
     pub sky: Option<Sky>,
     /// The lights with a place, which integrator `path` sees.
     pub lights: Vec<Light>,
+    /// The legend over the picture, if any.
+    pub legend: Option<Legend>,
     /// What camera rays see that miss.
     pub background: Background,
     /// The number of table rows skipped because of `degenerate = "skip"`.

@@ -12,6 +12,7 @@ use super::description::Integrator;
 use super::formats::{
     BeamLatticeKeys, CylinderTableKeys, SolidFile, SwcKeys, for_each_solid_format,
 };
+use super::legend::LegendKeys;
 use super::materials::MaterialKeys;
 use super::placed_lights::{PointLightKeys, RectangleLightKeys, SphereLightKeys};
 use super::set_operations::{CompositionKeys, Operation};
@@ -110,6 +111,7 @@ for_each_solid_format! {
         pub render: Option<Keys<RenderKeys>>,
         pub sun: Option<Keys<SunKeys>>,
         pub sky: Option<Keys<SkyKeys>>,
+        pub legend: Option<Keys<LegendKeys>>,
         #[serde(default)]
         pub point_light: Vec<Keys<PointLightKeys>>,
         #[serde(default)]

@@ -67,6 +67,9 @@ pub(super) fn lower(
         found.extend(std::mem::take(&mut body.found));
     }
     columns.complete(source, &mut materials.list, &found)?;
+    let legend = document.legend.as_ref();
+    let legend = legend.map(|Keys(keys)| keys.legend(source, &materials));
+    let legend = legend.transpose()?;
 
     let placed_lights = placed_lights(
         source,
@@ -89,6 +92,7 @@ pub(super) fn lower(
         sky: lights.sky,
         lights: placed_lights,
         background: background(source, document.background.as_ref())?,
+        legend,
         skipped_rows: bodies.iter().map(|body| body.skipped).sum(),
         notes,
         prototypes: bodies.into_iter().map(|body| body.prototype).collect(),
@@ -295,10 +299,7 @@ impl Loader<'_> {
             return Ok(());
         };
         match column.stated(self.source, keys.values())? {
-            Some(value) => {
-                solids.found.material(material);
-                solids.value(material, value);
-            }
+            Some(value) => solids.value(material, value),
             None => {
                 let values = keys
                     .values()

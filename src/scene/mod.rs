@@ -34,6 +34,7 @@ mod formats;
 mod graph;
 mod hit_table;
 mod instance_rows;
+mod legend;
 mod light;
 mod limits;
 mod lines;
@@ -83,6 +84,7 @@ pub use description::{
 pub use error::{SceneError, Statement};
 pub use formats::{SOLID_FORMATS, SolidFormatInfo, beams_of_model, check_swc};
 pub use hit_table::{GivenHit, GivenHits};
+pub use legend::{Corner, Legend};
 pub use light::{Light, LightShape, Sky, Sun};
 pub use limits::*;
 pub use material::{Color, Material, MaterialKind};

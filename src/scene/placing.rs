@@ -25,7 +25,7 @@ pub(super) struct Placements<'c> {
     pub list: Vec<Placement>,
     /// The entries of the scene file that place prototypes.
     pub edges: Vec<Edge>,
-    /// The columns of data colors, each with its values and whether an entry has it.
+    /// The columns of data colors.
     columns: Vec<PlacedColumn<'c>>,
     /// The columns of tables that lack one of these.
     others: Vec<String>,
@@ -35,7 +35,6 @@ pub(super) struct Placements<'c> {
 struct PlacedColumn<'c> {
     column: &'c DataColumn,
     values: ValueList,
-    is_found: bool,
 }
 
 /// An entry of a scene file that places a prototype, once or many times.
@@ -53,7 +52,6 @@ impl<'c> Placements<'c> {
         let columns = columns.iter().map(|column| PlacedColumn {
             column,
             values: ValueList::default(),
-            is_found: false,
         });
         Self {
             list: Vec::new(),
@@ -63,19 +61,11 @@ impl<'c> Placements<'c> {
         }
     }
 
-    /// The values of the placements, and which columns were found.
+    /// The values of the placements, for columns that have any.
     pub fn values(&mut self, found: &mut Found) -> Vec<PlacementValues> {
         found.others(self.others.drain(..));
         let mut all = Vec::new();
-        for PlacedColumn {
-            column,
-            mut values,
-            is_found,
-        } in self.columns.drain(..)
-        {
-            if is_found {
-                found.placed(&column.name);
-            }
+        for PlacedColumn { column, mut values } in self.columns.drain(..) {
             values.finish();
             let known = values.iter().map(|(_, value)| value);
             let known = known.filter(|value| !value.is_nan());
@@ -106,15 +96,9 @@ impl<'c> Placements<'c> {
             checked(&parent_from_child).map_err(|error| source.error(blame, error.to_string()))?;
         self.make_room(source, &keys.of, 1)?;
         let number = self.list.len() as u32;
-        for PlacedColumn {
-            column,
-            values,
-            is_found,
-        } in &mut self.columns
-        {
-            if let Some(value) = column.stated(source, keys.values.as_ref())? {
-                *is_found = true;
-                values.push(number, value);
+        for placed in &mut self.columns {
+            if let Some(value) = placed.column.stated(source, keys.values.as_ref())? {
+                placed.values.push(number, value);
             }
         }
         self.list.push(Placement {
@@ -147,7 +131,6 @@ impl<'c> Placements<'c> {
         for placed in &mut self.columns {
             let cell = placed.column.in_table(&table, keys.columns.span())?;
             if cell.is_some() {
-                placed.is_found = true;
                 placed.values.reserve(table.most_rows());
             } else {
                 self.others.extend(table.header().iter().cloned());

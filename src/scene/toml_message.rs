@@ -19,7 +19,15 @@ const LISTS: [&str; 8] = [
     "scatter",
 ];
 /// The other top-level keys.
-const SINGLE: [&str; 6] = ["background", "camera", "film", "render", "sun", "sky"];
+const SINGLE: [&str; 7] = [
+    "background",
+    "camera",
+    "film",
+    "render",
+    "sun",
+    "sky",
+    "legend",
+];
 
 /// Whether a top-level key is an array of tables.
 fn is_list(key: &str) -> bool {

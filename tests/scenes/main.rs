@@ -1,5 +1,6 @@
 //! Scene files, the formats that they name, and meshes of scenes.
 
+mod colors;
 mod formats_table;
 mod generated_scenes;
 mod keys;

@@ -1,6 +1,7 @@
 //! A scene that is saved loads to the same scene: to the last bit of every number, with the
 //! same numbers of solids and placements, and with the same hits.
 
+mod colors;
 mod errors;
 mod random_scene;
 mod same;

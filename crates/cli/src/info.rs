@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use cyltrace::scene::Color;
 use cyltrace::tracer::{self, MemoryEstimate};
 use serde_json::json;
 
@@ -115,8 +116,27 @@ pub fn run(arguments: &InfoArguments) -> anyhow::Result<()> {
         } else {
             &material.name
         };
-        let (kind, color) = (material.kind.name(), material.color.average());
-        text += &format!("material {name}: {kind} {}\n", text::point(color));
+        let (kind, color) = (material.kind.name(), color_text(&material.color));
+        text += &format!("material {name}: {kind} {color}\n");
     }
     print(&text)
+}
+
+/// The color of a material, for people.
+fn color_text(color: &Color) -> String {
+    let average = || text::point(color.average());
+    match color {
+        Color::Constant(color) => text::point(*color),
+        Color::Checker(_) => format!("checker of mean {}", average()),
+        Color::Stripes(_) => format!("stripes of mean {}", average()),
+        Color::Image(_) => format!("image of mean {}", average()),
+        Color::Data(data) if data.map.has_categories() => {
+            format!("by column {}: {}", data.column, data.map.name())
+        }
+        Color::Data(data) => {
+            let [first, last] = data.range;
+            let map = data.map.name();
+            format!("by column {}: {map} from {first} to {last}", data.column)
+        }
+    }
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::{anyhow, bail};
 use cyltrace::scene::SceneFile;
 use cyltrace::tracer::{Options, Tracer};
-use cyltrace_output::{Contents, Format, Output};
+use cyltrace_output::{Contents, Format, Output, with_overlay};
 use cyltrace_parts::{Header, PartWriter};
 use cyltrace_render::{Channels, RayCounts, Reached, RenderError, Settings, Tiles};
 use serde_json::{Value, json};
@@ -119,17 +119,28 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         header: header.as_ref(),
     };
     let figures = run.figures();
+    let legend = cyltrace_render::legend(&scene);
     match target {
         Target::Picture(mut output) => {
             if let Some(reached) = rendered.reached {
                 output.state_error(reached.error);
             }
             let film = settings.film;
-            output.write_bands((film.width, film.height), rendered.bands(film))?;
+            let size = (film.width, film.height);
+            let overlay = legend.map(|legend| legend.overlay(size));
+            let bands = with_overlay(
+                overlay,
+                film.width,
+                settings.channels.has_opacity(),
+                rendered.bands(film),
+            );
+            output.write_bands(size, bands)?;
         }
         Target::Part(mut part) => {
             parts::render::write(&mut part, &rendered)?;
-            part.finish(&json!({ "figures": figures, "seconds": run.times.all() }))?;
+            let seconds = run.times.all();
+            // Drawn when the parts are put together.
+            part.finish(&json!({ "figures": figures, "seconds": seconds, "legend": legend }))?;
         }
     }
     json::write(common, &figures)?;

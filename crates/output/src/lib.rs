@@ -1,5 +1,5 @@
-//! The outputs of cyltrace: files that are never left half written, pictures, and
-//! figures, tables and pages as text.
+//! The outputs of cyltrace: files that are never left half written, pictures with legends over
+//! them, and figures, tables and pages as text.
 
 mod axis;
 mod csv;
@@ -8,6 +8,7 @@ mod film;
 mod html;
 mod label;
 mod new_file;
+mod overlay;
 mod picture;
 mod size;
 mod srgb;
@@ -21,6 +22,7 @@ pub use figure::{Figure, Mark, Series, Symbol};
 pub use film::Film;
 pub use html::Page;
 pub use new_file::{FileError, NewFile, followed};
+pub use overlay::{Corner, Legend, Overlay, Scale, with_overlay};
 pub use picture::{
     Band, Bands, Channel, Contents, Format, Numbers, Output, OutputError, film_png_bytes, png_bytes,
 };

@@ -48,13 +48,9 @@ struct ColumnPlace {
     has_automatic_range: bool,
 }
 
-/// What the files and tables of a prototype have of these columns.
+/// The values of these columns that the files and tables of a prototype have.
 #[derive(Default)]
 pub(in crate::scene) struct Found {
-    /// The materials whose column a file or a solid has.
-    materials: BTreeSet<MaterialIndex>,
-    /// The columns that an instance table or an instance has.
-    placed: BTreeSet<String>,
     /// The columns that files of solids of a material have instead, and instance tables.
     others: BTreeSet<String>,
     /// The least and greatest values of the solids of a material.
@@ -151,7 +147,7 @@ impl DataColumns {
         self.list.iter()
     }
 
-    /// Checks that each column was found, and sets the automatic ranges.
+    /// Checks that each column has values, and sets the automatic ranges.
     pub fn complete(
         &self,
         source: &Source,
@@ -164,12 +160,13 @@ impl DataColumns {
                 continue;
             };
             let material = MaterialIndex(index as u16);
-            if !found.materials.contains(&material) && !found.placed.contains(&data.column) {
+            let placed = found.placed_ranges.get(&data.column);
+            if placed.is_none() && !found.ranges.contains_key(&material) {
                 let others = found.others.iter().map(String::as_str);
                 return Err(source.error_with_help(
                     place.span.clone(),
                     format!(
-                        "no file of solids with this material and no instance table has a column {}",
+                        "no solid with this material and no placement has a value in a column {}",
                         quoted(&data.column)
                     ),
                     suggestion(&data.column, others, "columns"),
@@ -179,7 +176,6 @@ impl DataColumns {
                 let ranges = (0..self.of_material.len())
                     .filter(|&other| self.of_material[other] == self.of_material[index])
                     .filter_map(|other| found.ranges.get(&MaterialIndex(other as u16)));
-                let placed = found.placed_ranges.get(&data.column);
                 data.range = automatic_range(ranges.chain(placed).copied().reduce(union));
             }
         }
@@ -263,18 +259,6 @@ pub(in crate::scene) fn stored(number: f64) -> f32 {
 }
 
 impl Found {
-    /// A file or a solid has the column of a material.
-    pub fn material(&mut self, material: MaterialIndex) {
-        self.materials.insert(material);
-    }
-
-    /// An instance table or an instance has a column.
-    pub fn placed(&mut self, column: &str) {
-        if !self.placed.contains(column) {
-            self.placed.insert(column.to_owned());
-        }
-    }
-
     /// A file has these columns, but not the one that is shown.
     pub fn others(&mut self, columns: impl IntoIterator<Item = impl Into<String>>) {
         self.others.extend(columns.into_iter().map(Into::into));
@@ -297,8 +281,6 @@ impl Found {
 
     /// Adds what other prototypes have.
     pub fn extend(&mut self, other: Self) {
-        self.materials.extend(other.materials);
-        self.placed.extend(other.placed);
         self.others.extend(other.others);
         for (material, range) in other.ranges {
             self.value(material, range[0]);

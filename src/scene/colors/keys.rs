@@ -119,7 +119,7 @@ pub(in crate::scene) fn color(source: &Source, keys: &ColorKeys) -> Result<Color
 }
 
 /// A color, if each of its components is in [0, 1].
-fn reflectance(
+pub(in crate::scene) fn reflectance(
     source: &Source,
     place: std::ops::Range<usize>,
     color: DVec3,
@@ -129,7 +129,7 @@ fn reflectance(
         false => Err(source.error(
             place,
             format!(
-                "color is [{}, {}, {}]: a material's components must be in [0, 1]",
+                "color is [{}, {}, {}]: its components must be in [0, 1]",
                 color.x, color.y, color.z
             ),
         )),
@@ -295,16 +295,36 @@ impl TableKeys {
                 )
             })?,
         };
-        let labels = self.labels.as_ref();
+        let labels = self.labels(source)?;
         let missing = self.missing.as_ref();
         let missing = missing.map(|color| reflectance(source, color.span(), vector(color)));
         Ok(DataColor {
             column: column.get_ref().clone(),
             map,
             range: self.ends(source, map)?,
-            labels: labels.map_or_else(Vec::new, |labels| labels.get_ref().clone()),
+            labels,
             missing: missing.transpose()?.unwrap_or(MISSING),
         })
+    }
+
+    /// The labels, none of which looks like another cell of a table.
+    fn labels(&self, source: &Source) -> Result<Vec<String>, SceneError> {
+        let Some(labels) = &self.labels else {
+            return Ok(Vec::new());
+        };
+        let is_label = |label: &&String| {
+            label.trim() == label.as_str() && !label.is_empty() && label.parse::<f64>().is_err()
+        };
+        match labels.get_ref().iter().find(|label| !is_label(label)) {
+            None => Ok(labels.get_ref().clone()),
+            Some(label) => Err(source.error(
+                labels.span(),
+                format!(
+                    "the label {} must not be empty or a number, or begin or end with blanks",
+                    quoted(label)
+                ),
+            )),
+        }
     }
 
     fn ends(&self, source: &Source, map: ColorMap) -> Result<[f64; 2], SceneError> {

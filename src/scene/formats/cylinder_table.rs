@@ -101,7 +101,6 @@ impl SolidFile for CylinderTableKeys {
         let mut read = layout.all();
         match shown {
             Some((_, cell)) => {
-                solids.found.material(look.material);
                 solids.values.reserve(table.most_rows());
                 read.push(cell);
             }

@@ -127,7 +127,6 @@ impl Context<'_> {
             solids.found.others(known.iter().map(|(name, _)| *name));
             return None;
         };
-        solids.found.material(material);
         Some((column, *meaning))
     }
 

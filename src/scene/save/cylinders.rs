@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::io::Write;
 
 use super::solids::{Numbers, numbered};
-use super::tables::push_cells;
+use super::tables::{distinct, push_cells, push_value, quoted_name};
 use super::{SaveError, Saver};
 use crate::scene::cylinder_list::CylinderList;
 use crate::scene::record::MaterialIndex;
@@ -14,6 +14,9 @@ use crate::solid::{Caps, Cylinder};
 
 /// Most cylinders of a prototype that a scene file states one by one.
 const FEW: usize = 16;
+
+/// The columns of a table, the last only if it states primitive numbers.
+const NAMES: [&str; 8] = ["x0", "y0", "z0", "x1", "y1", "z1", "radius", "primitive"];
 
 /// The cylinders of one table.
 struct Group {
@@ -53,30 +56,44 @@ impl<W: Write> Saver<'_, W> {
             u64::from(primitive(position)) == u64::from(numbers.next) + index as u64
         };
         let is_numbered = !positions.iter().enumerate().all(follows);
-        let (header, columns) = match is_numbered {
-            false => ("x0,y0,z0,x1,y1,z1,radius", ""),
-            true => (
-                "x0,y0,z0,x1,y1,z1,radius,primitive",
-                ", primitive = \"primitive\"",
-            ),
+        let values = numbers.values;
+        let has_value = |position: &u32| values.get(primitive(position)).is_some();
+        let column = self.column(group.material);
+        let column = column.filter(|_| positions.iter().any(has_value));
+        let names = distinct(NAMES, &self.columns());
+        let [x0, y0, z0, x1, y1, z1, radius, number] = &names;
+        let stated = if is_numbered {
+            NAMES.len()
+        } else {
+            NAMES.len() - 1
         };
+        let mut header = names[..stated].join(",");
+        if let Some(column) = column {
+            header = header + "," + &quoted_name(column);
+        }
         let tables = &mut self.tables;
-        let file = tables.add("cylinders", header, positions.len(), |row, index| {
+        let file = tables.add("cylinders", &header, positions.len(), |row, index| {
             let record = list.get(positions[index] as usize);
             push_cells(row, &cells(&record.cylinder()));
             if is_numbered {
                 // A String accepts everything.
                 let _ = write!(row, ",{}", record.primitive());
             }
+            if column.is_some() {
+                push_value(row, values.get(record.primitive()));
+            }
         })?;
         let material = self.material(group.material)?;
         let mut entry = self.text.table(&format!("[[{prefix}cylinder_table]]"));
         entry.text("file", &file);
-        let ends = r#"p0 = ["x0", "y0", "z0"], p1 = ["x1", "y1", "z1"]"#;
-        entry.verbatim(
-            "columns",
-            &format!("{{ {ends}, radius = \"radius\"{columns} }}"),
+        let ends = format!(
+            r#"p0 = ["{x0}", "{y0}", "{z0}"], p1 = ["{x1}", "{y1}", "{z1}"], radius = "{radius}""#
         );
+        let columns = match is_numbered {
+            false => format!("{{ {ends} }}"),
+            true => format!("{{ {ends}, primitive = \"{number}\" }}"),
+        };
+        entry.verbatim("columns", &columns);
         entry.caps(group.caps);
         entry.material(material);
         if let Some(last) = positions.last() {

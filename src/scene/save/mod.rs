@@ -42,13 +42,13 @@ struct Saver<'a, W> {
 /// folder.
 ///
 /// `create` makes an output of a name, and `complete` gets it back with everything written and
-/// flushed: first the tables `STEM_cylinders_1.csv`, `STEM_instances_2.csv` and so on, one
-/// after the other, and last the scene file. So the caller decides how and when files come into
+/// flushed: first the images and tables `STEM_image_1.png`, `STEM_cylinders_2.csv`,
+/// `STEM_instances_3.csv` and so on, one after the other, and last the scene file. So the caller decides how and when files come into
 /// place. Rows are made on the rayon pool that this is called in, and are never all in memory.
 ///
 /// **What is promised.** [`load`](super::load()) reads the same scene from the files, to the
 /// last bit of every number: prototypes, solids with their primitive numbers and materials,
-/// placements with their instance numbers, camera, film, render settings, lights and
+/// placements with their instance numbers, the values that materials show, camera, film, render settings, lights and
 /// background. If the scene breaks a rule of `docs/scene-file.md`, which only scenes made in code
 /// do, this function or `load` fails; `load` never reads another scene.
 ///
@@ -97,7 +97,7 @@ pub fn save<W: Write>(
     if records(scene)? == Records::F32 {
         saver.text.top().text("records", Records::F32.name());
     }
-    picture::state(&mut saver.text, scene)?;
+    picture::state(&mut saver.text, &mut saver.tables, scene)?;
     for (index, prototype) in scene.prototypes.iter().enumerate() {
         let prefix = match index {
             0 => "",
@@ -116,8 +116,8 @@ pub fn save<W: Write>(
 impl<'a, W: Write> Saver<'a, W> {
     /// The solids and placements of a prototype.
     fn prototype(&mut self, prefix: &str, prototype: &Prototype) -> Result<(), SaveError> {
-        self.solids(prefix, &prototype.solids)?;
-        self.placements(prefix, &prototype.placements)
+        self.solids(prefix, prototype)?;
+        self.placements(prefix, prototype)
     }
 
     /// The name of a material, which the default one has not.
@@ -128,6 +128,23 @@ impl<'a, W: Write> Saver<'a, W> {
             index: index.0.into(),
         })?;
         Ok(Some(material.name.as_str()).filter(|_| index != MaterialIndex::default()))
+    }
+
+    /// The column that a material shows, if it shows one.
+    fn column(&self, index: MaterialIndex) -> Option<&'a str> {
+        self.scene
+            .materials
+            .get(usize::from(index.0))?
+            .color
+            .column()
+    }
+
+    /// All columns that materials show. No other column of a table may have the name of one.
+    fn columns(&self) -> Vec<&'a str> {
+        let materials = self.scene.materials.iter();
+        materials
+            .filter_map(|material| material.color.column())
+            .collect()
     }
 
     /// The name of a prototype that is placed.

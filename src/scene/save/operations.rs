@@ -32,11 +32,14 @@ impl<W: Write> Saver<'_, W> {
                 })?;
                 check(operands, MOST_NESTED)
                     .map_err(|reason| SaveError::Operation { primitive, reason })?;
-                let material = self.material(record.material)?;
+                let (column, material) = (
+                    self.column(record.material),
+                    self.material(record.material)?,
+                );
                 let mut entry = self.text.table(&header);
                 entry.list("of", operands, operand);
                 entry.material(material);
-                numbers.state(&mut entry, primitive);
+                numbers.state(&mut entry, primitive, column);
                 self.text.check()?;
             }
         }

@@ -1,15 +1,23 @@
 //! What a scene file states of the picture: camera, film, lights and materials.
 
-use super::text::Text;
+use std::io::Write;
+
+use super::tables::Tables;
+use super::text::{Entry, Text};
 use super::{SaveError, check_names};
 use crate::scene::background::Background;
 use crate::scene::defaults;
 use crate::scene::description::{Camera, Frame, Projection, Scene};
 use crate::scene::light::{Light, LightShape};
+use crate::scene::material::Color;
 use crate::scene::material_kinds::keys_of;
 use crate::scene::settings::is_unit;
 
-pub(super) fn state(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
+pub(super) fn state<W: Write>(
+    text: &mut Text,
+    tables: &mut Tables<W>,
+    scene: &Scene,
+) -> Result<(), SaveError> {
     match scene.background {
         Background::Color(color) => text.top().vector("background", color),
         Background::Transparent => text.top().text("background", Background::TRANSPARENT),
@@ -29,7 +37,8 @@ pub(super) fn state(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
     }
 
     lights(text, scene)?;
-    materials(text, scene)?;
+    materials(text, tables, scene)?;
+    legend(text, scene)?;
     text.check()
 }
 
@@ -116,7 +125,32 @@ fn placed_light(text: &mut Text, light: &Light) {
     entry.number("strength", light.strength);
 }
 
-fn materials(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
+fn legend(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
+    let Some(legend) = &scene.legend else {
+        return Ok(());
+    };
+    let index = legend.material.0;
+    let material = scene.materials.get(usize::from(index));
+    let material = material.ok_or(SaveError::Reference {
+        what: "material",
+        index: index.into(),
+    })?;
+    let mut entry = text.table("[legend]");
+    entry.text("material", &material.name);
+    entry.text("title", &legend.title);
+    entry.text("corner", legend.corner.name());
+    entry.number("size", legend.size);
+    entry.vector("color", legend.color);
+    entry.vector("background", legend.background);
+    entry.number("opacity", legend.opacity);
+    Ok(())
+}
+
+fn materials<W: Write>(
+    text: &mut Text,
+    tables: &mut Tables<W>,
+    scene: &Scene,
+) -> Result<(), SaveError> {
     let [first, named @ ..] = scene.materials.as_slice() else {
         return Err(SaveError::DefaultMaterial);
     };
@@ -125,13 +159,49 @@ fn materials(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
     }
     check_names("material", named.iter().map(|one| one.name.as_str()))?;
     for material in named {
+        let image = match &material.color {
+            Color::Image(image) => Some(tables.image(image)?),
+            _ => None,
+        };
         let mut entry = text.table("[[material]]");
         entry.text("name", &material.name);
         entry.text("kind", material.kind.name());
-        entry.vector("color", material.color.average());
+        color(&mut entry, &material.color, image.as_deref());
         for (key, number) in keys_of(material.kind) {
             entry.number(key, number);
         }
     }
     Ok(())
+}
+
+/// The color of a material, which may be an image of a name.
+fn color(entry: &mut Entry, color: &Color, image: Option<&str>) {
+    match color {
+        Color::Constant(color) => entry.vector("color", *color),
+        Color::Checker(checker) => entry.inline("color", |entry| {
+            entry.vectors("checker", &checker.colors);
+            entry.verbatim("count", &format!("{:?}", checker.count));
+        }),
+        Color::Stripes(stripes) => entry.inline("color", |entry| {
+            entry.vectors("stripes", &stripes.colors);
+            entry.whole("count", stripes.count);
+            entry.text("along", stripes.along.name());
+        }),
+        Color::Image(_) => entry.inline("color", |entry| {
+            entry.text("image", image.unwrap_or_default());
+        }),
+        Color::Data(data) => entry.inline("color", |entry| {
+            entry.text("column", &data.column);
+            entry.text("map", data.map.name());
+            if !data.map.has_categories() {
+                let [first, last] = data.range;
+                entry.verbatim("range", &format!("[{first:?}, {last:?}]"));
+            }
+            if !data.labels.is_empty() {
+                let labels = toml::Value::from(data.labels.clone());
+                entry.verbatim("labels", &labels.to_string());
+            }
+            entry.vector("missing", data.missing);
+        }),
+    }
 }

@@ -6,22 +6,28 @@ use std::io::Write;
 use super::text::Entry;
 use super::{SaveError, Saver};
 use crate::for_each_solid;
-use crate::scene::solid_lists::{SolidList, Solids};
+use crate::scene::colors::ValueList;
+use crate::scene::description::Prototype;
+use crate::scene::solid_lists::SolidList;
 use crate::scene::solids::SceneSolid;
 
-/// The primitive number that a scene file gives to the next solid.
-#[derive(Default)]
-pub(super) struct Numbers {
+/// The primitive numbers of the solids of a prototype, and their values.
+pub(super) struct Numbers<'a> {
+    /// The number that a scene file gives to the next solid.
     pub next: u32,
+    /// The values by primitive number.
+    pub values: &'a ValueList,
 }
 
-impl Numbers {
-    /// States the number of a solid, if it does not follow from the one before.
-    pub fn state(&mut self, entry: &mut Entry, primitive: u32) {
+impl Numbers<'_> {
+    /// States the number of a solid, if it does not follow from the one before, and its value,
+    /// if its material shows a column.
+    pub fn state(&mut self, entry: &mut Entry, primitive: u32, column: Option<&str>) {
         if primitive != self.next {
             entry.whole("primitive", primitive);
         }
         self.next = primitive.wrapping_add(1);
+        entry.values(column.zip(self.values.get(primitive)));
     }
 }
 
@@ -46,8 +52,12 @@ macro_rules! state_in_order {
 
 impl<W: Write> Saver<'_, W> {
     /// All solids of a prototype.
-    pub fn solids(&mut self, prefix: &str, solids: &Solids) -> Result<(), SaveError> {
-        let mut numbers = Numbers::default();
+    pub fn solids(&mut self, prefix: &str, prototype: &Prototype) -> Result<(), SaveError> {
+        let solids = &prototype.solids;
+        let mut numbers = Numbers {
+            next: 0,
+            values: &prototype.solid_values,
+        };
         for_each_solid!(state_in_order self numbers prefix solids;);
         self.operations(&mut numbers, prefix, &solids.compositions)
     }
@@ -63,11 +73,12 @@ impl<W: Write> Saver<'_, W> {
         let header = format!("[[{prefix}{name}]]");
         for position in numbered(list) {
             let position = position as usize;
-            let material = self.material(list.material(position))?;
+            let material = list.material(position);
+            let (column, material) = (self.column(material), self.material(material)?);
             let mut entry = self.text.table(&header);
             list.solid(position).borrow().state(&mut entry);
             entry.material(material);
-            numbers.state(&mut entry, list.primitive(position));
+            numbers.state(&mut entry, list.primitive(position), column);
             self.text.check()?;
         }
         Ok(())

@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use rayon::prelude::*;
 
 use super::SaveError;
+use crate::scene::colors::Texture;
 
 /// The rows that are made at once by a thread, some 500 kB of text.
 const BLOCK: usize = 1 << 12;
@@ -68,6 +69,13 @@ impl<'a, W: Write> Tables<'a, W> {
         Ok(name)
     }
 
+    /// Writes an image, and returns its name.
+    pub fn image(&mut self, image: &Texture) -> Result<String, SaveError> {
+        let name = format!("{}_image_{}.png", self.stem, self.count + 1);
+        self.output(&name, |output| image.write(output))?;
+        Ok(name)
+    }
+
     /// Writes the scene file.
     pub fn finish(mut self, text: &str) -> Result<(), SaveError> {
         let name = format!("{}.toml", self.stem);
@@ -90,6 +98,31 @@ impl<'a, W: Write> Tables<'a, W> {
             name: name.to_owned(),
             source,
         })
+    }
+}
+
+/// A cell with a name in quotes, which may contain delimiters. Names of columns contain no quotes.
+pub(super) fn quoted_name(name: &str) -> String {
+    format!("\"{name}\"")
+}
+
+/// The names of columns, each with as many underscores in front that it is no column of values.
+pub(super) fn distinct<const N: usize>(names: [&str; N], columns: &[&str]) -> [String; N] {
+    names.map(|name| {
+        let mut name = name.to_owned();
+        while columns.contains(&name.as_str()) {
+            name.insert(0, '_');
+        }
+        name
+    })
+}
+
+/// Adds a cell with a value, which is empty without one.
+pub(super) fn push_value(row: &mut String, value: Option<f32>) {
+    row.push(',');
+    if let Some(value) = value {
+        // A String accepts everything.
+        let _ = write!(row, "{:?}", f64::from(value));
     }
 }
 

@@ -87,6 +87,13 @@ impl<'t> Entry<'t> {
         self.value(key, format_args!("{:?}", vector.to_array()));
     }
 
+    /// States colors, an array of three numbers each.
+    pub fn vectors(&mut self, key: &'static str, vectors: &[DVec3]) {
+        let rows: Vec<[f64; 3]> = vectors.iter().map(DVec3::to_array).collect();
+        self.check(key, rows.as_flattened());
+        self.value(key, format_args!("{rows:?}"));
+    }
+
     /// States rows of numbers.
     pub fn rows<const N: usize, const M: usize>(&mut self, key: &'static str, rows: [[f64; N]; M]) {
         self.check(key, rows.as_flattened());
@@ -115,6 +122,18 @@ impl<'t> Entry<'t> {
     pub fn material(&mut self, name: Option<&str>) {
         if let Some(name) = name {
             self.text("material", name);
+        }
+    }
+
+    /// States the values of columns, if there are any.
+    pub fn values<'v>(&mut self, values: impl IntoIterator<Item = (&'v str, f32)>) {
+        let values = values.into_iter();
+        let values = values.map(|(column, value)| {
+            format!("{} = {:?}", toml::Value::from(column), f64::from(value))
+        });
+        let values: Vec<_> = values.collect();
+        if !values.is_empty() {
+            self.value("values", format_args!("{{ {} }}", values.join(", ")));
         }
     }
 

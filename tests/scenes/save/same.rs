@@ -3,7 +3,7 @@
 use std::borrow::Borrow;
 use std::fmt::Debug;
 
-use cyltrace::scene::{Prototype, Records, Scene, SolidList};
+use cyltrace::scene::{Prototype, Records, Scene, SolidList, ValueList};
 
 /// Compares all that a scene file states. The text of a float that `Debug` writes is another
 /// for every f64, zeros of both signs included.
@@ -16,6 +16,7 @@ pub fn assert_same(one: &Scene, other: &Scene, name: &str) {
     same(&one.sun, &other.sun, name);
     same(&one.sky, &other.sky, name);
     same(&one.lights, &other.lights, name);
+    same(&one.legend, &other.legend, name);
     same(&one.background, &other.background, name);
     assert_eq!(one.records(), other.records(), "{name}");
     assert_eq!(one.prototypes.len(), other.prototypes.len(), "{name}");
@@ -35,6 +36,7 @@ fn same_prototype(one: &Prototype, other: &Prototype, name: &str) {
     same_list(&solids.rounded_cones, &copies.rounded_cones, name);
     same_list(&solids.disks, &copies.disks, name);
     same_list(&solids.compositions, &copies.compositions, name);
+    same_values(one, other, name);
     if solids.cylinders.records() == Records::F32 && !solids.cylinders.is_empty() {
         assert_eq!(copies.cylinders.records(), Records::F32, "{name}");
         assert_eq!(copies.cylinders.rounding(), 0.0, "{name}");
@@ -49,6 +51,28 @@ fn same_prototype(one: &Prototype, other: &Prototype, name: &str) {
             "{name}, placement {index}"
         );
     }
+}
+
+/// Compares the values of solids and placements for data colors.
+#[track_caller]
+fn same_values(one: &Prototype, other: &Prototype, name: &str) {
+    let values = |list: &ValueList| -> Vec<(u32, u32)> {
+        let known = list.iter().filter(|(_, value)| !value.is_nan());
+        known
+            .map(|(number, value)| (number, value.to_bits()))
+            .collect()
+    };
+    assert_eq!(
+        values(&one.solid_values),
+        values(&other.solid_values),
+        "{name}"
+    );
+    let placed = |prototype: &Prototype| -> Vec<_> {
+        let columns = prototype.placement_values.iter();
+        let columns = columns.map(|shown| (shown.column.clone(), values(&shown.values)));
+        columns.collect()
+    };
+    assert_eq!(placed(one), placed(other), "{name}");
 }
 
 /// Compares lists in the order of their numbers.

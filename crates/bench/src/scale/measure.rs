@@ -71,6 +71,7 @@ impl Series {
                     of: PrototypeIndex(1),
                     count: placements as u64,
                 }],
+                values_bytes: 0,
                 is_used: true,
             }
         };

@@ -134,7 +134,7 @@ impl<'a> View<'a> {
         Self {
             has_glass: bsdfs.iter().any(transmits),
             tracer,
-            colors: Colors::new(scene),
+            colors: Colors::new(tracer.scene()),
             camera,
             lights: Lights::of(scene, &tracer.bounds()),
             integrator,
