@@ -52,6 +52,7 @@ impl Scene {
             render: RENDER,
             sun: None,
             sky: None,
+            environment: None,
             lights: Vec::new(),
             legend: None,
             background: BACKGROUND,

@@ -3,6 +3,7 @@
 
 use super::background::Background;
 use super::colors::{PlacementValues, ValueList};
+use super::environment::Environment;
 use super::legend::Legend;
 use super::light::{Light, Sky, Sun};
 use super::material::{Color, Material};
@@ -30,6 +31,8 @@ pub struct Scene {
     pub sun: Option<Sun>,
     /// The sky, if any.
     pub sky: Option<Sky>,
+    /// The light from infinitely far away as a picture, if any; a scene with one has no sky.
+    pub environment: Option<Environment>,
     /// The lights with a place, which integrator `path` sees.
     pub lights: Vec<Light>,
     /// The legend over the picture, if any.

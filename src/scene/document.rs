@@ -9,6 +9,7 @@ use super::background::BackgroundKey;
 use super::colors::ValueKeys;
 use super::defaults;
 use super::description::Integrator;
+use super::environment_file::EnvironmentKeys;
 use super::formats::{
     BeamLatticeKeys, CylinderTableKeys, SolidFile, SwcKeys, for_each_solid_format,
 };
@@ -112,6 +113,7 @@ for_each_solid_format! {
         pub sun: Option<Keys<SunKeys>>,
         pub sky: Option<Keys<SkyKeys>>,
         pub legend: Option<Keys<LegendKeys>>,
+        pub environment: Option<Keys<EnvironmentKeys>>,
         #[serde(default)]
         pub point_light: Vec<Keys<PointLightKeys>>,
         #[serde(default)]
@@ -146,7 +148,8 @@ impl Document {
         let is_plain = self.material.iter().all(is_diffuse)
             && self.point_light.is_empty()
             && self.sphere_light.is_empty()
-            && self.rectangle_light.is_empty();
+            && self.rectangle_light.is_empty()
+            && self.environment.is_none();
         match is_plain {
             true => defaults::RENDER.integrator,
             false => Integrator::Path,

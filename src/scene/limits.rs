@@ -53,6 +53,10 @@ pub const GREATEST_TIMED_RAYS: u64 = 10_000_000;
 /// Most samples of a time in `bench`: confidence intervals are stable with a thousand.
 pub const GREATEST_ROUNDS: u64 = 100_000;
 
+/// Most bytes of a file with a picture, 2^32: a picture of 2^28 pixels in OpenEXR has at most
+/// as many, alpha included.
+pub const MOST_PICTURE_BYTES: u64 = 1 << 32;
+
 /// Most bytes of a mesh file, 2^32: about 30 million triangles of OBJ, 80 million of binary
 /// STL.
 pub const MOST_MESH_BYTES: u64 = 1 << 32;

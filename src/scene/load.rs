@@ -11,6 +11,7 @@ use super::camera::camera;
 use super::colors::{DataColumns, Found};
 use super::description::{Prototype, PrototypeIndex, Scene};
 use super::document::{Body, Document, PrototypeKeys, ScatterKeys};
+use super::environment_file;
 use super::error::SceneError;
 use super::formats::Context;
 use super::graph::{self, Node};
@@ -78,6 +79,14 @@ pub(super) fn lower(
         &document.rectangle_light,
     )?;
     let integrator = document.default_integrator();
+    if let (Some(Keys(keys)), Some(_)) = (&document.environment, &document.sky) {
+        return Err(source.error(
+            keys.file.span(),
+            "[environment] excludes [sky], as both are light from all directions: use one",
+        ));
+    }
+    let environment = document.environment.as_ref();
+    let environment = environment.map(|Keys(keys)| environment_file::environment(source, keys));
     let sun = document.sun.map(|Keys(keys)| keys);
     let sky = document.sky.map(|Keys(keys)| keys);
     let lights = lights(source, sun.as_ref(), sky.as_ref())?;
@@ -90,6 +99,7 @@ pub(super) fn lower(
         render: render(source, &keys(document.render), integrator)?,
         sun: lights.sun,
         sky: lights.sky,
+        environment: environment.transpose()?,
         lights: placed_lights,
         background: background(source, document.background.as_ref())?,
         legend,

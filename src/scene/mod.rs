@@ -5,8 +5,8 @@
 //! 1. `document` contains the keys as written, with their places.
 //! 2. The entries are turned into solids, placements and settings, one kind in each
 //!    file: `solids` with their `pose`, `set_operations`, the `formats` of files,
-//!    `placing`, `scatter`, `camera`, `materials` with `material_kinds` and `colors`, `placed_lights` and
-//!    `settings`. Rows of tables are streamed;
+//!    `placing`, `scatter`, `camera`, `materials` with `material_kinds` and `colors`,
+//!    `placed_lights`, `environment_file` and `settings`. Rows of tables are streamed;
 //!    `named_table` opens the tables and `table` reads them. `solid_collector` collects
 //!    and numbers the solids of a prototype.
 //! 3. `graph` checks how prototypes place each other.
@@ -29,6 +29,8 @@ mod cylinder_list;
 mod defaults;
 mod description;
 mod document;
+mod environment;
+mod environment_file;
 mod error;
 mod formats;
 mod graph;
@@ -81,6 +83,7 @@ pub use description::{
     Camera, Film, Frame, Integrator, Lens, Placement, Projection, Prototype, PrototypeIndex,
     RenderSettings, Scene,
 };
+pub use environment::{Environment, EnvironmentError};
 pub use error::{SceneError, Statement};
 pub use formats::{SOLID_FORMATS, SolidFormatInfo, beams_of_model, check_swc};
 pub use hit_table::{GivenHit, GivenHits};

@@ -10,6 +10,7 @@ use super::colors::{ValueList, header_bytes};
 use super::contents::{ExpectedCounts, ExpectedSolids, mark_used, placed_counts};
 use super::description::{Film, PrototypeIndex, RenderSettings, Scene};
 use super::document::{Body, Document};
+use super::environment_file::reading_bytes;
 use super::error::SceneError;
 use super::formats::{self, SolidFile};
 use super::load::{lower, records};
@@ -74,6 +75,8 @@ impl SceneFile {
             names.extend(body.instance_table.iter().map(|Keys(keys)| &keys.file));
         }
         names.extend(self.images());
+        let environment = self.document.environment.iter();
+        names.extend(environment.map(|Keys(keys)| &keys.file));
         let paths = names.iter().map(|name| self.source.resolve(name.get_ref()));
         paths.collect()
     }
@@ -181,7 +184,8 @@ impl SceneFile {
     }
 
     /// The most bytes that files take while they are read on some threads, besides their
-    /// records: a thread reads the files of a prototype one after the other.
+    /// records: a thread reads the files of a prototype one after the other. The pixels of
+    /// pictures are included.
     #[must_use]
     pub fn reading_bytes(&self, threads: usize) -> u64 {
         let of_body = |body: Body| {
@@ -191,7 +195,9 @@ impl SceneFile {
         };
         let mut bytes: Vec<u64> = self.document.bodies().map(of_body).collect();
         bytes.sort_unstable_by(|one, other| other.cmp(one));
-        bytes.into_iter().take(threads).sum()
+        let environment = self.document.environment.iter();
+        let environment = environment.map(|Keys(keys)| reading_bytes(&self.source, keys));
+        bytes.into_iter().take(threads).chain(environment).sum()
     }
 
     /// The numbers of solids that a prototype itself contains, and the bytes of their values.

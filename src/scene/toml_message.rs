@@ -19,7 +19,7 @@ const LISTS: [&str; 8] = [
     "scatter",
 ];
 /// The other top-level keys.
-const SINGLE: [&str; 7] = [
+const SINGLE: [&str; 8] = [
     "background",
     "camera",
     "film",
@@ -27,6 +27,7 @@ const SINGLE: [&str; 7] = [
     "sun",
     "sky",
     "legend",
+    "environment",
 ];
 
 /// Whether a top-level key is an array of tables.

@@ -1,6 +1,7 @@
 //! Scene files, the formats that they name, and meshes of scenes.
 
 mod colors;
+mod environments;
 mod formats_table;
 mod generated_scenes;
 mod keys;

@@ -12,8 +12,9 @@ use std::sync::Arc;
 
 use cyltrace::math::{Bounds, Orientation, Random, Ray, power_of_two};
 use cyltrace::scene::{
-    Background, Camera, Film, Frame, Integrator, Lens, Light, LightShape, Material, MaterialIndex,
-    MaterialKind, Projection, Prototype, RenderSettings, Scene, Sky, SolidRecord, Sun, load, save,
+    Background, Camera, Environment, Film, Frame, Integrator, Lens, Light, LightShape, Material,
+    MaterialIndex, MaterialKind, Projection, Prototype, RenderSettings, Scene, Sky, SolidRecord,
+    Sun, load, save,
 };
 use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 use cyltrace::tracer::{Options, Tracer};
@@ -291,6 +292,28 @@ fn lights_with_a_place_saved_are_the_same() {
         })
         .collect();
     assert_same(&scene, &saved(&scene), "lights");
+}
+
+#[test]
+fn environments_saved_are_the_same() {
+    let mut scene = sample("minimal.toml");
+    let mut random = Random::new(21, 0);
+    scene.sky = None;
+    for (width, height) in [(1, 1), (7, 3), (200, 130)] {
+        let mut component = || match random.below(20) {
+            0 => 0.0,
+            1 => f32::MAX,
+            2 => f32::from_bits(1),
+            _ => random.log_uniform(1e-30, 1e30) as f32,
+        };
+        let pixels = (0..width * height).map(|_| [component(), component(), component()]);
+        let pixels = pixels.collect();
+        let mut environment = Environment::new(width, height, pixels).expect("radiance");
+        environment.strength = 0.1 + 0.2;
+        environment.rotate_degrees = -370.25;
+        scene.environment = Some(environment);
+        assert_same(&scene, &saved(&scene), "environment");
+    }
 }
 
 /// The direction of a light is normalized when it is stated, and not again when it is saved.

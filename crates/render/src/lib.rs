@@ -9,6 +9,7 @@ mod bsdf;
 mod channels;
 mod colors;
 mod disk;
+mod environment;
 mod frame;
 mod integrator;
 mod legend;
@@ -27,6 +28,7 @@ use rayon::ThreadPool;
 
 pub use channels::{ChannelGroup, Channels, NO_ID};
 pub use cyltrace::scene::GREATEST_PIXELS;
+pub use environment::EnvironmentMap;
 pub use integrator::RayCounts;
 pub use legend::legend;
 pub use lights::{Lights, SunLight};
@@ -284,7 +286,7 @@ fn skipped(integrator: Integrator, lights: &Lights) -> Vec<String> {
         Integrator::Ao => &[(true, "ambient occlusion only: no shadow rays")],
         Integrator::Sun => &[
             (lights.sun().is_none(), no_shadow),
-            (lights.sky().is_none(), "no sky: no sky rays"),
+            (!lights.has_sky(), "no sky: no sky rays"),
         ],
         Integrator::Path => &[
             (

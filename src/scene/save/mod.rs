@@ -2,7 +2,7 @@
 //! [`load`](super::load()).
 //!
 //! `text` writes keys, and `tables` the rows of tables; the parts of a scene are written one a
-//! file: `picture` (camera, film, lights, materials), `solids`, `cylinders`, `operations` and
+//! file: `picture` (camera, film, lights, materials), `environment`, `solids`, `cylinders`, `operations` and
 //! `placements`. The keys of each kind of solid are written where they are read, in
 //! [`solids`](super::solids).
 //!
@@ -11,6 +11,7 @@
 //! `primitive` states them.
 
 mod cylinders;
+mod environment;
 mod error;
 mod operations;
 mod picture;
@@ -48,8 +49,9 @@ struct Saver<'a, W> {
 ///
 /// **What is promised.** [`load`](super::load()) reads the same scene from the files, to the
 /// last bit of every number: prototypes, solids with their primitive numbers and materials,
-/// placements with their instance numbers, the values that materials show, camera, film, render settings, lights and
-/// background. If the scene breaks a rule of `docs/scene-file.md`, which only scenes made in code
+/// placements with their instance numbers, the values that materials show, camera, film,
+/// render settings, lights, environment, legend and background. If the scene breaks a rule of
+/// `docs/scene-file.md`, which only scenes made in code
 /// do, this function or `load` fails; `load` never reads another scene.
 ///
 /// Some of a [`Scene`] is about the files that it was read from, and is not written:
@@ -98,6 +100,7 @@ pub fn save<W: Write>(
         saver.text.top().text("records", Records::F32.name());
     }
     picture::state(&mut saver.text, &mut saver.tables, scene)?;
+    saver.environment()?;
     for (index, prototype) in scene.prototypes.iter().enumerate() {
         let prefix = match index {
             0 => "",

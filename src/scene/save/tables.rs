@@ -46,8 +46,7 @@ impl<'a, W: Write> Tables<'a, W> {
         count: usize,
         row: impl Fn(&mut String, usize) + Sync,
     ) -> Result<String, SaveError> {
-        let name = format!("{}_{what}_{}.csv", self.stem, self.count + 1);
-        self.output(&name, |output| {
+        self.add_file(what, "csv", |output| {
             writeln!(output, "{header}")?;
             for first in (0..count).step_by(BLOCK * BLOCKS) {
                 let end = count.min(first + BLOCK * BLOCKS);
@@ -65,7 +64,18 @@ impl<'a, W: Write> Tables<'a, W> {
                 }
             }
             Ok(())
-        })?;
+        })
+    }
+
+    /// Writes a file of any kind and returns its name.
+    pub fn add_file(
+        &mut self,
+        what: &str,
+        extension: &str,
+        write: impl FnOnce(&mut W) -> io::Result<()>,
+    ) -> Result<String, SaveError> {
+        let name = format!("{}_{what}_{}.{extension}", self.stem, self.count + 1);
+        self.output(&name, write)?;
         Ok(name)
     }
 

@@ -15,6 +15,13 @@ pub fn assert_same(one: &Scene, other: &Scene, name: &str) {
     same(&one.render, &other.render, name);
     same(&one.sun, &other.sun, name);
     same(&one.sky, &other.sky, name);
+    let bits = |scene: &Scene| {
+        let environment = scene.environment.as_ref()?;
+        let pixels = environment.pixels().as_flattened().iter();
+        let pixels: Vec<u32> = pixels.map(|component| component.to_bits()).collect();
+        Some((format!("{environment:?}"), pixels))
+    };
+    assert_eq!(bits(one), bits(other), "{name}");
     same(&one.lights, &other.lights, name);
     same(&one.legend, &other.legend, name);
     same(&one.background, &other.background, name);

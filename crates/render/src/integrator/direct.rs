@@ -35,12 +35,8 @@ impl View<'_> {
             }
         });
         batch.colors.extend(colors);
-        self.add_sky(
-            samples,
-            batch,
-            rays,
-            (DVec3::ONE, self.settings.ao_distance),
-        );
+        let open = |_| DVec3::ONE;
+        self.add_sky(samples, batch, rays, self.settings.ao_distance, open);
     }
 
     pub(super) fn sunlight_and_sky(
@@ -51,12 +47,16 @@ impl View<'_> {
     ) {
         let fields = HitFields::NORMAL | HitFields::SPAWN | self.colors.fields();
         self.closest(batch, fields);
-        let (hits, miss) = (batch.hits.iter(), self.lights.miss());
-        let colors = hits.map(|hit| if hit.is_some() { DVec3::ZERO } else { miss });
+        let rays_and_hits = batch.rays.iter().zip(&batch.hits);
+        let colors = rays_and_hits.map(|(ray, hit)| match hit {
+            Some(_) => DVec3::ZERO,
+            None => self.lights.miss(ray.direction.normalize()),
+        });
         batch.colors.extend(colors);
         self.add_sunlight(samples, batch, rays);
-        if let Some(radiance) = self.lights.sky() {
-            self.add_sky(samples, batch, rays, (radiance, f64::INFINITY));
+        if self.lights.has_sky() {
+            let radiance = |direction| self.lights.sky(direction).unwrap_or_default();
+            self.add_sky(samples, batch, rays, f64::INFINITY, radiance);
         }
         for (color, hit) in batch.colors.iter_mut().zip(&batch.hits) {
             let Some(hit) = hit else {
@@ -95,14 +95,15 @@ impl View<'_> {
         rays.shadow += shadows.add_to(&mut batch.colors, self.tracer);
     }
 
-    /// Adds a radiance at the hits from which a direction drawn with the sample's numbers is
+    /// Adds the radiance of a direction at the hits from which a direction drawn with the sample's numbers is
     /// free up to a distance.
     fn add_sky(
         &self,
         samples: &[Sample],
         batch: &mut Batch,
         rays: &mut RayCounts,
-        (radiance, distance): (DVec3, f64),
+        distance: f64,
+        radiance: impl Fn(DVec3) -> DVec3,
     ) {
         let openings = &mut batch.occlusion;
         openings.clear();
@@ -112,7 +113,7 @@ impl View<'_> {
                 let direction = Frame::about(facing_normal(ray, hit)).to_world(direction);
                 let mut ray = spawn(hit, direction);
                 ray.t_max = distance;
-                openings.push(number, ray, radiance);
+                openings.push(number, ray, radiance(direction));
             }
         }
         rays.ao += openings.add_to(&mut batch.colors, self.tracer);

@@ -243,11 +243,12 @@ impl View<'_> {
 
     /// The light of a path that leaves the scene.
     fn from_beyond(&self, path: &Path) -> DVec3 {
-        let mut light = self.lights.beyond(path.ray.direction);
+        let direction = path.ray.direction;
+        let sun = path.weighted(self.lights.from_sun(direction));
         if path.is_direct {
-            light.unsampled = self.lights.miss();
+            return sun + path.throughput * self.lights.miss(direction);
         }
-        path.weighted(light)
+        sun + path.weighted(self.lights.from_sky(direction))
     }
 
     /// The light of a path that ends on a solid that emits light.

@@ -1,7 +1,7 @@
 //! The lights of a scene, and the default lights.
 //!
 //! A light is *sampled* if a surface chooses a direction towards it. The sun and lights with a
-//! place are; a sky of the same radiance everywhere is not, because the directions in which a
+//! place and environments are; a sky of the same radiance everywhere is not, because the directions in which a
 //! surface scatters light reach it just as well. If there are several, one is chosen with a
 //! probability in proportion to its power, that of a sun being what crosses the scene.
 
@@ -17,6 +17,7 @@ use cyltrace::scene::{MaterialKind, Scene, Sky, Sun};
 use cyltrace::tracer::PartialHit;
 use glam::DVec3;
 
+use crate::environment::EnvironmentMap;
 use choice::Choice;
 use emitters::Emitters;
 use shapes::ShapeLight;
@@ -41,10 +42,12 @@ const DEFAULT_SKY: (DVec3, f64) = (DVec3::new(0.65, 0.8, 1.0), 0.3);
 pub struct Lights {
     sun: Option<SunLight>,
     sky: Option<DVec3>,
-    miss: DVec3,
+    environment: Option<EnvironmentMap>,
+    /// What a camera ray sees that leaves, in place of a sky or an environment.
+    miss: Option<DVec3>,
     shapes: Vec<ShapeLight>,
     emitters: Emitters,
-    /// Between the sun, the shapes and the emitters, in this order.
+    /// Between the sun, the environment, the shapes and the emitters, in this order.
     choice: Choice,
 }
 
@@ -100,6 +103,7 @@ impl Lights {
         let is_light = |kind: &MaterialKind| matches!(kind, MaterialKind::Light { .. });
         let unlit = scene.sun.is_none()
             && scene.sky.is_none()
+            && scene.environment.is_none()
             && scene.lights.is_empty()
             && !scene.materials.iter().any(|one| is_light(&one.kind));
         let (sun, sky) = if unlit {
@@ -108,7 +112,9 @@ impl Lights {
             (scene.sun, scene.sky)
         };
         let radiance = sky.map(|sky| sky.color * sky.strength);
-        let miss = if unlit { None } else { radiance };
+        let environment = scene.environment.as_ref().map(EnvironmentMap::new);
+        let environment = environment.filter(|map| map.power() > 0.0);
+        let has_background = unlit || (scene.sky.is_none() && scene.environment.is_none());
         let sun = sun.as_ref().and_then(SunLight::new);
         let shapes: Vec<_> = scene.lights.iter().filter_map(ShapeLight::new).collect();
         let emitters = Emitters::new(scene);
@@ -117,14 +123,21 @@ impl Lights {
             false => 0.5 * bounds.extent().length(),
         };
         let of_sun = sun.map(|sun| sun.irradiance * (PI * radius * radius));
+        let across = 4.0 * PI * PI * radius * radius;
+        let of_environment = environment.as_ref().map(|map| map.mean_radiance() * across);
         let of_shapes = shapes.iter().map(ShapeLight::power);
         let of_emitters = emitters.list.iter().map(emitters::Emitter::power);
-        let powers = of_sun.into_iter().chain(of_shapes).chain(of_emitters);
+        let powers = of_sun
+            .into_iter()
+            .chain(of_environment)
+            .chain(of_shapes)
+            .chain(of_emitters);
         let powers: Vec<f64> = powers.map(|power| power.element_sum()).collect();
         Self {
             sun,
             sky: radiance.filter(|&radiance| radiance != DVec3::ZERO),
-            miss: miss.unwrap_or(scene.background.color()),
+            environment,
+            miss: has_background.then(|| scene.background.color()),
             choice: Choice::new(&powers),
             shapes,
             emitters,
@@ -137,16 +150,24 @@ impl Lights {
         self.sun
     }
 
-    /// The sky's radiance, the same in every direction, where there is any.
+    /// The radiance of the sky or the environment in a unit direction; `None` if there is none.
     #[must_use]
-    pub fn sky(&self) -> Option<DVec3> {
-        self.sky
+    pub fn sky(&self, direction: DVec3) -> Option<DVec3> {
+        let of_environment = self.environment.as_ref().map(|map| map.radiance(direction));
+        of_environment.or(self.sky)
+    }
+
+    /// Whether there is a sky or an environment that gives light.
+    #[must_use]
+    pub fn has_sky(&self) -> bool {
+        self.sky.is_some() || self.environment.is_some()
     }
 
     /// The radiance of a camera ray that hits nothing.
     #[must_use]
-    pub fn miss(&self) -> DVec3 {
-        self.miss
+    pub fn miss(&self, direction: DVec3) -> DVec3 {
+        let background = || self.sky(direction).unwrap_or_default();
+        self.miss.unwrap_or_else(background)
     }
 
     /// Whether there are solids that are sampled as lights, so that a hit's path matters.
@@ -173,10 +194,21 @@ impl Lights {
             density: sample.density.map(|density| density * probability),
             ..sample
         };
-        let shapes = usize::from(self.sun.is_some());
-        match self.sun {
-            Some(sun) if chosen == 0 => {
+        let suns = usize::from(self.sun.is_some());
+        let shapes = self.lights_at_infinity();
+        match (&self.sun, &self.environment) {
+            (Some(sun), _) if chosen == 0 => {
                 return Some(Towards::Open(scaled(sun.sample(numbers)), None));
+            }
+            (_, Some(environment)) if chosen == suns => {
+                let (direction, density) = environment.sample(numbers);
+                let sample = LightSample {
+                    direction,
+                    distance: f64::INFINITY,
+                    arriving: environment.radiance(direction) / density,
+                    density: Some(density),
+                };
+                return Some(Towards::Open(scaled(sample), None));
             }
             _ => {}
         }
@@ -197,15 +229,38 @@ impl Lights {
         Some(Towards::Solid(scaled(sample), number))
     }
 
-    /// The light from infinity in a unit direction, where nothing is.
-    pub(crate) fn beyond(&self, direction: DVec3) -> Arriving {
-        let sun = self.sun.filter(SunLight::has_extent);
-        Arriving {
-            unsampled: self.sky.unwrap_or_default(),
-            sampled: sun.map_or(DVec3::ZERO, |sun| sun.radiance(direction)),
-            density: sun.map_or(0.0, |sun| {
-                sun.density(direction) * self.choice.probability(0)
-            }),
+    /// The number of lights at infinity that are sampled.
+    fn lights_at_infinity(&self) -> usize {
+        usize::from(self.sun.is_some()) + usize::from(self.environment.is_some())
+    }
+
+    /// The light from the sun in a unit direction, where nothing is.
+    pub(crate) fn from_sun(&self, direction: DVec3) -> Arriving {
+        match self.sun.filter(SunLight::has_extent) {
+            Some(sun) => Arriving {
+                unsampled: DVec3::ZERO,
+                sampled: sun.radiance(direction),
+                density: sun.density(direction) * self.choice.probability(0),
+            },
+            None => Arriving::default(),
+        }
+    }
+
+    /// The light from the sky or the environment in a unit direction, where nothing is.
+    pub(crate) fn from_sky(&self, direction: DVec3) -> Arriving {
+        match &self.environment {
+            Some(environment) => {
+                let chosen = usize::from(self.sun.is_some());
+                Arriving {
+                    unsampled: DVec3::ZERO,
+                    sampled: environment.radiance(direction),
+                    density: environment.density(direction) * self.choice.probability(chosen),
+                }
+            }
+            None => Arriving {
+                unsampled: self.sky.unwrap_or_default(),
+                ..Arriving::default()
+            },
         }
     }
 
@@ -241,7 +296,7 @@ impl Lights {
         let (number, shape) = found?;
         let to_light = ray.at(nearest.t_max) - point;
         let distance = to_light.length();
-        let chosen = usize::from(self.sun.is_some()) + number;
+        let chosen = self.lights_at_infinity() + number;
         let density = shape.density(point, to_light / distance, distance);
         Some(Arriving {
             unsampled: DVec3::ZERO,
@@ -253,7 +308,7 @@ impl Lights {
     /// The density with which the direction of a hit on an emitting solid is sampled at a point.
     pub(crate) fn density_of(&self, hit: &PartialHit, point: DVec3, direction: DVec3) -> f64 {
         self.emitters.number(hit).map_or(0.0, |number| {
-            let chosen = usize::from(self.sun.is_some()) + self.shapes.len() + number;
+            let chosen = self.lights_at_infinity() + self.shapes.len() + number;
             let density = self.emitters.list[number].density(point, direction);
             density * self.choice.probability(chosen)
         })
@@ -303,8 +358,8 @@ mod tests {
         let lights = lights_of(&scene(None, None));
         let sun = lights.sun().expect("a default sun");
         assert!((sun.direction.length() - 1.0).abs() < 1e-15);
-        assert!(lights.sky().is_some());
-        assert_eq!(lights.miss(), DVec3::new(0.1, 0.2, 0.3));
+        assert!(lights.has_sky());
+        assert_eq!(lights.miss(DVec3::Z), DVec3::new(0.1, 0.2, 0.3));
     }
 
     #[test]
@@ -312,8 +367,8 @@ mod tests {
         let mut sun = default_sun();
         sun.strength = 0.0;
         let lights = lights_of(&scene(Some(sun), None));
-        assert!(lights.sun().is_none() && lights.sky().is_none());
-        assert_eq!(lights.miss(), DVec3::new(0.1, 0.2, 0.3));
+        assert!(lights.sun().is_none() && !lights.has_sky());
+        assert_eq!(lights.miss(DVec3::Z), DVec3::new(0.1, 0.2, 0.3));
     }
 
     #[test]
@@ -324,7 +379,7 @@ mod tests {
         };
         let lights = lights_of(&scene(None, Some(sky)));
         assert!(lights.sun().is_none());
-        assert_eq!(lights.miss(), DVec3::new(1.0, 0.5, 2.0));
-        assert_eq!(lights.sky(), Some(lights.miss()));
+        assert_eq!(lights.miss(DVec3::Z), DVec3::new(1.0, 0.5, 2.0));
+        assert_eq!(lights.sky(DVec3::Z), Some(lights.miss(DVec3::Z)));
     }
 }

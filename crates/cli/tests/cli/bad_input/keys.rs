@@ -263,6 +263,30 @@ pub fn cases() -> Vec<Case> {
             &["scene.toml:5:1", "missing field `radius`"],
         ),
         with_solid(
+            "environment_and_sky",
+            "[sky]\n[environment]\nfile = \"x.exr\"\n",
+            &["scene.toml:7:8", "[environment] excludes [sky]"],
+        ),
+        with_solid(
+            "environment_without_file",
+            "[environment]\nfile = \"x.hdr\"\n",
+            &[
+                "scene.toml:6:8",
+                "x.hdr: the file does not exist",
+                "relative to",
+            ],
+        ),
+        with_solid(
+            "environment_of_another_format",
+            "[environment]\nfile = \"x.png\"\n",
+            &[
+                "scene.toml:6:8",
+                "\"x.png\" is not the name",
+                ".hdr",
+                ".exr",
+            ],
+        ),
+        with_solid(
             "light_as_a_single_table",
             "[sphere_light]\ncenter = [1, 1, 1]\nradius = 1\n",
             &["scene.toml:5:1", "write [[sphere_light]]"],
