@@ -7,7 +7,6 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Unexpected, Visitor};
 use toml::Spanned;
 
-use super::defaults;
 use super::error::SceneError;
 use super::source::Source;
 use super::values::{List, Number};
@@ -22,6 +21,8 @@ pub enum Background {
 }
 
 impl Background {
+    /// The background of a scene that states none.
+    pub(super) const DEFAULT: Self = Self::Color(DVec3::new(0.8, 0.9, 1.0));
     /// How a scene file states [`Self::Transparent`].
     pub(super) const TRANSPARENT: &'static str = "transparent";
 
@@ -75,7 +76,7 @@ pub(super) fn background(
     key: Option<&Spanned<BackgroundKey>>,
 ) -> Result<Background, SceneError> {
     let Some(key) = key else {
-        return Ok(defaults::BACKGROUND);
+        return Ok(Background::DEFAULT);
     };
     let BackgroundKey(background) = *key.get_ref();
     let color = background.color();

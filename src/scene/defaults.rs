@@ -23,8 +23,6 @@ pub(super) const RENDER: RenderSettings = RenderSettings {
     ao_distance: f64::INFINITY,
 };
 
-pub(super) const BACKGROUND: Background = Background::Color(DVec3::new(0.8, 0.9, 1.0));
-
 /// The reflectance of solids without a material.
 const REFLECTANCE: f64 = 0.5;
 
@@ -55,7 +53,7 @@ impl Scene {
             environment: None,
             lights: Vec::new(),
             legend: None,
-            background: BACKGROUND,
+            background: Background::DEFAULT,
             skipped_rows: 0,
             notes: Vec::new(),
         }

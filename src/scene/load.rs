@@ -10,7 +10,7 @@ use super::background::background;
 use super::camera::camera;
 use super::colors::{DataColumns, Found};
 use super::description::{Prototype, PrototypeIndex, Scene};
-use super::document::{Body, Document, PrototypeKeys, ScatterKeys};
+use super::document::{Body, Document, PrototypeKeys};
 use super::environment_file;
 use super::error::SceneError;
 use super::formats::Context;
@@ -23,15 +23,14 @@ use super::placed_lights::placed_lights;
 use super::placing::{Edge, Placements};
 use super::pose;
 use super::record::{MaterialIndex, Records};
-use super::scatter::{Pattern, Scatter};
+use super::scatter::Scatter;
 use super::set_operations::{CompositionKeys, Operation};
 use super::settings::{film, lights, render};
 use super::solid_collector::{Refusal, SolidCollector};
 use super::solid_keys::SolidTable;
 use super::solids::SolidKeys;
 use super::source::Source;
-use super::transform::GREATEST_ENTRY;
-use super::values::{Keys, NumberOrList, Whole};
+use super::values::{Keys, Whole};
 use crate::for_each_solid;
 
 /// Turns the keys of a scene file into the scene.
@@ -213,7 +212,7 @@ impl Loader<'_> {
         }
         let scatters = body.scatter.iter().map(|Keys(keys)| {
             let of = self.placed(&keys.of)?;
-            Ok((&keys.of, of, self.scatter(keys)?))
+            Ok((&keys.of, of, Scatter::new(source, keys)?))
         });
         placements.add_scatters(source, &scatters.collect::<Result<Vec<_>, _>>()?)?;
 
@@ -366,71 +365,5 @@ impl Loader<'_> {
                 suggestion(of.get_ref(), names, "prototypes"),
             )
         })
-    }
-
-    fn scatter(&self, keys: &ScatterKeys) -> Result<Scatter, SceneError> {
-        const PATTERNS: [(&str, Pattern); 3] = [
-            ("grid", Pattern::Grid),
-            ("disk", Pattern::Disk),
-            ("disc", Pattern::Disk),
-        ];
-        const YAWS: [(&str, bool); 2] = [("none", false), ("random", true)];
-        let wrong = |place, message: String| Err(self.source.error(place, message));
-
-        let count = keys.count.get_ref().0;
-        let Some(count) = u32::try_from(count).ok().filter(|&count| count > 0) else {
-            return wrong(
-                keys.count.span(),
-                format!("count is {count}: it must be between 1 and {}", u32::MAX),
-            );
-        };
-        let spacing = keys.spacing.get_ref().0;
-        if spacing <= 0.0 {
-            return wrong(
-                keys.spacing.span(),
-                format!("spacing is {spacing}: it must be a positive length"),
-            );
-        }
-        let scale = keys
-            .scale
-            .as_ref()
-            .map_or([1.0; 2], |scale| match scale.get_ref() {
-                NumberOrList::One(scale) => [*scale; 2],
-                NumberOrList::Many(range) => *range,
-            });
-        let accepted = 1.0 / GREATEST_ENTRY..=GREATEST_ENTRY;
-        if let Some(key) = &keys.scale
-            && !(accepted.contains(&scale[0])
-                && accepted.contains(&scale[1])
-                && scale[0] <= scale[1])
-        {
-            return wrong(
-                key.span(),
-                format!(
-                    "scale is [{}, {}]: it must be a number, or the least and the greatest in that order, between 2^-100 and 2^100",
-                    scale[0], scale[1]
-                ),
-            );
-        }
-        let scatter = Scatter {
-            pattern: self.source.choose("pattern", &keys.pattern, &PATTERNS)?,
-            count,
-            spacing,
-            random_yaw: match &keys.yaw {
-                Some(word) => self.source.choose("yaw", word, &YAWS)?,
-                None => false,
-            },
-            scale,
-            seed: keys.seed.map_or(0, |seed| seed.0),
-        };
-        if scatter.reach().translation > GREATEST_ENTRY {
-            return wrong(
-                keys.spacing.span(),
-                format!(
-                    "spacing is {spacing}: with {count} items the scatter reaches beyond 2^100"
-                ),
-            );
-        }
-        Ok(scatter)
     }
 }

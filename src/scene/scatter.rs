@@ -9,7 +9,11 @@ use std::f64::consts::{PI, TAU};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::transform::Reach;
+use super::document::ScatterKeys;
+use super::error::SceneError;
+use super::source::Source;
+use super::transform::{GREATEST_ENTRY, Reach};
+use super::values::NumberOrList;
 use crate::math::{Random, rotation};
 
 /// 2^64 divided by the square of the golden ratio, rounded: the golden angle
@@ -44,6 +48,73 @@ pub(super) struct Scatter {
 }
 
 impl Scatter {
+    /// The scatter of an entry of the scene file.
+    pub fn new(source: &Source, keys: &ScatterKeys) -> Result<Self, SceneError> {
+        const PATTERNS: [(&str, Pattern); 3] = [
+            ("grid", Pattern::Grid),
+            ("disk", Pattern::Disk),
+            ("disc", Pattern::Disk),
+        ];
+        const YAWS: [(&str, bool); 2] = [("none", false), ("random", true)];
+        let wrong = |place, message: String| Err(source.error(place, message));
+
+        let count = keys.count.get_ref().0;
+        let Some(count) = u32::try_from(count).ok().filter(|&count| count > 0) else {
+            return wrong(
+                keys.count.span(),
+                format!("count is {count}: it must be between 1 and {}", u32::MAX),
+            );
+        };
+        let spacing = keys.spacing.get_ref().0;
+        if spacing <= 0.0 {
+            return wrong(
+                keys.spacing.span(),
+                format!("spacing is {spacing}: it must be a positive length"),
+            );
+        }
+        let scale = keys
+            .scale
+            .as_ref()
+            .map_or([1.0; 2], |scale| match scale.get_ref() {
+                NumberOrList::One(scale) => [*scale; 2],
+                NumberOrList::Many(range) => *range,
+            });
+        let accepted = 1.0 / GREATEST_ENTRY..=GREATEST_ENTRY;
+        if let Some(key) = &keys.scale
+            && !(accepted.contains(&scale[0])
+                && accepted.contains(&scale[1])
+                && scale[0] <= scale[1])
+        {
+            return wrong(
+                key.span(),
+                format!(
+                    "scale is [{}, {}]: it must be a number, or the least and the greatest in that order, between 2^-100 and 2^100",
+                    scale[0], scale[1]
+                ),
+            );
+        }
+        let scatter = Self {
+            pattern: source.choose("pattern", &keys.pattern, &PATTERNS)?,
+            count,
+            spacing,
+            random_yaw: match &keys.yaw {
+                Some(word) => source.choose("yaw", word, &YAWS)?,
+                None => false,
+            },
+            scale,
+            seed: keys.seed.map_or(0, |seed| seed.0),
+        };
+        if scatter.reach().translation > GREATEST_ENTRY {
+            return wrong(
+                keys.spacing.span(),
+                format!(
+                    "spacing is {spacing}: with {count} items the scatter reaches beyond 2^100"
+                ),
+            );
+        }
+        Ok(scatter)
+    }
+
     /// Bounds for all items.
     pub fn reach(&self) -> Reach {
         // A grid's last item is at most (√count + 1)/2 spacings away on each

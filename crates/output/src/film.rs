@@ -1,10 +1,5 @@
 //! The picture in memory: linear RGB in f32.
 
-use crate::picture::{Band, Bands};
-
-/// Rows that are written at a time: enough that a block of an EXR is read at once.
-const ROWS: usize = 64;
-
 /// A finished picture: linear RGB, row by row from the top, each row from the
 /// left.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,15 +44,5 @@ impl Film {
     #[must_use]
     pub fn pixels(&self) -> &[[f32; 3]] {
         &self.pixels
-    }
-
-    /// The rows, some at a time.
-    pub(crate) fn bands(&self) -> impl Bands {
-        let mut rest = self.pixels.chunks(self.width as usize * ROWS);
-        move |band: &mut Band| {
-            band.colors
-                .extend_from_slice(rest.next().unwrap_or_default());
-            Ok(())
-        }
     }
 }

@@ -343,3 +343,43 @@ impl Spread {
         self.pixels > 0.0 && greatest <= limit * limit * self.pixels
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decisions_are_at_numbers_that_grow_by_a_third_or_a_half() {
+        let all = std::iter::successors(Some(next(0)), |&taken| Some(next(taken)));
+        assert_eq!(
+            all.take(8).collect::<Vec<_>>(),
+            [4, 6, 8, 12, 16, 24, 32, 48]
+        );
+    }
+
+    #[test]
+    fn spread_of_no_pixels_or_black_ones_says_nothing_or_enough() {
+        assert!(!Spread::default().is_within(1e9));
+        let black = Spread {
+            pixels: 128.0,
+            ..Spread::default()
+        };
+        assert!(black.is_within(1e-9));
+        assert_eq!(black.error(), 0.0);
+    }
+
+    /// 100 pixels of value 2 with the variance 0.01 each have an error of 5 %; the promise needs
+    /// `1 + 1.163 √(4/3 · 100)/100` times the variance.
+    #[test]
+    fn error_is_relative_and_the_promise_has_a_margin() {
+        let spread = Spread {
+            pixels: 100.0,
+            values: 200.0,
+            variances: 1.0,
+            squares: 0.01,
+        };
+        assert!((spread.error() - 0.05).abs() < 1e-15);
+        let needed = 0.05 * (1.0 + 1.163_087 * (4.0_f64 / 3.0).sqrt() * 0.1).sqrt();
+        assert!(!spread.is_within(needed * 0.9999) && spread.is_within(needed * 1.0001));
+    }
+}

@@ -20,6 +20,8 @@ pub struct Texture {
     width: u32,
     height: u32,
     codes: Codes,
+    /// The mean of the linear colors of all pixels.
+    average: DVec3,
 }
 
 /// The codes of the pixels, row by row from the top.
@@ -80,11 +82,21 @@ impl Texture {
             }
             _ => Codes::Eight(colors(&bytes, channels, u8::MAX)?),
         };
-        Ok(Self {
+        Ok(Self::new((width, height), codes))
+    }
+
+    fn new((width, height): (u32, u32), codes: Codes) -> Self {
+        let pixels = f64::from(width) * f64::from(height);
+        let sum: DVec3 = match &codes {
+            Codes::Eight(codes) => codes.iter().copied().map(decode8).sum(),
+            Codes::Sixteen(codes) => codes.iter().copied().map(decode16).sum(),
+        };
+        Self {
             width,
             height,
             codes,
-        })
+            average: sum / pixels,
+        }
     }
 
     /// Writes the image as a PNG that [`Texture::read`] reads as the same image.
@@ -139,9 +151,7 @@ impl Texture {
     /// The mean of the linear colors of all pixels.
     #[must_use]
     pub fn average(&self) -> DVec3 {
-        let pixels = self.width as usize * self.height as usize;
-        let sum: DVec3 = (0..pixels).map(|position| self.pixel(position)).sum();
-        sum / pixels as f64
+        self.average
     }
 
     /// The bytes of the pixels.
@@ -204,11 +214,8 @@ mod tests {
 
     /// An image of 2 x 2 pixels: red and green above blue and white.
     fn corners() -> Texture {
-        Texture {
-            width: 2,
-            height: 2,
-            codes: Codes::Eight(vec![[255, 0, 0], [0, 255, 0], [0, 0, 255], [255; 3]]),
-        }
+        let codes = vec![[255, 0, 0], [0, 255, 0], [0, 0, 255], [255; 3]];
+        Texture::new((2, 2), Codes::Eight(codes))
     }
 
     fn png(color: ColorType, depth: BitDepth, bytes: &[u8]) -> Vec<u8> {

@@ -109,7 +109,8 @@ impl SolidFile for CylinderTableKeys {
         table.note_unread(&read);
         let mut is_empty = true;
         solids.solids.cylinders.reserve(table.most_rows());
-        let bytes = size_of::<CylinderRecord>() + self.value_bytes() as usize;
+        let value_bytes = shown.map_or(0, |_| self.value_bytes() as usize);
+        let bytes = size_of::<CylinderRecord>() + value_bytes;
         while let Some(row) = table.next_row(bytes)? {
             is_empty = false;
             let numbered = match layout.primitive {

@@ -2,13 +2,9 @@
 //! would be right; clap names the argument.
 
 use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
-use std::time::Duration;
 
 use cyltrace::scene::{Film, GREATEST_PIXELS, GREATEST_THREADS};
 use cyltrace::solid::tessellation::{GREATEST_SEGMENTS, LEAST_SEGMENTS};
-
-/// Most stops of an exposure: beyond 2^64, no number of a picture means anything.
-const GREATEST_EXPOSURE: f64 = 64.0;
 
 /// Reads a whole number from 1 to `greatest`.
 pub fn count_up_to<N: TryFrom<NonZeroU64>>(
@@ -67,31 +63,4 @@ pub fn parse_segments(text: &str) -> Result<u32, String> {
         .ok_or_else(|| {
             format!("it must be a whole number from {LEAST_SEGMENTS} to {GREATEST_SEGMENTS}")
         })
-}
-
-/// A relative error.
-pub fn parse_error(text: &str) -> Result<f64, String> {
-    let error = text.parse().ok();
-    error
-        .filter(|error: &f64| error.is_finite() && *error > 0.0)
-        .ok_or_else(|| "it must be a number above 0, such as 0.02".to_owned())
-}
-
-/// An exposure in stops.
-pub fn parse_exposure(text: &str) -> Result<f64, String> {
-    let exposure = text.parse().ok();
-    exposure
-        .filter(|exposure: &f64| exposure.abs() <= GREATEST_EXPOSURE)
-        .ok_or_else(|| {
-            format!("it must be a number from -{GREATEST_EXPOSURE} to {GREATEST_EXPOSURE}")
-        })
-}
-
-/// A time in seconds.
-pub fn parse_seconds(text: &str) -> Result<Duration, String> {
-    let seconds = text.parse().ok();
-    seconds
-        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
-        .filter(|time| !time.is_zero())
-        .ok_or_else(|| "it must be a number of seconds above 0".to_owned())
 }

@@ -8,7 +8,9 @@ use cyltrace_output::{Display, ToneMap};
 use cyltrace_render::{ChannelGroup, Target};
 
 use super::names::one_of;
-use super::numbers::{parse_error, parse_exposure, parse_seconds};
+
+/// Most stops of an exposure: beyond 2^64, no number of a picture means anything.
+const GREATEST_EXPOSURE: f64 = 64.0;
 
 #[derive(Args, Clone, Debug)]
 pub struct PictureArguments {
@@ -51,4 +53,31 @@ impl PictureArguments {
             time: self.time,
         })
     }
+}
+
+/// A relative error.
+fn parse_error(text: &str) -> Result<f64, String> {
+    let error = text.parse().ok();
+    error
+        .filter(|error: &f64| error.is_finite() && *error > 0.0)
+        .ok_or_else(|| "it must be a number above 0, such as 0.02".to_owned())
+}
+
+/// An exposure in stops.
+fn parse_exposure(text: &str) -> Result<f64, String> {
+    let exposure = text.parse().ok();
+    exposure
+        .filter(|exposure: &f64| exposure.abs() <= GREATEST_EXPOSURE)
+        .ok_or_else(|| {
+            format!("it must be a number from -{GREATEST_EXPOSURE} to {GREATEST_EXPOSURE}")
+        })
+}
+
+/// A time in seconds.
+fn parse_seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok();
+    seconds
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+        .filter(|time| !time.is_zero())
+        .ok_or_else(|| "it must be a number of seconds above 0".to_owned())
 }

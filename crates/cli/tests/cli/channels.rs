@@ -23,8 +23,8 @@ width = 32
 height = 24
 
 [[material]]
-name = "gray"
-color = [0.5, 0.5, 0.5]
+name = "unused"
+color = [0.1, 0.1, 0.1]
 [[material]]
 name = "red"
 color = [0.75, 0.25, 0.125]
@@ -124,14 +124,14 @@ fn channels_are_the_columns_of_trace_for_the_middle_ray() {
             hits += 1;
             assert_eq!(channel("Z"), number("t"), "pixel {pixel}");
             let (prototype, material) = match cell("prototype") {
-                "" => (0.0, 1.0),
+                "" => (0.0, 2.0),
                 "rod" => (2.0, 0.0),
                 other => panic!("{other}"),
             };
             let outermost = cell("instance").split('/').next().expect("a part");
             let instance = outermost.parse().unwrap_or(none);
             assert_eq!(ids, [number("primitive"), prototype, instance, material]);
-            let albedo = if material == 1.0 {
+            let albedo = if material == 2.0 {
                 [0.75, 0.25, 0.125]
             } else {
                 [0.5; 3]
@@ -145,7 +145,7 @@ fn channels_are_the_columns_of_trace_for_the_middle_ray() {
         }
         assert_eq!((channel("Samples"), channel("Variance.G")), (1.0, 0.0));
     }
-    assert!((200..600).contains(&hits), "{hits} hits");
+    assert!((100..600).contains(&hits), "{hits} hits");
     // One hash for each path: the root, and two rods.
     assert_eq!(paths.len(), 3, "{paths:?}");
 }
@@ -287,7 +287,7 @@ fn error_that_is_reached_is_in_the_json_of_every_way_to_render() {
     assert!(error > 0.0 && error < 0.2, "{error}");
     let samples = whole["samples"].as_u64().expect("a number");
     assert!(
-        samples >= 32 * 24 * 8 && samples < 32 * 24 * 16384,
+        (32 * 24 * 8..32 * 24 * 16384).contains(&samples),
         "{samples}"
     );
     assert_eq!(reached(&format!("{line} --workers 2")), whole);

@@ -1,10 +1,8 @@
 //! What a picture's file has beside its colors.
 
 use std::io;
-use std::path::Path;
 
-use super::{Format, OutputError};
-use crate::Display;
+use crate::{Display, Film};
 
 /// A number of each pixel beside its color.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,16 +49,10 @@ impl Contents {
         channels.position(|channel| *channel == Channel::OPACITY)
     }
 
-    /// Checks that a file of the format that the path names can have them.
-    pub(super) fn check(&self, path: &Path, format: Format) -> Result<(), OutputError> {
-        let channels = self.channels.iter();
-        let other = channels
-            .filter(|channel| **channel != Channel::OPACITY)
-            .count();
-        if format == Format::Png && other > 0 {
-            return Err(OutputError::Channels { path: path.into() });
-        }
-        Ok(())
+    /// Whether there are channels that a PNG cannot have.
+    pub(super) fn need_exr(&self) -> bool {
+        let mut channels = self.channels.iter();
+        channels.any(|channel| *channel != Channel::OPACITY)
     }
 }
 
@@ -86,3 +78,16 @@ impl Band {
 pub trait Bands: FnMut(&mut Band) -> io::Result<()> {}
 
 impl<F: FnMut(&mut Band) -> io::Result<()>> Bands for F {}
+
+/// Rows of a film that are written at a time: those of a block of an EXR.
+const ROWS: usize = 64;
+
+/// The rows of a film.
+pub(super) fn bands(film: &Film) -> impl Bands {
+    let mut rest = film.pixels().chunks(film.width() as usize * ROWS);
+    move |band: &mut Band| {
+        band.colors
+            .extend_from_slice(rest.next().unwrap_or_default());
+        Ok(())
+    }
+}

@@ -10,7 +10,7 @@ use exr::error::{Error, UnitResult};
 use exr::meta::attribute::{AttributeValue, ChannelDescription, SampleType, Text};
 use exr::meta::header::{Header, LayerAttributes};
 
-use super::{Band, Bands, Contents, Numbers};
+use super::contents::{Band, Bands, Contents, Numbers};
 
 /// The attribute with the estimated error. There may be no second attribute beside it: the
 /// encoder writes them in any order.

@@ -70,6 +70,14 @@ impl Format {
     }
 }
 
+/// The format of a picture with these contents.
+fn format_of(path: &Path, contents: &Contents) -> Result<Format, OutputError> {
+    match Format::of(path)? {
+        Format::Png if contents.need_exr() => Err(OutputError::Channels { path: path.into() }),
+        format => Ok(format),
+    }
+}
+
 /// A file that a picture will replace or create, see [`NewFile`].
 #[derive(Debug)]
 pub struct Output {
@@ -87,7 +95,7 @@ impl Output {
     /// If the extension is unknown, its format cannot have the contents, or for those of
     /// [`NewFile::check`].
     pub fn check(path: &Path, contents: &Contents) -> Result<(), OutputError> {
-        contents.check(path, Format::of(path)?)?;
+        format_of(path, contents)?;
         Ok(NewFile::check(path)?)
     }
 
@@ -97,8 +105,7 @@ impl Output {
     /// If the extension is unknown, its format cannot have the contents, or for those of
     /// [`NewFile::create`].
     pub fn create(path: &Path, contents: Contents) -> Result<Self, OutputError> {
-        let format = Format::of(path)?;
-        contents.check(path, format)?;
+        let format = format_of(path, &contents)?;
         Ok(Self {
             path: path.into(),
             format,
@@ -122,7 +129,7 @@ impl Output {
     pub fn write(self, film: &Film) -> Result<(), OutputError> {
         let channels = &self.contents.channels;
         assert!(channels.is_empty(), "a film does not have {channels:?}");
-        self.write_bands((film.width(), film.height()), film.bands())
+        self.write_bands((film.width(), film.height()), contents::bands(film))
     }
 
     /// Writes a picture of `width` by `height` pixels, at least one, whose rows come in bands,

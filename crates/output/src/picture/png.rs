@@ -5,7 +5,7 @@ use std::io::{self, Cursor, Write};
 use image::{ImageBuffer, ImageError, ImageFormat, Rgba};
 use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter, StreamWriter};
 
-use super::{Band, Bands, Contents};
+use super::contents::{Band, Bands, Contents, bands};
 use crate::Film;
 
 /// The keyword of the text with the estimated error.
@@ -37,7 +37,7 @@ pub fn png_bytes(width: u32, height: u32, pixels: &[[u8; 4]]) -> Result<Vec<u8>,
 pub fn film_png_bytes(film: &Film) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let size = (film.width(), film.height());
-    write_bands(&mut bytes, size, &Contents::default(), film.bands())?;
+    write_bands(&mut bytes, size, &Contents::default(), bands(film))?;
     Ok(bytes)
 }
 
@@ -46,7 +46,7 @@ pub(super) fn write_bands(
     target: impl Write,
     (width, height): (u32, u32),
     contents: &Contents,
-    mut bands: impl Bands,
+    mut next: impl Bands,
 ) -> io::Result<()> {
     let opacity = contents.opacity();
     let mut encoder = Encoder::new(target, width, height);
@@ -73,7 +73,7 @@ pub(super) fn write_bands(
         let mut band = Band::default();
         while missing > 0 {
             band.clear();
-            bands(&mut band)?;
+            next(&mut band)?;
             rows.write(&band, width as usize)?;
             missing = missing.saturating_sub(band.colors.len() as u64);
         }

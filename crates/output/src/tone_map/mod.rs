@@ -72,7 +72,13 @@ const GREATEST: f64 = 1e30;
 
 /// The color with values from 0 to [`GREATEST`]; NaN becomes 0.
 fn non_negative(color: [f64; 3]) -> [f64; 3] {
-    color.map(|value| value.max(0.0).min(GREATEST))
+    color.map(|value| {
+        if value > 0.0 {
+            value.min(GREATEST)
+        } else {
+            0.0
+        }
+    })
 }
 
 #[cfg(test)]

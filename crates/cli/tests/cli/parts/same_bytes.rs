@@ -31,6 +31,30 @@ fn picture_merged_from_parts_has_the_bytes_of_one_process() {
     }
 }
 
+/// The legend has an automatic range, which is known only after the scene was loaded.
+#[test]
+fn picture_with_a_legend_merged_from_parts_has_the_bytes_of_one_process() {
+    let folder = scene();
+    let folder = folder.path();
+    run(folder, "render scene.toml -o plain.png -q");
+    let text = fs::read_to_string(folder.join("scene.toml")).expect("the scene file");
+    let table = "[[prototype.cylinder_table]]";
+    let text = text.replace(table, &format!("{table}\nmaterial = \"m\""));
+    let legend =
+        "[[material]]\nname = \"m\"\ncolor = { column = \"r\" }\n[legend]\nmaterial = \"m\"\n";
+    fs::write(folder.join("scene.toml"), legend.to_owned() + &text).expect("a scene file");
+    make_parts(folder, "render scene.toml", 3);
+    for picture in ["whole.png", "whole.exr"] {
+        run(folder, &format!("render scene.toml -o {picture} -q"));
+        run(folder, &format!("merge parts -o merged-{picture} -q"));
+        assert!(
+            bytes(folder, picture) == bytes(folder, &format!("merged-{picture}")),
+            "{picture}"
+        );
+    }
+    assert!(bytes(folder, "plain.png") != bytes(folder, "whole.png"));
+}
+
 /// Rays of every kind of line end, with comments and blank lines between them.
 fn rays() -> String {
     let mut text = String::from("# rays\nox,oy,oz,dx,dy,dz,note\n");
