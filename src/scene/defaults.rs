@@ -50,6 +50,7 @@ impl Scene {
             render: RENDER,
             sun: None,
             sky: None,
+            clear_sky: None,
             environment: None,
             lights: Vec::new(),
             legend: None,

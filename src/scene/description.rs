@@ -5,7 +5,7 @@ use super::background::Background;
 use super::colors::{PlacementValues, ValueList};
 use super::environment::Environment;
 use super::legend::Legend;
-use super::light::{Light, Sky, Sun};
+use super::light::{ClearSky, Light, Sky, Sun};
 use super::material::{Color, Material};
 use super::origins::Origins;
 use super::record::Records;
@@ -31,6 +31,8 @@ pub struct Scene {
     pub sun: Option<Sun>,
     /// The sky, if any.
     pub sky: Option<Sky>,
+    /// The clear sky, if any; a scene with one has no other sky.
+    pub clear_sky: Option<ClearSky>,
     /// The light from infinitely far away as a picture, if any; a scene with one has no sky.
     pub environment: Option<Environment>,
     /// The lights with a place, which integrator `path` sees.

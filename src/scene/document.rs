@@ -149,7 +149,11 @@ impl Document {
             && self.point_light.is_empty()
             && self.sphere_light.is_empty()
             && self.rectangle_light.is_empty()
-            && self.environment.is_none();
+            && self.environment.is_none()
+            && !self
+                .sky
+                .as_ref()
+                .is_some_and(|Keys(sky)| sky.model.is_some());
         match is_plain {
             true => defaults::RENDER.integrator,
             false => Integrator::Path,
@@ -230,6 +234,9 @@ pub(super) struct SunKeys {
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SkyKeys {
+    pub model: Option<Spanned<String>>,
+    pub turbidity: Option<Spanned<Number>>,
+    pub ground: Option<Triple>,
     pub color: Option<Triple>,
     pub strength: Option<Spanned<Number>>,
 }

@@ -29,6 +29,19 @@ pub struct Sky {
     pub strength: f64,
 }
 
+/// The sky on a clear day, brighter around the sun and towards the horizon.
+///
+/// Its sun is that of the scene, which must not be below the horizon, the x-y plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClearSky {
+    /// How hazy the air is, from 2 (clear) to 10 (hazy).
+    pub turbidity: f64,
+    /// The reflectance of the ground below the horizon, linear RGB, each component in [0, 1].
+    pub ground: DVec3,
+    /// Factor on the radiance of sky and ground; 0 or greater.
+    pub strength: f64,
+}
+
 /// A light with a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {

@@ -98,6 +98,7 @@ pub(super) fn lower(
         render: render(source, &keys(document.render), integrator)?,
         sun: lights.sun,
         sky: lights.sky,
+        clear_sky: lights.clear_sky,
         environment: environment.transpose()?,
         lights: placed_lights,
         background: background(source, document.background.as_ref())?,

@@ -6,7 +6,7 @@
 //! 2. The entries are turned into solids, placements and settings, one kind in each
 //!    file: `solids` with their `pose`, `set_operations`, the `formats` of files,
 //!    `placing`, `scatter`, `camera`, `materials` with `material_kinds` and `colors`,
-//!    `placed_lights`, `environment_file` and `settings`. Rows of tables are streamed;
+//!    `placed_lights`, `environment_file`, `clear_sky` and `settings`. Rows of tables are streamed;
 //!    `named_table` opens the tables and `table` reads them. `solid_collector` collects
 //!    and numbers the solids of a prototype.
 //! 3. `graph` checks how prototypes place each other.
@@ -23,6 +23,7 @@
 mod aimed_camera;
 mod background;
 mod camera;
+mod clear_sky;
 mod colors;
 mod contents;
 mod cylinder_list;
@@ -88,7 +89,7 @@ pub use error::{SceneError, Statement};
 pub use formats::{SOLID_FORMATS, SolidFormatInfo, beams_of_model, check_swc};
 pub use hit_table::{GivenHit, GivenHits};
 pub use legend::{Corner, Legend};
-pub use light::{Light, LightShape, Sky, Sun};
+pub use light::{ClearSky, Light, LightShape, Sky, Sun};
 pub use limits::*;
 pub use material::{Color, Material, MaterialKind};
 pub use material_kinds::MaterialKindError;

@@ -3,11 +3,12 @@
 use glam::DVec3;
 use toml::Spanned;
 
+use super::clear_sky::clear_sky;
 use super::defaults;
 use super::description::{Film, Integrator, RenderSettings};
 use super::document::{FilmKeys, RenderKeys, SkyKeys, SunKeys};
 use super::error::SceneError;
-use super::light::{Sky, Sun};
+use super::light::{ClearSky, Sky, Sun};
 use super::limits::{GREATEST_PIXELS, GREATEST_SAMPLES};
 use super::source::Source;
 use super::values::{Number, Triple, Whole, vector};
@@ -33,6 +34,7 @@ const DEFAULT_SKY: Sky = Sky {
 pub(super) struct Lights {
     pub sun: Option<Sun>,
     pub sky: Option<Sky>,
+    pub clear_sky: Option<ClearSky>,
 }
 
 /// The lights of the scene file. The renderer chooses lights for a scene without any.
@@ -41,6 +43,23 @@ pub(super) fn lights(
     sun: Option<&SunKeys>,
     sky_keys: Option<&SkyKeys>,
 ) -> Result<Lights, SceneError> {
+    let clear_sky = sky_keys.map(|keys| clear_sky(source, keys));
+    let clear_sky = clear_sky.transpose()?.flatten();
+    let default = SunKeys::default();
+    // A clear sky has a sun.
+    let sun = sun.or(clear_sky.as_ref().map(|_| &default));
+    let sun = sun.map(|keys| self::sun(source, keys, clear_sky.as_ref()));
+    let sun = sun.transpose()?;
+    if let (Some(sun), Some(_)) = (sun, clear_sky)
+        && sun.direction.z < 0.0
+        && let Some(model) = sky_keys.and_then(|keys| keys.model.as_ref())
+    {
+        return Err(source.error_with_help(
+            model.span(),
+            "the sun is below the horizon: the model of the clear sky is of the day",
+            "state an elevation_degrees of [sun] from 0 to 90",
+        ));
+    }
     let sky = |keys: &SkyKeys| {
         Ok(Sky {
             color: color(source, keys.color.as_ref(), DEFAULT_SKY.color)?,
@@ -48,12 +67,17 @@ pub(super) fn lights(
         })
     };
     Ok(Lights {
-        sun: sun.map(|keys| self::sun(source, keys)).transpose()?,
-        sky: sky_keys.map(sky).transpose()?,
+        sun,
+        sky: sky_keys
+            .filter(|_| clear_sky.is_none())
+            .map(sky)
+            .transpose()?,
+        clear_sky,
     })
 }
 
-fn sun(source: &Source, keys: &SunKeys) -> Result<Sun, SceneError> {
+/// The sun; under a clear sky its color and strength follow from that by default.
+fn sun(source: &Source, keys: &SunKeys, clear: Option<&ClearSky>) -> Result<Sun, SceneError> {
     let direction = match &keys.direction {
         Some(direction) => {
             if keys.elevation_degrees.is_some() || keys.azimuth_degrees.is_some() {
@@ -85,10 +109,18 @@ fn sun(source: &Source, keys: &SunKeys) -> Result<Sun, SceneError> {
             DVec3::new(level * x, level * y, up)
         }
     };
+    let (default_color, default_strength) = match clear {
+        None => (DEFAULT_SUN_COLOR, DEFAULT_SUN_STRENGTH),
+        Some(sky) => {
+            let irradiance = sky.sun_irradiance(direction);
+            let greatest = irradiance.max_element();
+            (irradiance / greatest.max(f64::MIN_POSITIVE), greatest)
+        }
+    };
     Ok(Sun {
         direction,
-        color: color(source, keys.color.as_ref(), DEFAULT_SUN_COLOR)?,
-        strength: strength(source, keys.strength.as_ref(), DEFAULT_SUN_STRENGTH)?,
+        color: color(source, keys.color.as_ref(), default_color)?,
+        strength: strength(source, keys.strength.as_ref(), default_strength)?,
         angle_degrees: angle_degrees(source, keys.angle_degrees.as_ref())?,
     })
 }

@@ -158,3 +158,31 @@ fn panorama_is_a_type_of_camera() {
     let scene = scene(&format!("{SOLID}[camera]\ntype = \"panorama\"\n"));
     assert_eq!(scene.camera.projection, Projection::Panorama);
 }
+
+#[test]
+fn clear_sky_has_the_sun_that_belongs_to_it() {
+    let clear = scene(&format!("{SOLID}[sky]\nmodel = \"clear\"\n"));
+    let sky = clear.clear_sky.expect("a clear sky");
+    assert_eq!((sky.turbidity, sky.strength), (3.0, 1.0));
+    assert_eq!(sky.ground, DVec3::splat(0.2));
+    assert_eq!(clear.sky, None);
+    assert_eq!(clear.render.integrator, Integrator::Path);
+    let sun = clear.sun.expect("a sun");
+    let expected = sky.sun_irradiance(sun.direction);
+    assert!((sun.color * sun.strength - expected).length() < 1e-14);
+    assert!((2.0..4.0).contains(&sun.strength), "{}", sun.strength);
+
+    let stated = scene(&format!(
+        "{SOLID}[sun]\nstrength = 0\nelevation_degrees = 10\n\
+         [sky]\nmodel = \"clear\"\nturbidity = 6\nstrength = 2\nground = [0, 0.5, 1]\n"
+    ));
+    let sky = stated.clear_sky.expect("a clear sky");
+    assert_eq!((sky.turbidity, sky.strength), (6.0, 2.0));
+    assert_eq!(sky.ground, DVec3::new(0.0, 0.5, 1.0));
+    let sun = stated.sun.expect("a sun");
+    assert_eq!(sun.strength, 0.0);
+    assert!(sun.color.x == 1.0 && sun.color.z < 0.5, "{}", sun.color);
+
+    let constant = scene(&format!("{SOLID}[sky]\nmodel = \"constant\"\n"));
+    assert!(constant.sky.is_some() && constant.clear_sky.is_none() && constant.sun.is_none());
+}

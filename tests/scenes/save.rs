@@ -12,9 +12,9 @@ use std::sync::Arc;
 
 use cyltrace::math::{Bounds, Orientation, Random, Ray, power_of_two};
 use cyltrace::scene::{
-    Background, Camera, Environment, Film, Frame, Integrator, Lens, Light, LightShape, Material,
-    MaterialIndex, MaterialKind, Projection, Prototype, RenderSettings, Scene, Sky, SolidRecord,
-    Sun, load, save,
+    Background, Camera, ClearSky, Environment, Film, Frame, Integrator, Lens, Light, LightShape,
+    Material, MaterialIndex, MaterialKind, Projection, Prototype, RenderSettings, Scene, Sky,
+    SolidRecord, Sun, load, save,
 };
 use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 use cyltrace::tracer::{Options, Tracer};
@@ -292,6 +292,24 @@ fn lights_with_a_place_saved_are_the_same() {
         })
         .collect();
     assert_same(&scene, &saved(&scene), "lights");
+}
+
+#[test]
+fn clear_skies_saved_are_the_same() {
+    let mut scene = sample("minimal.toml");
+    scene.sky = None;
+    scene.clear_sky = Some(ClearSky {
+        turbidity: 2.0 + 0.1,
+        ground: DVec3::new(0.0, 1.0, 0.3),
+        strength: 0.7,
+    });
+    scene.sun = Some(Sun {
+        direction: DVec3::Z,
+        color: DVec3::ONE,
+        strength: 0.0,
+        angle_degrees: 0.0,
+    });
+    assert_same(&scene, &saved(&scene), "clear sky");
 }
 
 #[test]

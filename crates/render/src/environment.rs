@@ -32,8 +32,10 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use cyltrace::scene::Environment;
+use cyltrace::scene::{Environment, Scene};
 use glam::DVec3;
+
+use super::clear_sky::ClearSkyModel;
 
 /// The share of each component in luminance.
 const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
@@ -68,6 +70,16 @@ struct Place {
 }
 
 impl EnvironmentMap {
+    /// The light from all directions of a scene: its environment, or its clear sky as a table.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Option<Self> {
+        let clear = scene.clear_sky.map(|sky| {
+            let sun = scene.sun.map_or(DVec3::Z, |sun| sun.direction);
+            Self::new(&ClearSkyModel::new(&sky, sun).environment())
+        });
+        clear.or_else(|| scene.environment.as_ref().map(Self::new))
+    }
+
     /// Prepares an environment. It takes 8 bytes per pixel besides the pixels, which are shared.
     #[must_use]
     pub fn new(environment: &Environment) -> Self {

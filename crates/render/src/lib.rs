@@ -7,6 +7,7 @@
 
 mod bsdf;
 mod channels;
+mod clear_sky;
 mod colors;
 mod disk;
 mod environment;
@@ -27,6 +28,7 @@ use cyltrace_output::{Band, Bands, Film};
 use rayon::ThreadPool;
 
 pub use channels::{ChannelGroup, Channels, NO_ID};
+pub use clear_sky::ClearSkyModel;
 pub use cyltrace::scene::GREATEST_PIXELS;
 pub use environment::EnvironmentMap;
 pub use integrator::RayCounts;

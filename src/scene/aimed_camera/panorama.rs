@@ -45,7 +45,6 @@ impl AimedCamera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Bounds;
     use crate::scene::description::{Camera, Film, Frame, Projection};
 
     /// From the origin, looking east and downward, north to the left.

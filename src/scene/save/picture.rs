@@ -95,6 +95,13 @@ fn lights(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
         entry.vector("color", sky.color);
         entry.number("strength", sky.strength);
     }
+    if let Some(sky) = scene.clear_sky {
+        let mut entry = text.table("[sky]");
+        entry.text("model", "clear");
+        entry.number("turbidity", sky.turbidity);
+        entry.vector("ground", sky.ground);
+        entry.number("strength", sky.strength);
+    }
     for light in &scene.lights {
         placed_light(text, light);
     }

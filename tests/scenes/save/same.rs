@@ -14,6 +14,7 @@ pub fn assert_same(one: &Scene, other: &Scene, name: &str) {
     same(&one.film, &other.film, name);
     same(&one.render, &other.render, name);
     same(&one.sun, &other.sun, name);
+    same(&one.clear_sky, &other.clear_sky, name);
     same(&one.sky, &other.sky, name);
     let bits = |scene: &Scene| {
         let environment = scene.environment.as_ref()?;

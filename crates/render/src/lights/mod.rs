@@ -103,6 +103,7 @@ impl Lights {
         let is_light = |kind: &MaterialKind| matches!(kind, MaterialKind::Light { .. });
         let unlit = scene.sun.is_none()
             && scene.sky.is_none()
+            && scene.clear_sky.is_none()
             && scene.environment.is_none()
             && scene.lights.is_empty()
             && !scene.materials.iter().any(|one| is_light(&one.kind));
@@ -112,9 +113,9 @@ impl Lights {
             (scene.sun, scene.sky)
         };
         let radiance = sky.map(|sky| sky.color * sky.strength);
-        let environment = scene.environment.as_ref().map(EnvironmentMap::new);
-        let environment = environment.filter(|map| map.power() > 0.0);
-        let has_background = unlit || (scene.sky.is_none() && scene.environment.is_none());
+        let has_sky = scene.sky.is_some() || scene.clear_sky.is_some();
+        let has_background = unlit || !(has_sky || scene.environment.is_some());
+        let environment = EnvironmentMap::of(scene).filter(|map| map.power() > 0.0);
         let sun = sun.as_ref().and_then(SunLight::new);
         let shapes: Vec<_> = scene.lights.iter().filter_map(ShapeLight::new).collect();
         let emitters = Emitters::new(scene);

@@ -263,6 +263,29 @@ pub fn cases() -> Vec<Case> {
             &["scene.toml:5:1", "missing field `radius`"],
         ),
         with_solid(
+            "turbidity_of_a_constant_sky",
+            "[sky]\nturbidity = 3\n",
+            &[
+                "scene.toml:6:13",
+                "turbidity is for the clear sky",
+                "model =",
+            ],
+        ),
+        with_solid(
+            "color_of_a_clear_sky",
+            "[sky]\nmodel = \"clear\"\ncolor = [1, 1, 1]\n",
+            &["scene.toml:7:9", "color is for the constant sky"],
+        ),
+        with_solid(
+            "clear_sky_at_night",
+            "[sun]\nelevation_degrees = -5\n[sky]\nmodel = \"clear\"\n",
+            &[
+                "scene.toml:8:9",
+                "the sun is below the horizon",
+                "from 0 to 90",
+            ],
+        ),
+        with_solid(
             "environment_and_sky",
             "[sky]\n[environment]\nfile = \"x.exr\"\n",
             &["scene.toml:7:8", "[environment] excludes [sky]"],

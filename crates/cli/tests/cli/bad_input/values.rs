@@ -137,6 +137,20 @@ pub fn cases() -> Vec<Case> {
             &["scene.toml:6:12", "strength is -1", "not be negative"],
         ),
         with_solid(
+            "turbidity_too_small",
+            "[sky]\nmodel = \"clear\"\nturbidity = 1\n",
+            &[
+                "scene.toml:7:13",
+                "turbidity is 1",
+                "between 2 (clear) and 10",
+            ],
+        ),
+        with_solid(
+            "ground_above_one",
+            "[sky]\nmodel = \"clear\"\nground = [0, 2, 0]\n",
+            &["scene.toml:7:10", "ground is [0, 2, 0]", "in [0, 1]"],
+        ),
+        with_solid(
             "sky_color_negative",
             "[sky]\ncolor = [1, -1, 1]\n",
             &["scene.toml:6:9", "must not be negative"],
