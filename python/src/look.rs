@@ -1,6 +1,8 @@
-//! Materials and lights.
+//! Materials, lights, cameras and integrators.
 
-use cyltrace::scene::{Color, Light, LightShape, Material, MaterialKind};
+use cyltrace::scene::{
+    Camera, Color, Frame, Integrator, Lens, Light, LightShape, Material, MaterialKind, Projection,
+};
 use pyo3::prelude::*;
 
 use crate::arrays::value_error;
@@ -54,4 +56,49 @@ pub fn light(
         color: color.into(),
         strength,
     }
+}
+
+/// The viewpoint, which is automatic without a position and a point to look at.
+pub fn frame(position: Option<[f64; 3]>, look_at: Option<[f64; 3]>, up: [f64; 3]) -> Frame {
+    match (position, look_at) {
+        (Some(position), Some(look_at)) => Frame::LookAt {
+            position: position.into(),
+            look_at: look_at.into(),
+            up: up.into(),
+        },
+        _ => Frame::Auto,
+    }
+}
+
+/// The camera. `lens` is the aperture and the distance of what is sharp.
+pub fn camera(
+    frame: Frame,
+    orthographic: bool,
+    fov_degrees: f64,
+    height: Option<f64>,
+    lens: Option<(f64, Option<f64>)>,
+) -> Camera {
+    let projection = match orthographic {
+        true => Projection::Orthographic { height },
+        false => Projection::Perspective { fov_degrees },
+    };
+    Camera {
+        projection,
+        frame,
+        lens: lens.map(|(aperture, focus)| Lens { aperture, focus }),
+    }
+}
+
+/// The integrator of a name.
+///
+/// # Errors
+/// When there is none.
+pub fn integrator_of(name: &str) -> PyResult<Integrator> {
+    let mut all = Integrator::ALL.into_iter();
+    all.find(|one| one.name() == name).ok_or_else(|| {
+        let names = Integrator::ALL.map(Integrator::name).join(", ");
+        value_error(format!(
+            "integrator is \"{name}\": it must be one of {names}"
+        ))
+    })
 }

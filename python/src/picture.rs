@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::arrays::value_error;
-use crate::scene::integrator_of;
+use crate::look::integrator_of;
 use crate::tracer::PyTracer;
 use crate::work::{self, Work};
 

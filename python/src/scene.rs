@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use cyltrace::scene::{
-    Background, Camera, CylinderList, Frame, Integrator, Lens, MaterialIndex, MaterialKind,
-    Placement, Projection, Prototype, Records, SaveError, Scene, Sky, SolidRecord, Sun,
+    Background, CylinderList, Integrator, MaterialIndex, MaterialKind, Placement, Prototype,
+    Records, SaveError, Scene, Sky, SolidRecord, Sun,
 };
 use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 use cyltrace_output::NewFile;
@@ -348,24 +348,9 @@ impl PyScene {
         height: Option<f64>,
         lens: Option<(f64, Option<f64>)>,
     ) {
-        let projection = if orthographic {
-            Projection::Orthographic { height }
-        } else {
-            Projection::Perspective { fov_degrees }
-        };
-        let frame = match (position, look_at) {
-            (Some(position), Some(look_at)) => Frame::LookAt {
-                position: position.into(),
-                look_at: look_at.into(),
-                up: up.into(),
-            },
-            _ => Frame::Auto,
-        };
-        Arc::make_mut(&mut self.scene).camera = Camera {
-            projection,
-            frame,
-            lens: lens.map(|(aperture, focus)| Lens { aperture, focus }),
-        };
+        let frame = look::frame(position, look_at, up);
+        let camera = look::camera(frame, orthographic, fov_degrees, height, lens);
+        Arc::make_mut(&mut self.scene).camera = camera;
     }
 
     fn set_sun(
@@ -470,18 +455,4 @@ impl PyScene {
     fn skipped_rows(&self) -> u64 {
         self.scene.skipped_rows
     }
-}
-
-/// The integrator of a name.
-///
-/// # Errors
-/// When there is none.
-pub fn integrator_of(name: &str) -> PyResult<Integrator> {
-    let mut all = Integrator::ALL.into_iter();
-    all.find(|one| one.name() == name).ok_or_else(|| {
-        let names = Integrator::ALL.map(Integrator::name).join(", ");
-        value_error(format!(
-            "integrator is \"{name}\": it must be one of {names}"
-        ))
-    })
 }

@@ -10,8 +10,10 @@
 //! open tubes show their inside.
 
 mod direct;
+mod media;
 mod occlusion;
 mod path;
+mod vertex;
 
 use glam::{DVec2, DVec3};
 
