@@ -54,9 +54,11 @@ pub(super) struct Place<'a> {
     pub words: &'a mut [u32],
 }
 
-/// What the samples of some pixels sum up to.
+/// What the samples of some pixels sum up to, each of their sequences by itself. The sums of a
+/// pixel's sequences are next to each other.
 #[derive(Clone, Debug)]
 pub(super) struct Sums {
+    sequences: usize,
     colors: Vec<DVec3>,
     /// Sums of squares; empty unless the variance is wanted.
     squares: Vec<DVec3>,
@@ -65,48 +67,57 @@ pub(super) struct Sums {
 }
 
 impl Sums {
-    pub fn new(pixels: usize, channels: &Channels) -> Self {
-        let of = |is_wanted: bool| if is_wanted { pixels } else { 0 };
+    pub fn new(pixels: usize, sequences: usize, channels: &Channels) -> Self {
+        let all = pixels * sequences;
+        let of = |is_wanted: bool| if is_wanted { all } else { 0 };
         Self {
-            colors: vec![DVec3::ZERO; pixels],
+            sequences,
+            colors: vec![DVec3::ZERO; all],
             squares: vec![DVec3::ZERO; of(channels.has_variance())],
             hits: vec![0; of(channels.has_opacity())],
         }
     }
 
-    /// Adds a batch of samples, of which `pixel` says whose they are.
-    pub fn add(&mut self, batch: &mut Batch, pixel: impl Fn(usize) -> usize) {
+    /// Adds a batch of samples. `place` is the pixel of a sample by its number in the batch, times
+    /// the number of sequences, plus the sample's sequence.
+    pub fn add(&mut self, batch: &mut Batch, place: impl Fn(usize) -> usize) {
         if !self.hits.is_empty() {
             for sample in 0..batch.colors.len() {
                 let is_hit = batch.is_hit(sample);
-                self.hits[pixel(sample)] += u32::from(is_hit);
+                self.hits[place(sample)] += u32::from(is_hit);
                 if !is_hit {
                     batch.colors[sample] = DVec3::ZERO;
                 }
             }
         }
         for (sample, color) in batch.colors.iter().enumerate() {
-            self.colors[pixel(sample)] += *color;
+            self.colors[place(sample)] += *color;
         }
         if !self.squares.is_empty() {
             for (sample, color) in batch.colors.iter().enumerate() {
-                self.squares[pixel(sample)] += *color * *color;
+                self.squares[place(sample)] += *color * *color;
             }
         }
     }
 
-    /// The sum of a pixel's colors.
-    pub fn color(&self, pixel: usize) -> DVec3 {
-        self.colors[pixel]
+    /// The sums of a pixel's colors, of each sequence.
+    pub fn colors(&self, pixel: usize) -> &[DVec3] {
+        self.of(&self.colors, pixel)
+    }
+
+    /// What a list has of a pixel.
+    fn of<'a, T>(&self, list: &'a [T], pixel: usize) -> &'a [T] {
+        let start = pixel * self.sequences;
+        list.get(start..start + self.sequences).unwrap_or_default()
     }
 }
 
 /// Writes the pixels at the numbers `pixels` of `sums`, each with its column and row. `samples`
-/// is the number of samples of a pixel that are in all of `sums` together.
+/// is the number of samples of a pixel in all sequences together.
 pub(super) fn write(
     place: &mut Place,
     pixels: impl Iterator<Item = (usize, (u32, u32))>,
-    sums: &[&Sums],
+    sums: &Sums,
     samples: u32,
     channels: &Channels,
     view: &View,
@@ -117,15 +128,12 @@ pub(super) fn write(
     let hits = middle_hits(view, positions, channels, rays);
     let mut words = Vec::new();
     for (number, (pixel, (x, y))) in pixels.into_iter().enumerate() {
-        let all = |of: fn(&Sums) -> &[DVec3]| -> DVec3 {
-            sums.iter().filter_map(|sums| of(sums).get(pixel)).sum()
-        };
-        let sum = all(|sums| &sums.colors);
+        let sum: DVec3 = sums.colors(pixel).iter().sum();
         let mean = sum / f64::from(samples);
         let at = ((y - place.tile.y) * place.tile.width + (x - place.tile.x)) as usize;
         place.colors[at] = mean.as_vec3().to_array();
-        let covered: u32 = sums.iter().filter_map(|sums| sums.hits.get(pixel)).sum();
-        let squares = all(|sums| &sums.squares);
+        let covered: u32 = sums.of(&sums.hits, pixel).iter().sum();
+        let squares: DVec3 = sums.of(&sums.squares, pixel).iter().sum();
         let values = PixelValues {
             hit: hits.get(number).and_then(Option::as_ref),
             opacity: covered as f32 / samples as f32,

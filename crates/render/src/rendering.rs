@@ -52,7 +52,7 @@ pub(super) fn render(work: &Work, numbers: Range<u64>) -> Result<(Pixels, RayCou
 fn render_tile(work: &Work, place: &mut Place) -> Result<RayCounts, RenderError> {
     let settings = work.settings;
     let pixels = pixels(&place.tile, settings, 0);
-    let mut sums = Sums::new(pixels.len(), &settings.channels);
+    let mut sums = Sums::new(pixels.len(), 1, &settings.channels);
     let mut rays = RayCounts::default();
     // Samples of a pixel are neighbours, and those of its neighbours next to
     // them.
@@ -75,7 +75,7 @@ fn render_tile(work: &Work, place: &mut Place) -> Result<RayCounts, RenderError>
     write(
         place,
         positions,
-        &[&sums],
+        &sums,
         settings.spp,
         channels,
         work.view,

@@ -175,7 +175,7 @@ struct TileSamples<'a> {
     /// Column, row and half of each pixel.
     pixels: Vec<((u32, u32), usize)>,
     samplers: [Vec<PixelSampler>; SEQUENCES],
-    sums: [Sums; SEQUENCES],
+    sums: Sums,
     /// Samples of each sequence so far.
     taken: u32,
     /// What each half has come to, once it has stopped.
@@ -195,14 +195,14 @@ impl<'a> TileSamples<'a> {
         let halves = all[0]
             .iter()
             .map(|&(position, _)| (position, half(position)));
-        let sums = Sums::new(all[0].len(), &settings.channels);
+        let sums = Sums::new(all[0].len(), SEQUENCES, &settings.channels);
         Self {
             work,
             error,
             place,
             pixels: halves.collect(),
             samplers: all.map(|pixels| pixels.into_iter().map(|(_, sampler)| sampler).collect()),
-            sums: [sums.clone(), sums],
+            sums,
             taken: 0,
             stopped: [None, None],
             rays: RayCounts::default(),
@@ -218,19 +218,22 @@ impl<'a> TileSamples<'a> {
     fn advance(&mut self) -> Result<(), RenderError> {
         let most = (self.work.settings.spp / LEAST_SAMPLES).max(1);
         let end = next(self.taken).min(most);
-        for (samplers, sums) in self.samplers.iter().zip(&mut self.sums) {
-            let more = u64::from(end - self.taken);
-            let pixel = |number: u64| (number / more) as usize;
-            let sample = |number: u64| Sample {
-                pixel: self.pixels[pixel(number)].0,
-                sampler: samplers[pixel(number)],
+        let more = u64::from(end - self.taken);
+        // The samples of a pixel are neighbours, those of both sequences.
+        let place = |number: u64| (number / more) as usize;
+        let sample = |number: u64| {
+            let (pixel, sequence) = (place(number) / SEQUENCES, place(number) % SEQUENCES);
+            Sample {
+                pixel: self.pixels[pixel].0,
+                sampler: self.samplers[sequence][pixel],
                 number: self.taken + (number % more) as u32,
-            };
-            let count = self.pixels.len() as u64 * more;
-            trace(self.work, count, sample, &mut self.rays, |first, batch| {
-                sums.add(batch, |sample| pixel(first + sample as u64));
-            })?;
-        }
+            }
+        };
+        let count = (self.pixels.len() * SEQUENCES) as u64 * more;
+        let sums = &mut self.sums;
+        trace(self.work, count, sample, &mut self.rays, |first, batch| {
+            sums.add(batch, |sample| place(first + sample as u64));
+        })?;
         self.taken = end;
         let spreads = [0, 1].map(|half| self.spread(half));
         for half in [0, 1] {
@@ -257,13 +260,12 @@ impl<'a> TileSamples<'a> {
         let own = own.map(|(pixel, (position, _))| (pixel, *position));
         let samples = SEQUENCES as u32 * self.taken;
         let count = own.clone().count() as u64;
-        let [first, second] = &self.sums;
         let (view, channels) = (self.work.view, &self.work.settings.channels);
         let place = &mut self.place;
         write(
             place,
             own,
-            &[first, second],
+            &self.sums,
             samples,
             channels,
             view,
@@ -280,7 +282,8 @@ impl<'a> TileSamples<'a> {
         for (pixel, (_, of)) in self.pixels.iter().enumerate() {
             if *of == half {
                 let count = f64::from(self.taken);
-                let [first, second] = [0, 1].map(|of| self.sums[of].color(pixel) / count);
+                let sums = self.sums.colors(pixel);
+                let (first, second) = (sums[0] / count, sums[1] / count);
                 let variance = (first - second).length_squared() / 12.0;
                 spread.pixels += 1.0;
                 spread.values += (first + second).element_sum() / 6.0;
