@@ -25,7 +25,7 @@ use glam::DVec3;
 use super::document::SkyKeys;
 use super::error::SceneError;
 use super::light::ClearSky;
-use super::settings::{color, strength};
+use super::light_values::{color, strength};
 use super::source::Source;
 
 /// Turbidities that the model of the sky is made for.

@@ -9,13 +9,11 @@ use super::background::BackgroundKey;
 use super::colors::ValueKeys;
 use super::defaults;
 use super::description::Integrator;
-use super::environment_file::EnvironmentKeys;
 use super::formats::{
     BeamLatticeKeys, CylinderTableKeys, SolidFile, SwcKeys, for_each_solid_format,
 };
 use super::legend::LegendKeys;
 use super::materials::MaterialKeys;
-use super::placed_lights::{PointLightKeys, RectangleLightKeys, SphereLightKeys};
 use super::set_operations::{CompositionKeys, Operation};
 use super::solid_keys::RotationKeys;
 use super::solids::SceneSolid;
@@ -150,10 +148,10 @@ impl Document {
             && self.sphere_light.is_empty()
             && self.rectangle_light.is_empty()
             && self.environment.is_none()
-            && !self
+            && self
                 .sky
                 .as_ref()
-                .is_some_and(|Keys(sky)| sky.model.is_some());
+                .is_none_or(|Keys(sky)| sky.model.is_none());
         match is_plain {
             true => defaults::RENDER.integrator,
             false => Integrator::Path,
@@ -237,6 +235,44 @@ pub(super) struct SkyKeys {
     pub model: Option<Spanned<String>>,
     pub turbidity: Option<Spanned<Number>>,
     pub ground: Option<Triple>,
+    pub color: Option<Triple>,
+    pub strength: Option<Spanned<Number>>,
+}
+
+/// `[environment]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct EnvironmentKeys {
+    pub file: Spanned<String>,
+    pub strength: Option<Spanned<Number>>,
+    pub rotate_degrees: Option<Number>,
+}
+
+/// `[[point_light]]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PointLightKeys {
+    pub position: Triple,
+    pub color: Option<Triple>,
+    pub strength: Option<Spanned<Number>>,
+}
+
+/// `[[sphere_light]]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SphereLightKeys {
+    pub center: Triple,
+    pub radius: Spanned<Number>,
+    pub color: Option<Triple>,
+    pub strength: Option<Spanned<Number>>,
+}
+
+/// `[[rectangle_light]]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RectangleLightKeys {
+    pub corner: Triple,
+    pub edges: Spanned<List<Triple, 2>>,
     pub color: Option<Triple>,
     pub strength: Option<Spanned<Number>>,
 }

@@ -5,29 +5,18 @@ use std::io::{BufReader, Cursor};
 use std::path::Path;
 
 use image::{ImageFormat, ImageReader};
-use serde::Deserialize;
-use toml::Spanned;
 
+use super::document::EnvironmentKeys;
 use super::environment::Environment;
 use super::error::SceneError;
+use super::light_values::strength;
 use super::limits::{GREATEST_PIXELS, MOST_PICTURE_BYTES};
 use super::names::{printable, quoted};
 use super::regular_file::read_regular;
-use super::settings::strength;
 use super::source::Source;
-use super::values::Number;
 
 /// The bytes that a pixel takes while a picture is decoded (four f32) and converted (three).
 const DECODING_BYTES: u64 = 28;
-
-/// `[environment]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct EnvironmentKeys {
-    pub file: Spanned<String>,
-    pub strength: Option<Spanned<Number>>,
-    pub rotate_degrees: Option<Number>,
-}
 
 /// The environment with the pixels of its file.
 pub(super) fn environment(

@@ -6,7 +6,8 @@
 //! 2. The entries are turned into solids, placements and settings, one kind in each
 //!    file: `solids` with their `pose`, `set_operations`, the `formats` of files,
 //!    `placing`, `scatter`, `camera`, `materials` with `material_kinds` and `colors`,
-//!    `placed_lights`, `environment_file`, `clear_sky` and `settings`. Rows of tables are streamed;
+//!    `placed_lights`, `environment_file`, `clear_sky` and `settings`, with `light_values`. Rows
+//!    of tables are streamed;
 //!    `named_table` opens the tables and `table` reads them. `solid_collector` collects
 //!    and numbers the solids of a prototype.
 //! 3. `graph` checks how prototypes place each other.
@@ -39,6 +40,7 @@ mod hit_table;
 mod instance_rows;
 mod legend;
 mod light;
+mod light_values;
 mod limits;
 mod lines;
 mod load;

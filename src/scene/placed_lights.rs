@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use serde::Deserialize;
 use toml::Spanned;
 
+use super::document::{PointLightKeys, RectangleLightKeys, SphereLightKeys};
 use super::error::SceneError;
 use super::light::{Light, LightShape};
-use super::settings::{color, strength};
+use super::light_values::{color, strength};
 use super::source::Source;
 use super::values::{Keys, List, Number, Triple, vector};
 use crate::math::unit;
@@ -23,35 +23,6 @@ const DEFAULT_STRENGTH: f64 = 1.0;
 
 /// Two edges with their places.
 type Edges = Spanned<List<Triple, 2>>;
-
-/// `[[point_light]]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct PointLightKeys {
-    pub position: Triple,
-    pub color: Option<Triple>,
-    pub strength: Option<Spanned<Number>>,
-}
-
-/// `[[sphere_light]]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct SphereLightKeys {
-    pub center: Triple,
-    pub radius: Spanned<Number>,
-    pub color: Option<Triple>,
-    pub strength: Option<Spanned<Number>>,
-}
-
-/// `[[rectangle_light]]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RectangleLightKeys {
-    pub corner: Triple,
-    pub edges: Edges,
-    pub color: Option<Triple>,
-    pub strength: Option<Spanned<Number>>,
-}
 
 /// The lights of the three lists, one list after the other.
 pub(super) fn placed_lights(

@@ -9,9 +9,10 @@ use super::description::{Film, Integrator, RenderSettings};
 use super::document::{FilmKeys, RenderKeys, SkyKeys, SunKeys};
 use super::error::SceneError;
 use super::light::{ClearSky, Sky, Sun};
+use super::light_values::{color, strength};
 use super::limits::{GREATEST_PIXELS, GREATEST_SAMPLES};
 use super::source::Source;
-use super::values::{Number, Triple, Whole, vector};
+use super::values::{Number, Whole, vector};
 use crate::math::{power_of_two, sin_cos_degrees, unit};
 
 /// Most rays of a path. Russian roulette ends nearly all paths long before.
@@ -228,44 +229,6 @@ fn count(
             key.span(),
             format!("{name} is {value}: it must be between 1 and {most}"),
         )),
-    }
-}
-
-/// The linear RGB of a light, which must not be negative.
-pub(super) fn color(
-    source: &Source,
-    key: Option<&Triple>,
-    default: DVec3,
-) -> Result<DVec3, SceneError> {
-    let Some(key) = key else {
-        return Ok(default);
-    };
-    let color = vector(key);
-    if color.cmplt(DVec3::ZERO).any() {
-        return Err(source.error(
-            key.span(),
-            format!(
-                "the color is [{}, {}, {}]: a light's components must not be negative",
-                color.x, color.y, color.z
-            ),
-        ));
-    }
-    Ok(color)
-}
-
-/// The factor on a light's color, which must not be negative.
-pub(super) fn strength(
-    source: &Source,
-    key: Option<&Spanned<Number>>,
-    default: f64,
-) -> Result<f64, SceneError> {
-    let strength = number(key, default);
-    match key {
-        Some(key) if strength < 0.0 => Err(source.error(
-            key.span(),
-            format!("strength is {strength}: it must not be negative"),
-        )),
-        _ => Ok(strength),
     }
 }
 

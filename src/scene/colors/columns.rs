@@ -6,8 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use toml::Spanned;
 
 use super::data::automatic_range;
-use super::key_types::ColorKey;
-use super::keys::ColorKeys;
+use super::key_types::{ColorKey, ColorKeys};
 use crate::scene::error::SceneError;
 use crate::scene::material::{Color, Material};
 use crate::scene::named_table::NamedTable;

@@ -5,8 +5,29 @@ use std::fmt;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-use super::keys::TableKeys;
-use crate::scene::values::{List, Number, Whole};
+use toml::Spanned;
+
+use crate::scene::values::{List, Number, Triple, Whole};
+
+/// The value of the key `color`, with its place.
+pub(in crate::scene) type ColorKeys = Spanned<ColorKey>;
+
+/// The keys of a color that is a table: exactly one of the first four, and others that
+/// belong to it.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct TableKeys {
+    pub(super) checker: Option<List<Triple, 2>>,
+    pub(super) stripes: Option<Spanned<Vec<Triple>>>,
+    pub(super) image: Option<Spanned<String>>,
+    pub(super) column: Option<Spanned<String>>,
+    pub(super) count: Option<Spanned<CountKey>>,
+    pub(super) along: Option<Spanned<String>>,
+    pub(super) map: Option<Spanned<String>>,
+    pub(super) range: Option<Spanned<RangeKey>>,
+    pub(super) labels: Option<Spanned<Vec<String>>>,
+    pub(super) missing: Option<Triple>,
+}
 
 /// The value of the key `color`.
 pub(in crate::scene) enum ColorKey {

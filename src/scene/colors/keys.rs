@@ -8,7 +8,7 @@ use toml::Spanned;
 
 use super::columns::check_name;
 use super::data::{DataColor, MISSING, automatic_range};
-use super::key_types::{ColorKey, CountKey, RangeKey};
+use super::key_types::{ColorKey, ColorKeys, CountKey, RangeKey, TableKeys};
 use super::map::ColorMap;
 use super::pattern::{Along, Checker, Stripes};
 use super::texture::{Texture, TextureError};
@@ -17,26 +17,6 @@ use crate::scene::material::Color;
 use crate::scene::names::{quoted, suggestion};
 use crate::scene::source::Source;
 use crate::scene::values::{List, Triple, vector};
-
-/// The value of the key `color`, with its place.
-pub(in crate::scene) type ColorKeys = Spanned<ColorKey>;
-
-/// The keys of a color that is a table: exactly one of the first four, and others that
-/// belong to it.
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(in crate::scene) struct TableKeys {
-    checker: Option<List<Triple, 2>>,
-    stripes: Option<Spanned<Vec<Triple>>>,
-    image: Option<Spanned<String>>,
-    column: Option<Spanned<String>>,
-    count: Option<Spanned<CountKey>>,
-    along: Option<Spanned<String>>,
-    map: Option<Spanned<String>>,
-    range: Option<Spanned<RangeKey>>,
-    labels: Option<Spanned<Vec<String>>>,
-    missing: Option<Triple>,
-}
 
 /// What a table describes.
 enum Kind<'k> {

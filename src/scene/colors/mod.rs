@@ -18,7 +18,8 @@ mod value_list;
 
 pub(super) use columns::{DataColumn, DataColumns, Found, ValueKeys, stored, union};
 pub use data::DataColor;
-pub(super) use keys::{ColorKeys, color, reflectance};
+pub(super) use key_types::ColorKeys;
+pub(super) use keys::{color, reflectance};
 pub use map::ColorMap;
 pub use pattern::{Along, Checker, Stripes};
 pub(super) use texture::header_bytes;

@@ -128,12 +128,12 @@ fn samples_follow_the_density() {
                 if expected < 10.0 {
                     few = (few.0 + count, few.1 + expected.max(0.0));
                 } else {
-                    statistic += (count - expected).powi(2) / expected;
+                    statistic += (count - expected) * (count - expected) / expected;
                     cells += 1.0;
                 }
             }
             if few.1 > 10.0 {
-                statistic += (few.0 - few.1).powi(2) / few.1;
+                statistic += (few.0 - few.1) * (few.0 - few.1) / few.1;
                 cells += 1.0;
             } else {
                 assert!(few.0 < 40.0, "{name} at {cosine}: {few:?} of few");
@@ -224,7 +224,12 @@ fn furnace(bsdf: &dyn Bsdf, local: &Local, outgoing: DVec3, is_far_scaled: bool)
         let weight = sampled.map_or(0.0, |sampled| {
             // In a uniform field the radiance is proportional to the square of the index.
             let far = sampled.incoming.z < 0.0 && is_far_scaled;
-            sampled.weight.x * if far { local.relative_ior.powi(2) } else { 1.0 }
+            sampled.weight.x
+                * if far {
+                    local.relative_ior * local.relative_ior
+                } else {
+                    1.0
+                }
         });
         sum += weight;
         squares += weight * weight;

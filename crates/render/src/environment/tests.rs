@@ -1,3 +1,5 @@
+//! Directions drawn from environments, against closed forms and sums over all directions.
+
 use super::*;
 use cyltrace::math::{Bounds, Random};
 use cyltrace::scene::{AimedCamera, Camera, Film, Frame, Projection};
@@ -36,7 +38,8 @@ fn random_map(random: &mut Random) -> EnvironmentMap {
 
 fn direction(z: f64, azimuth: f64) -> DVec3 {
     let radius = (1.0 - z * z).sqrt();
-    DVec3::new(radius * azimuth.cos(), radius * azimuth.sin(), z)
+    let (sine, cosine) = libm::sincos(azimuth);
+    DVec3::new(radius * cosine, radius * sine, z)
 }
 
 /// The integral over directions by the midpoints of `2 n²` boxes of equal solid angle.

@@ -13,6 +13,7 @@ mod direct;
 mod media;
 mod occlusion;
 mod path;
+mod segment;
 mod vertex;
 
 use glam::{DVec2, DVec3};

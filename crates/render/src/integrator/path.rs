@@ -10,7 +10,8 @@ use cyltrace::math::Ray;
 use cyltrace::tracer::{HitFields, PartialHit};
 use glam::DVec3;
 
-use super::vertex::{PathNumbers, weight};
+use super::segment::Path;
+use super::vertex::PathNumbers;
 use super::{Batch, RayCounts, Sample, View, spawn};
 use crate::lights::Arriving;
 
@@ -34,41 +35,12 @@ impl Paths {
     }
 }
 
-/// A path up to a ray.
-#[derive(Clone, Copy)]
-pub(super) struct Path {
-    /// The position in the batch.
-    pub sample: usize,
-    pub ray: Ray,
-    pub throughput: DVec3,
-    /// Where the ray's direction was chosen, and its density; `None` if no light could have been
-    /// sampled in its place.
-    pub point: DVec3,
-    pub density: Option<f64>,
-    /// The index of refraction around the ray.
-    pub ior: f64,
-    /// The surfaces that scattered it.
-    pub depth: u32,
-    /// Whether they were smooth, so that the viewer sees through or in a mirror.
-    pub is_direct: bool,
-}
-
 /// A ray to a light that is a solid.
 struct ToSolid {
     sample: usize,
     /// The light that arrives, over the radiance of the solid.
     factor: DVec3,
     number: usize,
-}
-
-impl Path {
-    /// The light at the end of the ray that counts.
-    fn weighted(&self, light: Arriving) -> DVec3 {
-        let weight = self
-            .density
-            .map_or(1.0, |density| weight(density, light.density));
-        self.throughput * (light.unsampled + light.sampled * weight)
-    }
 }
 
 impl View<'_> {

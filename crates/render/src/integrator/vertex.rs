@@ -7,7 +7,7 @@ use cyltrace::math::Ray;
 use cyltrace::tracer::PartialHit;
 use glam::DVec3;
 
-use super::path::Path;
+use super::segment::{Path, weight};
 use super::{Sample, View, facing_normal, spawn};
 use crate::bsdf::{Bsdf, Local, Numbers, Scattered};
 use crate::frame::Frame;
@@ -59,13 +59,6 @@ impl PathNumbers<'_> {
             }
         }
     }
-}
-
-/// The power heuristic: the weight of a direction of a density that another way to sample finds
-/// with the density `other`.
-pub(super) fn weight(density: f64, other: f64) -> f64 {
-    let ratio = other / density;
-    1.0 / (1.0 + ratio * ratio)
 }
 
 impl View<'_> {
