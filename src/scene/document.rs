@@ -12,7 +12,7 @@ use super::description::Integrator;
 use super::formats::{
     BeamLatticeKeys, CylinderTableKeys, SolidFile, SwcKeys, for_each_solid_format,
 };
-use super::legend::LegendKeys;
+use super::legend_keys::LegendKeys;
 use super::materials::MaterialKeys;
 use super::set_operations::{CompositionKeys, Operation};
 use super::solid_keys::RotationKeys;

@@ -39,6 +39,7 @@ mod graph;
 mod hit_table;
 mod instance_rows;
 mod legend;
+mod legend_keys;
 mod light;
 mod light_values;
 mod limits;

@@ -63,3 +63,17 @@ fn minimal_counted_holds_four_cylinders() {
 fn pathological_counted_holds_what_its_header_says() {
     assert_eq!(counts("pathological.toml"), (41, 44, 5));
 }
+
+/// The scenes of the gallery: nothing is missing.
+#[test]
+fn gallery_loaded_has_what_its_comments_say() {
+    assert_eq!(counts("gallery/forest.toml"), (59_355, 129_004_045, 10_000));
+    assert_eq!(counts("gallery/lattice.toml"), (13_749, 61_061, 7));
+    assert_eq!(counts("gallery/pipes.toml"), (1023, 1023, 0));
+    let (unique, bonds, _) = counts("gallery/crystal.toml");
+    assert_eq!((unique, bonds), (16, 16 << 27));
+    let neuron = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gallery/neuron.toml");
+    let scene = cyltrace::scene::load(&neuron).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(scene.prototypes[0].solids.len(), 1423);
+    assert!(scene.legend.is_some());
+}

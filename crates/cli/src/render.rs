@@ -1,5 +1,6 @@
 //! `cyltrace render`.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -276,7 +277,10 @@ impl Run<'_> {
         let (arguments, settings, times) = (self.arguments, self.settings, &self.times);
         let statistics = &self.tracer.statistics();
         let scene = self.tracer.scene();
-        let rays = self.rays;
+        let purposes = RayCounts::PURPOSES.into_iter().zip(self.rays.by_purpose());
+        let counts: BTreeMap<_, _> = purposes.collect();
+        let channels = settings.channels.list();
+        let names: Vec<_> = channels.iter().map(|channel| channel.name).collect();
         let mut figures = json!({
             "scene": arguments.scene,
             "output": arguments.output,
@@ -287,7 +291,8 @@ impl Run<'_> {
             "load_s": times.load,
             "build_s": times.build,
             "render_s": times.render,
-            "rays": { "camera": rays.camera, "shadow": rays.shadow, "ao": rays.ao },
+            "rays": counts,
+            "channels": names,
             "rays_per_s": self.rate(),
             "solids": json::Solids::of(statistics).by_kind(),
             "cylinders": json::Solids::of(statistics).cylinders(),
@@ -301,11 +306,6 @@ impl Run<'_> {
             "threads": self.threads,
             "records": json::records(scene),
         });
-        if !settings.channels.list().is_empty() {
-            let list = settings.channels.list();
-            let names = list.iter().map(|channel| channel.name);
-            figures["channels"] = json!(names.collect::<Vec<_>>());
-        }
         if let Some(reached) = &self.reached {
             figures[reached::KEY] = reached::figures(reached);
         }

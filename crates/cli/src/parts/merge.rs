@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, bail};
 use cyltrace_parts::{PartSet, Survey};
+use cyltrace_render::RayCounts;
 use serde_json::{Value, json};
 
 use super::{check, render, trace};
@@ -40,7 +41,7 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<u8> {
     let (code, figures, text) = match command {
         "render" => {
             render::merge(&set, output)?;
-            let mut figures = sums(&set, "rays", &["camera", "shadow", "ao"]);
+            let mut figures = sums(&set, "rays", &RayCounts::PURPOSES);
             if let Some(reached) = reached::of_parts(&set) {
                 figures[reached::KEY] = reached::figures(&reached);
             }

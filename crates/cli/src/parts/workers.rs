@@ -15,6 +15,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, anyhow, bail};
 use clap::ValueEnum;
 use cyltrace_parts::{PartNumber, PartSet};
+use cyltrace_render::RayCounts;
 use indicatif::ProgressBar;
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::{Value, json};
@@ -300,7 +301,7 @@ fn figures(arguments: &RenderArguments, set: &PartSet, workers: usize, seconds: 
         figures[key] = json!(sum(key));
     }
     let mut total = 0;
-    for kind in ["camera", "shadow", "ao"] {
+    for kind in RayCounts::PURPOSES {
         let counts = all.iter().filter_map(|one| one["rays"][kind].as_u64());
         let count: u64 = counts.sum();
         figures["rays"][kind] = json!(count);

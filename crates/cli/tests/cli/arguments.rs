@@ -110,9 +110,9 @@ fn bad_arguments_exit_2_and_name_the_remedy() {
                 "-o",
                 "a.png",
                 "--integrator",
-                "path",
+                "paths",
             ],
-            "normal",
+            "normal, path",
         ),
         (
             &["render", "scene.toml", "-o", "a.png", "--max-isa", "mmx"],

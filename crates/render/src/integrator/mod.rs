@@ -46,10 +46,19 @@ pub struct RayCounts {
 }
 
 impl RayCounts {
+    /// The names of the purposes in figures.
+    pub const PURPOSES: [&'static str; 4] = ["camera", "shadow", "ao", "scattered"];
+
+    /// The rays of each purpose, in the order of [`RayCounts::PURPOSES`].
+    #[must_use]
+    pub fn by_purpose(&self) -> [u64; 4] {
+        [self.camera, self.shadow, self.ao, self.scattered]
+    }
+
     /// All rays.
     #[must_use]
     pub fn total(&self) -> u64 {
-        self.camera + self.shadow + self.ao + self.scattered
+        self.by_purpose().iter().sum()
     }
 }
 
