@@ -40,7 +40,7 @@ pub(super) struct NamedTable<'a> {
 }
 
 impl PipeMemory {
-    /// Memory of so many bytes, or without a limit.
+    /// Memory of this size, or without a limit.
     pub fn new(bytes: Option<u64>) -> Self {
         Self(AtomicU64::new(bytes.unwrap_or(u64::MAX)))
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Three orthogonal unit vectors, of which the last is a normal.
+/// Three orthogonal unit vectors; the last is a normal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     x: DVec3,

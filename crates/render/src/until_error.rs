@@ -33,7 +33,7 @@
 //! times a chi-squared variable of one degree of freedom, so that `E v² = 3 σ⁴`. The squared
 //! error that the half will have varies by `2 Σ σ⁴`, `S` itself by as much, together by
 //! `4/3 Σ v²`. Of a tile of two such halves the relative deviation is `1/√2` of that. So a half
-//! stops where `S + 1.645/√2 √(4/3 Σ v²)` is at most what was asked. The components of a color
+//! stops where `S + 1.645/√2 √(4/3 Σ v²)` is at most the target's. The components of a color
 //! are taken as one value, since they vary together.
 //!
 //! Decisions are at numbers of samples that grow by a third or a half ([`next`]): finer steps

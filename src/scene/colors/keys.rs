@@ -267,7 +267,7 @@ impl TableKeys {
         })
     }
 
-    /// The labels, none of which looks like another cell of a table.
+    /// The labels. None looks like another cell of a table.
     fn labels(&self, source: &Source) -> Result<Vec<String>, SceneError> {
         let Some(labels) = &self.labels else {
             return Ok(Vec::new());

@@ -176,7 +176,7 @@ fn colors_and_requested_channels_do_not_depend_on_other_channels() {
     }
 }
 
-/// Samples that are 0 or 1, of which the variance follows from their mean.
+/// The variance of samples that are 0 or 1 follows from their mean.
 #[test]
 fn variance_is_that_of_the_samples() {
     let folder = folder_of(&[("scene.toml", SCENE)]);

@@ -5,6 +5,7 @@
 //! contain it, the last in the order of placements and primitives counts. So solids may overlap,
 //! touch and lie in each other, and a surface within its own material has no effect.
 
+use cyltrace::math::Bounds;
 use cyltrace::scene::MaterialKind;
 use glam::DVec3;
 
@@ -13,7 +14,7 @@ use super::View;
 impl View<'_> {
     /// The index of refraction at a point.
     pub(super) fn ior_at(&self, point: DVec3) -> f64 {
-        if !self.has_glass {
+        if !self.has_glass || !self.bounds.meets(&Bounds::at(point)) {
             return 1.0;
         }
         let scene = self.tracer.scene();

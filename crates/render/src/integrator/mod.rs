@@ -22,7 +22,7 @@ use super::Lights;
 use super::bsdf::Bsdf;
 use super::colors::Colors;
 use super::sampler::PixelSampler;
-use cyltrace::math::Ray;
+use cyltrace::math::{Bounds, Ray};
 use cyltrace::scene::{AimedCamera, Integrator, MaterialKind, RenderSettings, Scene};
 use cyltrace::tracer::{HitFields, PartialHit, Tracer};
 use occlusion::Occlusion;
@@ -87,6 +87,8 @@ pub(super) struct View<'a> {
     bsdfs: Vec<Option<Box<dyn Bsdf>>>,
     /// Whether a ray may be in glass.
     has_glass: bool,
+    /// A box around the scene.
+    bounds: Bounds,
 }
 
 /// A sample of a pixel.
@@ -143,12 +145,18 @@ impl<'a> View<'a> {
         };
         let transmits =
             |bsdf: &Option<Box<dyn Bsdf>>| bsdf.as_ref().is_some_and(|one| one.transmits());
+        let bounds = tracer.bounds();
+        let lights = match integrator {
+            Integrator::Sun | Integrator::Path => Lights::of(scene, &bounds),
+            Integrator::Ao | Integrator::Normal => Lights::default(),
+        };
         Self {
             has_glass: bsdfs.iter().any(transmits),
             tracer,
             colors: Colors::new(tracer.scene()),
             camera,
-            lights: Lights::of(scene, &tracer.bounds()),
+            lights,
+            bounds,
             integrator,
             settings: scene.render,
             bsdfs,

@@ -38,6 +38,8 @@ pub(super) struct Vertex<'a> {
     bsdf: &'a dyn Bsdf,
     frame: Frame,
     local: Local,
+    /// The index of refraction behind it.
+    far_ior: f64,
     /// The direction to the viewer, in the frame.
     outgoing: DVec3,
     numbers: PathNumbers<'a>,
@@ -71,10 +73,10 @@ impl View<'_> {
         numbers: PathNumbers<'v>,
     ) -> Option<Vertex<'v>> {
         let normal = facing_normal(&path.ray, hit);
-        let mut relative_ior = 1.0;
+        let mut far_ior = path.ior;
         if bsdf.transmits() {
-            relative_ior = self.ior_at(spawn(hit, -normal).origin) / path.ior;
-            if relative_ior == 1.0 {
+            far_ior = self.ior_at(spawn(hit, -normal).origin);
+            if far_ior == path.ior {
                 return None;
             }
         }
@@ -88,8 +90,9 @@ impl View<'_> {
             frame,
             local: Local {
                 color: self.colors.at(hit),
-                relative_ior,
+                relative_ior: far_ior / path.ior,
             },
+            far_ior,
             outgoing,
             numbers,
         })
@@ -147,7 +150,7 @@ impl View<'_> {
             .sample(&vertex.local, vertex.outgoing, numbers)?;
         let ior = match incoming.z > 0.0 {
             true => path.ior,
-            false => path.ior * vertex.local.relative_ior,
+            false => vertex.far_ior,
         };
         let mut throughput = path.throughput * weight;
         let depth = path.depth + 1;

@@ -26,7 +26,7 @@ pub(super) struct Emitters {
     pub list: Vec<Emitter>,
     /// The numbers of solids by their placements and primitive.
     numbers: HashMap<(Vec<u32>, u32), u32>,
-    /// Whether there are more than [`MOST_EMITTERS`], none of which is in the list.
+    /// Whether there are more than [`MOST_EMITTERS`]. Then the list is empty.
     pub are_too_many: bool,
 }
 

@@ -38,7 +38,7 @@ const DEFAULT_SUN: (DVec3, DVec3, f64) = (
 const DEFAULT_SKY: (DVec3, f64) = (DVec3::new(0.65, 0.8, 1.0), 0.3);
 
 /// What shines on a scene; lights without effect are left out.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Lights {
     sun: Option<SunLight>,
     sky: Option<DVec3>,

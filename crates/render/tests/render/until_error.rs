@@ -177,6 +177,6 @@ fn picture_does_not_depend_on_threads() {
     assert!(kept >= 11, "{errors:?}");
     assert!(
         errors.iter().any(|&error| error > 0.075),
-        "not far more than asked: {errors:?}"
+        "not far more than the target: {errors:?}"
     );
 }
