@@ -338,6 +338,7 @@ impl PyScene {
         Ok(first as u32)
     }
 
+    #[expect(clippy::too_many_arguments, reason = "as the keys of a scene file")]
     fn set_camera(
         &mut self,
         position: Option<[f64; 3]>,

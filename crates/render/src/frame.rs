@@ -18,12 +18,12 @@ impl Frame {
     }
 
     /// A vector of the frame, in the world.
-    pub fn to_world(&self, vector: DVec3) -> DVec3 {
+    pub fn in_world(self, vector: DVec3) -> DVec3 {
         self.x * vector.x + self.y * vector.y + self.z * vector.z
     }
 
     /// A vector of the world, in the frame.
-    pub fn from_world(&self, vector: DVec3) -> DVec3 {
+    pub fn in_frame(self, vector: DVec3) -> DVec3 {
         DVec3::new(vector.dot(self.x), vector.dot(self.y), vector.dot(self.z))
     }
 }

@@ -177,7 +177,8 @@ mod tests {
             let sampler = PixelSampler::new(11, pixel);
             let pair =
                 |dimension| move |sampler: &PixelSampler, sample| sampler.pair(dimension, sample);
-            let pairs: [&dyn Fn(&PixelSampler, u32) -> (f64, f64); 4] = [
+            type Pair<'a> = &'a dyn Fn(&PixelSampler, u32) -> (f64, f64);
+            let pairs: [Pair; 4] = [
                 &PixelSampler::place,
                 &PixelSampler::direction,
                 &pair(0),

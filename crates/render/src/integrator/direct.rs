@@ -110,7 +110,7 @@ impl View<'_> {
         for (number, (ray, hit)) in batch.rays.iter().zip(&batch.hits).enumerate() {
             if let Some(hit) = hit {
                 let direction = cosine_direction(samples[number].direction());
-                let direction = Frame::about(facing_normal(ray, hit)).to_world(direction);
+                let direction = Frame::about(facing_normal(ray, hit)).in_world(direction);
                 let mut ray = spawn(hit, direction);
                 ray.t_max = distance;
                 openings.push(number, ray, radiance(direction));

@@ -106,11 +106,11 @@ impl View<'_> {
                 continue;
             }
             let Some(hit) = hit else {
-                *color += self.from_beyond(path);
+                *color += self.light_beyond(path);
                 continue;
             };
             let Some(bsdf) = &self.bsdfs[usize::from(hit.material().0)] else {
-                *color += self.from_solid(path, hit);
+                *color += self.light_of_solid(path, hit);
                 continue;
             };
             if path.depth + 1 == self.settings.max_depth {
@@ -148,17 +148,17 @@ impl View<'_> {
     }
 
     /// The light of a path that leaves the scene.
-    fn from_beyond(&self, path: &Path) -> DVec3 {
+    fn light_beyond(&self, path: &Path) -> DVec3 {
         let direction = path.ray.direction;
-        let sun = path.weighted(self.lights.from_sun(direction));
+        let sun = path.weighted(self.lights.sunlight(direction));
         if path.is_direct {
             return sun + path.throughput * self.lights.miss(direction);
         }
-        sun + path.weighted(self.lights.from_sky(direction))
+        sun + path.weighted(self.lights.skylight(direction))
     }
 
     /// The light of a path that ends on a solid that emits light.
-    fn from_solid(&self, path: &Path, hit: &PartialHit) -> DVec3 {
+    fn light_of_solid(&self, path: &Path, hit: &PartialHit) -> DVec3 {
         let direction = path.ray.direction;
         let density = path
             .density

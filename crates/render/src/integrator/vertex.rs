@@ -81,7 +81,7 @@ impl View<'_> {
             }
         }
         let frame = Frame::about(normal);
-        let mut outgoing = frame.from_world(-path.ray.direction);
+        let mut outgoing = frame.in_frame(-path.ray.direction);
         outgoing.z = outgoing.z.max(LEAST_COSINE);
         Some(Vertex {
             path,
@@ -110,7 +110,7 @@ impl View<'_> {
             .lights
             .sample(point, choice, vertex.numbers.pair(LIGHT))?;
         let sample = towards.sample();
-        let incoming = vertex.frame.from_world(sample.direction);
+        let incoming = vertex.frame.in_frame(sample.direction);
         let value = vertex
             .bsdf
             .evaluate(&vertex.local, vertex.outgoing, incoming);
@@ -163,7 +163,7 @@ impl View<'_> {
             }
             throughput /= probability;
         }
-        let direction = vertex.frame.to_world(incoming);
+        let direction = vertex.frame.in_world(incoming);
         Some(Path {
             sample: path.sample,
             ray: spawn(vertex.hit, direction),

@@ -236,7 +236,7 @@ impl Lights {
     }
 
     /// The light from the sun in a unit direction, where nothing is.
-    pub(crate) fn from_sun(&self, direction: DVec3) -> Arriving {
+    pub(crate) fn sunlight(&self, direction: DVec3) -> Arriving {
         match self.sun.filter(SunLight::has_extent) {
             Some(sun) => Arriving {
                 unsampled: DVec3::ZERO,
@@ -248,7 +248,7 @@ impl Lights {
     }
 
     /// The light from the sky or the environment in a unit direction, where nothing is.
-    pub(crate) fn from_sky(&self, direction: DVec3) -> Arriving {
+    pub(crate) fn skylight(&self, direction: DVec3) -> Arriving {
         match &self.environment {
             Some(environment) => {
                 let chosen = usize::from(self.sun.is_some());

@@ -266,7 +266,8 @@ fn slabs_of_glass_transmit_what_their_faces_do() {
     let slab = |low: f64, high: f64| {
         Cylinder::new(DVec3::Z * low, DVec3::Z * high, 50.0, Caps::Both).expect("a slab")
     };
-    let cases: [(&[(f64, f64)], f64, &str); 6] = [
+    type Slabs = &'static [(f64, f64)];
+    let cases: [(Slabs, f64, &str); 6] = [
         (&[(0.0, 1.0)], one, "one slab"),
         (&[(0.0, 1.0), (0.5, 2.0)], one, "overlapping"),
         (&[(0.0, 3.0), (1.0, 2.0)], one, "one in the other"),
