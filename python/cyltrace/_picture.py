@@ -60,7 +60,8 @@ def render(
     progress: Progress | None = None,
 ) -> Picture:
     """Renders a scene, as ``cyltrace render`` does: the same scene, settings and seed give the
-    same bits on any number of threads.
+    same bits on any number of threads. A legend is not drawn, and a transparent background is
+    black.
 
     Parameters
     ----------
@@ -72,7 +73,8 @@ def render(
     integrator : "sun", "normal", "ao" or "path", optional
         Sun and sky with shadows, normals as colors, ambient occlusion, or light that is
         scattered any number of times, by materials of all kinds. ``sun`` by default, or ``path``
-        if the scene has a material that is not diffuse or a light with a place.
+        if the scene has a material that is not diffuse, a light with a place, an environment
+        or a clear sky.
     seed : int
         Chooses the random numbers.
     threads : int, optional

@@ -109,6 +109,9 @@ class Scene(Prototype):
     ) -> str:
         """Adds a material and returns its name.
 
+        Pictures of a scene with one that is not diffuse have the integrator ``path`` in place of
+        ``sun``.
+
         Parameters
         ----------
         name : str

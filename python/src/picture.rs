@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use cyltrace::scene::Film;
 use cyltrace_output::{Contents, Output, OutputError, film_png_bytes};
-use cyltrace_render::{RenderError, Settings};
+use cyltrace_render::{Channels, RenderError, Settings};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError};
 use pyo3::prelude::*;
@@ -40,6 +40,8 @@ pub fn render<'py>(
         spp: spp.unwrap_or(of_scene.spp),
         integrator: integrator.map_or(Ok(of_scene.integrator), integrator_of)?,
         seed,
+        // A picture is an array of three colors; there is no opacity in it.
+        channels: Channels::default(),
         ..of_scene
     };
     settings

@@ -288,11 +288,11 @@ impl Solids {
         })
     }
 
-    /// The solids whose material is wanted: the number, the material and a box around each.
+    /// The solids of some materials: the number, the material and a box around each.
     #[must_use]
     pub fn of_materials(
         &self,
-        wanted: impl Fn(MaterialIndex) -> bool,
+        is_of_them: impl Fn(MaterialIndex) -> bool,
     ) -> Vec<(u32, MaterialIndex, Bounds)> {
         let mut found = Vec::new();
         for &kind in SolidKind::LISTS {
@@ -300,7 +300,7 @@ impl Solids {
                 let list = S::list(self);
                 for position in 0..list.len() {
                     let material = list.material(position);
-                    if wanted(material) {
+                    if is_of_them(material) {
                         let bounds = S::bounds(list.solid(position).borrow());
                         found.push((list.primitive(position), material, bounds));
                     }

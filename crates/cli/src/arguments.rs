@@ -115,7 +115,7 @@ pub struct RenderArguments {
     /// else 4]
     #[arg(long, value_name = "N", value_parser = count_up_to::<NonZeroU32>(GREATEST_SAMPLES.into()), allow_negative_numbers = true)]
     pub spp: Option<NonZeroU32>,
-    /// Show the result of this integrator [default: the scene's, else `sun`]
+    /// Show the result of this integrator [default: the scene's, else `path` if it has lights or materials that need it, else `sun`]
     #[arg(long, value_name = "NAME", value_enum)]
     pub integrator: Option<IntegratorName>,
     /// Seed the random numbers

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::{anyhow, bail};
-use cyltrace::scene::SceneFile;
+use cyltrace::scene::{Integrator, Scene, SceneFile};
 use cyltrace::tracer::{Options, Tracer};
-use cyltrace_output::{Contents, Format, Output, with_overlay};
+use cyltrace_output::{Contents, Display, Format, Legend, Output, with_overlay};
 use cyltrace_parts::{Header, PartWriter};
 use cyltrace_render::{Channels, RayCounts, Reached, RenderError, Settings, Tiles};
 use serde_json::{Value, json};
@@ -74,6 +74,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let tracer = scene::build(common, &scene, options)?;
     let build = start.elapsed().as_secs_f64();
 
+    let legend = legend(arguments, &settings, &scene)?;
     let cancelled = interrupt::end_in_order();
     let target = match &header {
         Some(header) => Target::Part(parts::create(&arguments.output, header)?),
@@ -120,7 +121,6 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         header: header.as_ref(),
     };
     let figures = run.figures();
-    let legend = cyltrace_render::legend(&scene);
     match target {
         Target::Picture(mut output) => {
             if let Some(reached) = rendered.reached {
@@ -149,6 +149,23 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         true => print(&run.text()),
         false => Ok(()),
     }
+}
+
+/// The legend that is drawn over the picture, where that shows the color that it explains.
+fn legend(
+    arguments: &RenderArguments,
+    settings: &Settings,
+    scene: &Scene,
+) -> anyhow::Result<Option<Legend>> {
+    let shows_colors = matches!(settings.integrator, Integrator::Sun | Integrator::Path);
+    let legend = cyltrace_render::legend(scene).filter(|_| shows_colors);
+    if legend.is_some() && contents(arguments, settings).display != Display::default() {
+        bail!(
+            "{:?} has a [legend], whose colors --exposure and --tonemap would change: leave them out, or remove the legend",
+            arguments.scene
+        );
+    }
+    Ok(legend)
 }
 
 /// How many samples a pixel gets.

@@ -128,7 +128,7 @@ pub struct Channels {
 }
 
 impl Channels {
-    /// The channels of some groups, in any order, and opacity if it is wanted: the part of a
+    /// The channels of some groups, in any order, and opacity if it is requested: the part of a
     /// pixel's samples that hit.
     #[must_use]
     pub fn new(groups: impl IntoIterator<Item = ChannelGroup>, has_opacity: bool) -> Self {

@@ -182,7 +182,7 @@ pub struct RenderedTiles {
 }
 
 impl RenderedTiles {
-    /// The rows of the picture of this size of which these are all tiles, a row of tiles at a
+    /// The rows of a picture of this size whose tiles these are, a row of tiles at a
     /// time: the source of [`cyltrace_output::Output::write_bands`].
     ///
     /// # Panics
@@ -293,7 +293,7 @@ fn skipped(integrator: Integrator, lights: &Lights) -> Vec<String> {
         Integrator::Path => &[
             (
                 !lights.is_sampled(),
-                "no sun and no light with a place: no shadow rays",
+                "no light to choose a direction to: no shadow rays",
             ),
             (
                 lights.has_too_many_emitters(),

@@ -60,16 +60,16 @@ pub(super) struct Place<'a> {
 pub(super) struct Sums {
     sequences: usize,
     colors: Vec<DVec3>,
-    /// Sums of squares; empty unless the variance is wanted.
+    /// Sums of squares; empty unless the variance is requested.
     squares: Vec<DVec3>,
-    /// Samples that hit; empty unless opacity is wanted. Then colors are of these alone.
+    /// Samples that hit; empty unless opacity is requested. Then colors are of these alone.
     hits: Vec<u32>,
 }
 
 impl Sums {
     pub fn new(pixels: usize, sequences: usize, channels: &Channels) -> Self {
         let all = pixels * sequences;
-        let of = |is_wanted: bool| if is_wanted { all } else { 0 };
+        let of = |is_requested: bool| if is_requested { all } else { 0 };
         Self {
             sequences,
             colors: vec![DVec3::ZERO; all],

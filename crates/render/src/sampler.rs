@@ -59,8 +59,38 @@ impl PixelSampler {
     /// [0, 1).
     #[must_use]
     pub fn pair(&self, dimension: u32, sample: u32) -> (f64, f64) {
-        let mut random = Random::new(self.further, dimension.into());
-        PairKey::next(&mut random).point(sample)
+        self.key(dimension).point(sample)
+    }
+
+    fn key(&self, dimension: u32) -> PairKey {
+        PairKey::next(&mut Random::new(self.further, dimension.into()))
+    }
+}
+
+/// One dimension of the samples of many pixels: the numbers of [`PixelSampler::pair`], with less
+/// work for successive samples of a pixel.
+pub(crate) struct Pairs {
+    dimension: u32,
+    /// The last pixel and its hashes.
+    last: Option<(u64, PairKey)>,
+}
+
+impl Pairs {
+    pub fn new(dimension: u32) -> Self {
+        Self {
+            dimension,
+            last: None,
+        }
+    }
+
+    /// Two numbers of a sample of a pixel.
+    pub fn of(&mut self, pixel: &PixelSampler, sample: u32) -> (f64, f64) {
+        let key = match self.last {
+            Some((further, key)) if further == pixel.further => key,
+            _ => pixel.key(self.dimension),
+        };
+        self.last = Some((pixel.further, key));
+        key.point(sample)
     }
 }
 
@@ -226,6 +256,17 @@ mod tests {
                 correlation.abs() < 5.0 / (pixels as f64).sqrt(),
                 "{correlation}"
             );
+        }
+    }
+
+    #[test]
+    fn pairs_of_successive_samples_are_those_of_single_ones() {
+        let mut pairs = Pairs::new(9);
+        for pixel in [3, 3, 4, 3] {
+            let sampler = PixelSampler::new(1, pixel);
+            for sample in 0..5 {
+                assert_eq!(pairs.of(&sampler, sample), sampler.pair(9, sample));
+            }
         }
     }
 

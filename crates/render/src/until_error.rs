@@ -74,7 +74,7 @@ const QUANTILE: f64 = 1.644_853_626_951_472_7 * std::f64::consts::FRAC_1_SQRT_2;
 /// When a picture has enough samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
-    /// The greatest relative error of a tile; 0 is never reached.
+    /// The greatest relative error of a tile. With 0, only tiles without noise stop early.
     pub error: f64,
     /// The time after which the rendering ends in any case, each tile with the samples that it
     /// has; each has a few. With it, the picture depends on the speed of the machine.
@@ -237,7 +237,12 @@ impl<'a> TileSamples<'a> {
         self.taken = end;
         let spreads = [0, 1].map(|half| self.spread(half));
         for half in [0, 1] {
-            let by_other = spreads[1 - half].is_within(self.error);
+            // A tile of few pixels may have all of them in one half, which then decides for itself.
+            let other = match spreads[1 - half].pixels > 0.0 {
+                true => spreads[1 - half],
+                false => spreads[half],
+            };
+            let by_other = other.is_within(self.error);
             if self.stopped[half].is_none() && (by_other || end == most) {
                 self.stop_half(half);
             }

@@ -333,3 +333,33 @@ fn options_of_a_picture_that_do_not_fit_are_refused() {
         assert!(code == 2 && error.contains(expected), "{options}: {error}");
     }
 }
+
+/// Exposure and tone maps would change the colors of a legend. Normals and occlusion have none.
+#[test]
+fn legends_keep_their_colors_or_are_refused() {
+    let scene = "[film]\nwidth = 40\nheight = 30\n[legend]\nmaterial = \"m\"\n\
+        [[material]]\nname = \"m\"\ncolor = { column = \"r\" }\n\
+        [[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\nvalues = { r = 2 }\n";
+    let bare = scene.replace("[legend]\nmaterial = \"m\"\n", "");
+    let folder = folder_of(&[("scene.toml", scene), ("bare.toml", &bare)]);
+    for option in ["--exposure 1", "--tonemap agx"] {
+        let line = format!("render scene.toml -o a.png {option}");
+        let (code, _, error) = cyltrace(folder.path(), &words(&line));
+        assert_eq!(code, 2, "{error}");
+        assert!(error.contains("has a [legend]"), "{error}");
+        assert!(!folder.path().join("a.png").exists());
+    }
+    let picture = |name: &str, options: &str| {
+        run(folder.path(), &format!("render {name} -o a.png {options}"));
+        std::fs::read(folder.path().join("a.png")).expect("a picture")
+    };
+    assert_ne!(picture("scene.toml", ""), picture("bare.toml", ""));
+    for integrator in ["ao", "normal"] {
+        let options = format!("--integrator {integrator} --exposure 1");
+        let (with, without) = (
+            picture("scene.toml", &options),
+            picture("bare.toml", &options),
+        );
+        assert!(with == without, "{integrator}");
+    }
+}

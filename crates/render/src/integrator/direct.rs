@@ -3,8 +3,8 @@
 //! - `ao`: 1 where a ray in a cosine-distributed direction hits no surface within a distance,
 //!   which may be infinite, and 0 elsewhere. So the mean is the visible part of an open sky,
 //!   weighted as a diffuse surface sees it. A camera ray that misses sees the sky itself: 1.
-//! - `sun`: diffuse surfaces under a sun of the irradiance `E` and a sky of the same radiance `L`
-//!   everywhere. A surface of reflectance `ρ` that faces the sun at the cosine `c` sends out
+//! - `sun`: diffuse surfaces under a sun of the irradiance `E` and a sky or an environment of the
+//!   radiance `L`. A surface of reflectance `ρ` that faces the sun at the cosine `c` sends out
 //!   `ρ (E c S / π + L V)`, where `S` is the part of the sun that is seen and `V` the part of the
 //!   directions, weighted by their cosine, that leave the scene. Light is not reflected twice.
 //!   Materials of all kinds count as diffuse, and one that emits light shows its radiance.
@@ -17,6 +17,7 @@ use glam::DVec3;
 use super::{Batch, RayCounts, SUN, Sample, View, facing_normal, spawn};
 use crate::bsdf::cosine_direction;
 use crate::frame::Frame;
+use crate::sampler::Pairs;
 
 impl View<'_> {
     pub(super) fn ambient_occlusion(
@@ -77,12 +78,13 @@ impl View<'_> {
         };
         let shadows = &mut batch.occlusion;
         shadows.clear();
+        let mut pairs = Pairs::new(SUN);
         for (sample, (ray, hit)) in batch.rays.iter().zip(&batch.hits).enumerate() {
-            let Some(hit) = hit else {
+            let Some(hit) = hit.as_ref().filter(|hit| self.emitted(hit).is_none()) else {
                 continue;
             };
             let numbers = match sun.has_extent() {
-                true => samples[sample].pair(SUN),
+                true => pairs.of(&samples[sample].sampler, samples[sample].number),
                 false => (0.0, 0.0),
             };
             let (direction, arriving) = sun.towards(numbers);

@@ -147,7 +147,7 @@ impl<'a> View<'a> {
             |bsdf: &Option<Box<dyn Bsdf>>| bsdf.as_ref().is_some_and(|one| one.transmits());
         let bounds = tracer.bounds();
         let lights = match integrator {
-            Integrator::Sun | Integrator::Path => Lights::of(scene, &bounds),
+            Integrator::Sun | Integrator::Path => Lights::of(scene, &bounds, integrator),
             Integrator::Ao | Integrator::Normal => Lights::default(),
         };
         Self {

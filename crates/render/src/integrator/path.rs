@@ -72,7 +72,7 @@ impl View<'_> {
             self.closest(batch, fields);
             self.step(samples, batch);
             rays.shadow += batch.occlusion.add_to(&mut batch.colors, self.tracer);
-            rays.shadow += self.add_solids(batch, fields);
+            rays.shadow += self.add_solids(batch);
             let Paths { paths, next, .. } = &mut batch.paths;
             std::mem::swap(paths, next);
             rays.scattered += paths.len() as u64;
@@ -171,7 +171,8 @@ impl View<'_> {
     }
 
     /// Adds the light of solids that the rays to them reach, and returns the number of rays.
-    fn add_solids(&self, batch: &mut Batch, fields: HitFields) -> u64 {
+    fn add_solids(&self, batch: &mut Batch) -> u64 {
+        let fields = HitFields::PATH | self.colors.fields();
         let Paths {
             to_solids,
             rays,

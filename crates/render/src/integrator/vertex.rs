@@ -153,6 +153,9 @@ impl View<'_> {
             false => vertex.far_ior,
         };
         let mut throughput = path.throughput * weight;
+        if throughput == DVec3::ZERO {
+            return None;
+        }
         let depth = path.depth + 1;
         if depth > CERTAIN {
             // The factor of an interface is undone where the path leaves.

@@ -1,4 +1,8 @@
-//! Chooses one of many lights, each with a probability in proportion to its power.
+//! Chooses one of many lights.
+//!
+//! Half of the choices are in proportion to the power, and half are equal among the lights that
+//! have any: a lamp in a wide scene has a tiny part of the sun's power and may be all the light
+//! in a room.
 
 /// Cumulative probabilities of a list.
 #[derive(Clone, Debug, Default)]
@@ -8,18 +12,21 @@ pub(super) struct Choice {
 }
 
 impl Choice {
-    /// Probabilities in proportion to weights, which are 0 or greater. Equal ones if all are 0.
-    pub fn new(weights: &[f64]) -> Self {
-        let total: f64 = weights.iter().sum();
+    /// The probabilities of lights of these powers, which are 0 or greater. Equal ones if all
+    /// are 0.
+    pub fn new(powers: &[f64]) -> Self {
+        let total: f64 = powers.iter().sum();
+        let shining = powers.iter().filter(|&&power| power > 0.0).count() as f64;
         let mut sum = 0.0;
-        let mut sums: Vec<f64> = weights
+        let probability = |power: f64| match (total > 0.0, power > 0.0) {
+            (true, true) => 0.5 * (power / total + 1.0 / shining),
+            (true, false) => 0.0,
+            (false, _) => 1.0 / powers.len() as f64,
+        };
+        let mut sums: Vec<f64> = powers
             .iter()
-            .map(|weight| {
-                sum += if total > 0.0 {
-                    weight / total
-                } else {
-                    1.0 / weights.len() as f64
-                };
+            .map(|&power| {
+                sum += probability(power);
                 sum
             })
             .collect();
@@ -59,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn positions_are_chosen_by_their_weights() {
+    fn positions_are_chosen_by_their_powers_and_their_number() {
         let choice = Choice::new(&[1.0, 0.0, 3.0, 4.0]);
         let mut counts = [0; 4];
         for number in 0..8000 {
@@ -67,7 +74,8 @@ mod tests {
             assert_eq!(probability, choice.probability(position));
             counts[position] += 1;
         }
-        assert_eq!(counts, [1000, 0, 3000, 4000]);
+        // A sixth for each of the three, and half of an eighth, three eighths and a half.
+        assert_eq!(counts, [1834, 0, 2833, 3333]);
         assert_eq!(Choice::new(&[0.0, 0.0]).probability(1), 0.5);
     }
 }

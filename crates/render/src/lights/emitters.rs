@@ -4,7 +4,7 @@
 //! turned to the point. Samples are uniform on those faces, by area, so that a direction that
 //! enters through a face at the distance `d` and the cosine `c` has the density `d² / (A c)`,
 //! with `A` the area of all faces turned to the point. The ray in that direction may miss the
-//! solid in its box; then it contributes nothing. That holds for solids of all kinds, composed
+//! solid in its box; then it contributes nothing. That is true of solids of all kinds, composed
 //! ones too, and for all placements, which map boxes to parallelepipeds.
 
 use std::collections::HashMap;
@@ -77,6 +77,11 @@ impl Emitters {
             emitters.numbers.clear();
         }
         emitters
+    }
+
+    /// Whether solids emit light.
+    pub fn are_any(&self) -> bool {
+        self.are_too_many || !self.list.is_empty()
     }
 
     /// The number of the emitter that a hit is on.

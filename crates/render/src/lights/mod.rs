@@ -3,7 +3,7 @@
 //! A light is *sampled* if a surface chooses a direction towards it. The sun and lights with a
 //! place and environments are; a sky of the same radiance everywhere is not, because the directions in which a
 //! surface scatters light reach it just as well. If there are several, one is chosen with a
-//! probability in proportion to its power, that of a sun being what crosses the scene.
+//! probability that grows with its power; that of a sun is what crosses the scene.
 
 mod choice;
 mod emitters;
@@ -13,7 +13,7 @@ mod sun;
 use std::f64::consts::PI;
 
 use cyltrace::math::{Bounds, Ray};
-use cyltrace::scene::{MaterialKind, Scene, Sky, Sun};
+use cyltrace::scene::{Integrator, Scene, Sky, Sun};
 use cyltrace::tracer::PartialHit;
 use glam::DVec3;
 
@@ -95,18 +95,18 @@ pub(crate) struct Arriving {
 }
 
 impl Lights {
-    /// The lights of `scene`, which is in `bounds`. A scene that states no light would be black,
-    /// so it gets a default sun and sky; its background is still what a camera ray sees that
-    /// misses everything.
+    /// The lights of `scene`, which is in `bounds`, that an integrator sees. If there are none,
+    /// the picture would be black, so there are a default sun and sky; the background is still
+    /// what a camera ray sees that misses everything.
     #[must_use]
-    pub fn of(scene: &Scene, bounds: &Bounds) -> Self {
-        let is_light = |kind: &MaterialKind| matches!(kind, MaterialKind::Light { .. });
+    pub fn of(scene: &Scene, bounds: &Bounds, integrator: Integrator) -> Self {
+        let emitters = Emitters::new(scene);
+        let has_place = !scene.lights.is_empty() || emitters.are_any();
         let unlit = scene.sun.is_none()
             && scene.sky.is_none()
             && scene.clear_sky.is_none()
             && scene.environment.is_none()
-            && scene.lights.is_empty()
-            && !scene.materials.iter().any(|one| is_light(&one.kind));
+            && !(integrator == Integrator::Path && has_place);
         let (sun, sky) = if unlit {
             (Some(default_sun()), Some(default_sky()))
         } else {
@@ -118,7 +118,6 @@ impl Lights {
         let environment = EnvironmentMap::of(scene).filter(|map| map.power() > 0.0);
         let sun = sun.as_ref().and_then(SunLight::new);
         let shapes: Vec<_> = scene.lights.iter().filter_map(ShapeLight::new).collect();
-        let emitters = Emitters::new(scene);
         let radius = match bounds.is_empty() {
             true => 1.0,
             false => 0.5 * bounds.extent().length(),
@@ -209,7 +208,9 @@ impl Lights {
                     arriving: environment.radiance(direction) / density,
                     density: Some(density),
                 };
-                return Some(Towards::Open(scaled(sample), None));
+                // Roundings may lead to where the environment is black.
+                let is_lit = density > 0.0;
+                return is_lit.then(|| Towards::Open(scaled(sample), None));
             }
             _ => {}
         }
@@ -351,7 +352,7 @@ mod tests {
     }
 
     fn lights_of(scene: &Scene) -> Lights {
-        Lights::of(scene, &Bounds::EMPTY)
+        Lights::of(scene, &Bounds::EMPTY, Integrator::Path)
     }
 
     #[test]

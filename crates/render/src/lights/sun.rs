@@ -13,6 +13,11 @@ use glam::DVec3;
 
 use super::LightSample;
 use crate::disk::concentric_disk;
+use crate::frame::Frame;
+
+/// The least sine of a sun with an extent. Direct light is the same below it, and the radiance,
+/// which grows with its inverse square, stays far from overflow.
+const LEAST_SINE: f64 = 1e-7;
 
 /// A sun that shines.
 #[derive(Clone, Copy, Debug)]
@@ -23,16 +28,21 @@ pub struct SunLight {
     pub irradiance: DVec3,
     /// The sine of half of the angle that the sun spans.
     sine: f64,
+    /// About the direction.
+    frame: Frame,
 }
 
 impl SunLight {
     /// The light of a sun, or `None` if it gives none.
     pub(super) fn new(sun: &Sun) -> Option<Self> {
         let irradiance = sun.color * sun.strength;
+        let sine = libm::sin((0.5 * sun.angle_degrees).to_radians());
+        let direction = sun.direction.normalize();
         (irradiance != DVec3::ZERO).then(|| Self {
-            direction: sun.direction.normalize(),
+            direction,
+            frame: Frame::about(direction),
             irradiance,
-            sine: libm::sin((0.5 * sun.angle_degrees).to_radians()),
+            sine: if sine >= LEAST_SINE { sine } else { 0.0 },
         })
     }
 
@@ -49,8 +59,7 @@ impl SunLight {
         }
         let place = concentric_disk(numbers) * self.sine;
         let cosine = (1.0 - place.length_squared()).sqrt();
-        let (right, up) = self.direction.any_orthonormal_pair();
-        let direction = right * place.x + up * place.y + self.direction * cosine;
+        let direction = self.frame.in_world(place.extend(cosine));
         (direction, self.irradiance / cosine)
     }
 
@@ -82,7 +91,7 @@ impl SunLight {
     }
 
     fn covers(&self, direction: DVec3) -> bool {
-        // The sine tells small angles apart, the cosine does not.
+        // The sine distinguishes small angles, the cosine does not.
         let is_ahead = self.direction.dot(direction) > 0.0;
         let squared_sine = self.direction.cross(direction).length_squared();
         is_ahead && self.has_extent() && squared_sine <= self.sine * self.sine
