@@ -87,7 +87,7 @@ def test_files_and_notebooks(tmp_path: Path) -> None:
     [
         ({"size": (0, 10)}, "invalid picture size 0x10"),
         ({"spp": 0}, "invalid number of samples"),
-        ({"integrator": "path"}, 'integrator is "path": it must be'),
+        ({"integrator": "paths"}, 'integrator is "paths": it must be'),
     ],
 )
 def test_settings_are_checked(settings: dict[str, object], message: str) -> None:

@@ -117,7 +117,9 @@ impl Lights {
         let has_background = unlit || !(has_sky || scene.environment.is_some());
         let environment = EnvironmentMap::of(scene).filter(|map| map.power() > 0.0);
         let sun = sun.as_ref().and_then(SunLight::new);
-        let shapes: Vec<_> = scene.lights.iter().filter_map(ShapeLight::new).collect();
+        let mut shapes: Vec<_> = scene.lights.iter().filter_map(ShapeLight::new).collect();
+        // A scene file has a list for each shape, so their order says nothing.
+        shapes.sort_by_key(ShapeLight::rank);
         let radius = match bounds.is_empty() {
             true => 1.0,
             false => 0.5 * bounds.extent().length(),

@@ -33,6 +33,15 @@ impl ShapeLight {
         })
     }
 
+    /// The rank of the shape in the order of all lights with a place.
+    pub fn rank(&self) -> u8 {
+        match self.shape {
+            LightShape::Point { .. } => 0,
+            LightShape::Sphere { .. } => 1,
+            LightShape::Rectangle { .. } => 2,
+        }
+    }
+
     /// The radiant power.
     pub fn power(&self) -> DVec3 {
         self.emission
