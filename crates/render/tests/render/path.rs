@@ -293,34 +293,66 @@ fn slabs_of_glass_transmit_what_their_faces_do() {
     }
 }
 
-/// Two indices that touch have the faces of 1 to 1.5, 1.5 to 1.25 and 1.25 to 1. Intensities of
-/// faces that reflect `R` and `S` add up to the transmission `(1 - R) (1 - S) / (1 - R S)`.
-#[test]
-fn touching_glasses_of_two_indices_have_three_faces() {
-    let reflectance =
-        |one: f64, other: f64| (one - other) * (one - other) / ((one + other) * (one + other));
-    let transmission = |one: f64, other: f64| (1.0 - one) * (1.0 - other) / (1.0 - one * other);
-    let faces = [(1.0, 1.5), (1.5, 1.25), (1.25, 1.0)];
-    // What a stack of layers without losses reflects is what it does not transmit.
-    let through = faces.iter().fold(1.0, |through, &(one, other)| {
-        transmission(1.0 - through, reflectance(one, other))
-    });
+/// What a stack of faces between these indices transmits. Intensities of faces that reflect `R` and
+/// `S` add up to the transmission `(1 - R) (1 - S) / (1 - R S)`, and a stack without losses reflects
+/// what it does not transmit.
+fn through(indices: &[f64]) -> f64 {
+    indices.windows(2).fold(1.0, |through, pair| {
+        let ratio = (pair[0] - pair[1]) / (pair[0] + pair[1]);
+        let (one, other) = (1.0 - through, ratio * ratio);
+        (1.0 - one) * (1.0 - other) / (1.0 - one * other)
+    })
+}
+
+/// The light through slabs of glass, each with its ends and its index.
+fn assert_through(slabs: &[(f64, f64, f64)], expected: f64, what: &str) {
     let mut scene = stage::scene(&[]);
     scene.background = Background::Color(DVec3::ZERO);
     scene.render.integrator = Integrator::Path;
     scene.render.max_depth = 100;
-    for (low, high, ior) in [(0.0, 1.0, 1.25), (1.0, 2.0, 1.5), (-3.0, -2.0, 0.0)] {
-        let slab = Cylinder::new(DVec3::Z * low, DVec3::Z * high, 50.0, Caps::Both);
-        let kind = match ior > 0.0 {
-            true => MaterialKind::Glass {
-                roughness: 0.0,
-                ior,
-            },
-            false => MaterialKind::Light { strength: 1.0 },
-        };
-        add(&mut scene, slab.expect("a slab"), kind);
+    let slab = |low: f64, high: f64| {
+        Cylinder::new(DVec3::Z * low, DVec3::Z * high, 50.0, Caps::Both).expect("a slab")
+    };
+    for &(low, high, ior) in slabs {
+        let roughness = 0.0;
+        add(
+            &mut scene,
+            slab(low, high),
+            MaterialKind::Glass { roughness, ior },
+        );
     }
-    assert_mean(scene, 256, DVec3::splat(through), "two glasses");
+    add(
+        &mut scene,
+        slab(-3.0, -2.0),
+        MaterialKind::Light { strength: 1.0 },
+    );
+    assert_mean(scene, 256, DVec3::splat(expected), what);
+}
+
+/// Two indices that touch have the faces of 1 to 1.5, 1.5 to 1.25 and 1.25 to 1.
+#[test]
+fn touching_glasses_of_two_indices_have_three_faces() {
+    let expected = through(&[1.0, 1.5, 1.25, 1.0]);
+    assert_through(
+        &[(0.0, 1.0, 1.25), (1.0, 2.0, 1.5)],
+        expected,
+        "two glasses",
+    );
+}
+
+/// Where glasses overlap, the one that comes later counts.
+#[test]
+fn nested_glasses_have_the_faces_of_the_later_one() {
+    let (inner, outer) = ((1.0, 2.0, 2.5), (0.0, 3.0, 1.5));
+    let four = through(&[1.0, 1.5, 2.5, 1.5, 1.0]);
+    assert_through(&[outer, inner], four, "the inner later");
+    assert_through(
+        &[inner, outer],
+        through(&[1.0, 1.5, 1.0]),
+        "the outer later",
+    );
+    let three = through(&[1.0, 2.5, 1.5, 1.0]);
+    assert_through(&[(0.0, 2.0, 1.5), (1.0, 3.0, 2.5)], three, "overlapping");
 }
 
 /// Within a hollow sphere of the reflectance ρ, light that was reflected once gives every place of
