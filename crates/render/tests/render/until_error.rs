@@ -6,14 +6,13 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use cyltrace::scene::{
-    self, Background, Camera, CylinderRecord, Frame, Integrator, MaterialIndex, Projection,
-    Prototype, Scene, Sky, Solids, load,
-};
-use cyltrace::solid::{Caps, Cylinder};
+use cyltrace::scene::{self, Background, Integrator, Projection, Scene, Sky, load};
+use cyltrace::solid::Caps;
 use cyltrace::tracer::{Options, Tracer, workers};
 use cyltrace_render::{Picture, Settings, Target, render};
 use glam::DVec3;
+
+use super::stage;
 
 fn picture(tracer: &Tracer, settings: &Settings, threads: usize) -> Picture {
     let pool = workers(NonZeroUsize::new(threads)).expect("threads");
@@ -27,30 +26,12 @@ fn until(error: f64) -> Option<Target> {
 /// The bottom of a tube, seen from above: little of the sky is visible from there, so most
 /// samples are black and few are white. What has too few white ones looks done.
 fn tube() -> Scene {
-    let cylinder = |top: f64, radius: f64, caps| {
-        let (bottom, top) = (DVec3::NEG_Z, DVec3::new(0.0, 0.0, top));
-        Cylinder::new(bottom, top, radius, caps).expect("a cylinder")
-    };
-    let cylinders = [
-        cylinder(0.0, 9.0, Caps::Both),
-        cylinder(6.0, 1.5, Caps::None),
-    ];
-    let records = (0..).zip(&cylinders);
-    let records = records.map(|(number, one)| CylinderRecord::new(one, number, MaterialIndex(0)));
-    let root = Prototype {
-        solids: Solids::of_cylinders(records),
-        ..Prototype::default()
-    };
+    let ground = (DVec3::NEG_Z, DVec3::ZERO, 9.0, Caps::Both);
+    let tube = (DVec3::NEG_Z, DVec3::new(0.0, 0.0, 6.0), 1.5, Caps::None);
+    let mut scene = stage::scene(&[ground, tube]);
+    scene.camera.projection = Projection::Orthographic { height: Some(1.0) };
     Scene {
-        camera: Camera {
-            projection: Projection::Orthographic { height: Some(1.0) },
-            frame: Frame::LookAt {
-                position: DVec3::new(0.0, 0.0, 50.0),
-                look_at: DVec3::ZERO,
-                up: DVec3::Y,
-            },
-            lens: None,
-        },
+        materials: Scene::new(Vec::new()).materials,
         film: scene::Film {
             width: 6,
             height: 5,
@@ -60,7 +41,7 @@ fn tube() -> Scene {
             color: DVec3::ONE,
             strength: 1.0,
         }),
-        ..Scene::new(vec![root])
+        ..scene
     }
 }
 
