@@ -117,11 +117,12 @@ impl Number for Bounded {
 #[cfg(test)]
 mod tests {
     use super::super::big::Big;
+    use super::super::estimate::Estimate;
     use super::*;
     use crate::math::Random;
 
-    /// Evaluates random expressions in both number types: the exact one is within the error
-    /// bound.
+    /// Evaluates random expressions in the number types: the exact one is within the error
+    /// bounds.
     #[test]
     fn bounds_hold_for_random_expressions() {
         let mut random = Random::new(77, 0);
@@ -131,12 +132,48 @@ mod tests {
                 size * if random.below(2) == 0 { 1.0 } else { -1.0 }
             };
             let inputs: [f64; 6] = std::array::from_fn(|_| number());
-            let bounded = expression::<Bounded>(&inputs);
             let big = expression::<Big>(&inputs);
+            let off = |value: &Big| value.minus(&big).0.to_f64().value().abs();
+            let bounded = expression::<Bounded>(&inputs);
             let as_big = Big::of(bounded.value.high).plus(&Big::of(bounded.value.low));
-            let off = as_big.minus(&big).0.to_f64().value().abs();
-            assert!(off <= bounded.error, "case {case}: {off:e} {bounded:?}");
+            assert!(off(&as_big) <= bounded.error, "case {case}: {bounded:?}");
+            let estimate = expression::<Estimate>(&inputs);
+            let as_big = Big::of(estimate.value);
+            assert!(off(&as_big) <= estimate.error, "case {case}: {estimate:?}");
         }
+    }
+
+    /// Signs next to zero are certain or unknown, never wrong.
+    #[test]
+    fn signs_of_estimates_are_right_next_to_zero() {
+        let mut random = Random::new(78, 0);
+        let mut certain = 0;
+        for case in 0..3_000 {
+            let (x, y) = (random.log_uniform(1e-3, 1e3), random.log_uniform(1e-3, 1e3));
+            // x² y² less a number some ulps beside it.
+            let square = (x * y) * (x * y);
+            let beside = square * (1.0 + (random.below(17) as f64 - 8.0) * f64::EPSILON);
+            let sign = |x: &Big| x.sign().expect("certain");
+            let terms = |x, y, beside| {
+                Big::of(x)
+                    .times(&Big::of(y))
+                    .times(&Big::of(x))
+                    .times(&Big::of(y))
+                    .minus(&Big::of(beside))
+            };
+            let exact = sign(&terms(x, y, beside));
+            let of = Estimate::of;
+            let estimate = of(x)
+                .times(&of(y))
+                .times(&of(x))
+                .times(&of(y))
+                .minus(&of(beside));
+            if let Some(sign) = estimate.sign() {
+                certain += 1;
+                assert_eq!(sign, exact, "case {case}");
+            }
+        }
+        assert!((300..2_700).contains(&certain), "{certain} of 3000");
     }
 
     fn expression<N: Number>(x: &[f64; 6]) -> N {

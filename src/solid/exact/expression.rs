@@ -2,13 +2,15 @@
 //!
 //! A solver uses this file for a difference that is small relative to its terms. It evaluates
 //! the same polynomial in double-double with a running error bound, and if those 106 bits do
-//! not decide, in numbers of any length.
+//! not decide, in numbers of any length. Signs are first evaluated in f64 with an error bound,
+//! which decides those of points that are not next to a surface.
 
 use std::cmp::Ordering;
 
 use super::Number;
 use super::big::Big;
 use super::bounded::Bounded;
+use super::estimate::Estimate;
 use crate::math::power_of_two;
 
 /// A double-double is accepted as the value if its error bound is below this share of it.
@@ -49,6 +51,12 @@ pub(in crate::solid) fn quotient(expression: &impl Expression, divisor: f64) -> 
 
 /// Compares the expression with zero.
 pub(in crate::solid) fn sign(expression: &impl Expression) -> Ordering {
+    let estimate = expression.value::<Estimate>().sign();
+    estimate.unwrap_or_else(|| long_sign(expression))
+}
+
+#[cold]
+fn long_sign(expression: &impl Expression) -> Ordering {
     let bounded = expression.value::<Bounded>().sign();
     bounded.unwrap_or_else(|| {
         let sign = expression.value::<Big>().sign();

@@ -16,6 +16,7 @@ mod big;
 mod bounded;
 mod certificate;
 mod decide;
+mod estimate;
 mod expression;
 mod number;
 mod root;
