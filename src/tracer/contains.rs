@@ -15,11 +15,12 @@ use glam::DVec3;
 
 use super::frame::LocalRay;
 use super::prototype::Prototype;
-use super::query::{Query, QueryMode};
+use super::query::{Query, QueryMode, SolidRef};
 use super::{Tracer, normalize_direction};
 use crate::math::Ray;
-use crate::scene::PrototypeIndex;
+use crate::scene::{Listed, MaterialIndex, PrototypeIndex, SolidList};
 use crate::solid::SolidKind;
+use crate::with_solid_kind;
 
 /// A solid that contains a point. Ordered by the instance path, then by the primitive.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -56,25 +57,37 @@ impl Tracer {
         self.containing(point, Prototype::search_exhaustively)
     }
 
+    /// The material of the last solid that contains a point, in the order of
+    /// [`Tracer::contains`], among the solids whose material `counts`. It takes less time than
+    /// the list of all of them.
+    #[must_use]
+    pub fn material_at(
+        &self,
+        point: DVec3,
+        counts: impl Fn(MaterialIndex) -> bool,
+    ) -> Option<MaterialIndex> {
+        let places = self.places(point, Prototype::search);
+        let with_materials = places.into_iter().map(|place| {
+            let (kind, record) = (place.member.kind, place.member.record as usize);
+            let solids = &self.scene.prototypes[place.prototype.0 as usize].solids;
+            let (primitive, material) = with_solid_kind!(kind, S => {
+                let list = S::list(solids);
+                (list.primitive(record), list.material(record))
+            });
+            ((place.path, primitive), material)
+        });
+        let counted = with_materials.filter(|&(_, material)| counts(material));
+        let last = counted.max_by(|(place, _), (other, _)| place.cmp(other));
+        last.map(|(_, material)| material)
+    }
+
     fn containing(
         &self,
         point: DVec3,
         trace: impl FnOnce(&Prototype, &LocalRay, &mut Query),
     ) -> Vec<Containing> {
-        let ray = Ray {
-            t_max: 0.0,
-            ..Ray::new(point, DVec3::ONE)
-        };
-        let (Some(root), Some((ray, _))) = (&self.root, normalize_direction(&ray)) else {
-            return Vec::new();
-        };
-        let mut query = Query::containing(&ray);
-        trace(root, &LocalRay::new(&ray), &mut query);
-        let QueryMode::Containing(places) = query.mode else {
-            unreachable!("a query keeps its mode");
-        };
+        let places = self.places(point, trace).into_iter();
         let mut containing: Vec<_> = places
-            .into_iter()
             .map(|place| {
                 let prototype = &self.scene.prototypes[place.prototype.0 as usize];
                 let (kind, record) = (place.member.kind, place.member.record);
@@ -88,5 +101,26 @@ impl Tracer {
             .collect();
         containing.sort_unstable();
         containing
+    }
+
+    /// The solids that contain a point, in no order.
+    pub(super) fn places(
+        &self,
+        point: DVec3,
+        trace: impl FnOnce(&Prototype, &LocalRay, &mut Query),
+    ) -> Vec<SolidRef> {
+        let ray = Ray {
+            t_max: 0.0,
+            ..Ray::new(point, DVec3::ONE)
+        };
+        let (Some(root), Some((ray, _))) = (&self.root, normalize_direction(&ray)) else {
+            return Vec::new();
+        };
+        let mut query = Query::containing(&ray);
+        trace(root, &LocalRay::new(&ray), &mut query);
+        let QueryMode::Containing(places) = query.mode else {
+            unreachable!("a query keeps its mode");
+        };
+        places
     }
 }

@@ -2,6 +2,7 @@
 //! the exhaustive search says, through placements.
 
 use cyltrace::math::Random;
+use cyltrace::scene::{MaterialIndex, Prototype, SolidRecord};
 use cyltrace::solid::{AnySolid, Caps, Cuboid, Sphere};
 use cyltrace::tracer::{Containing, Tracer};
 use cyltrace::{math::Orientation, solid::Cylinder};
@@ -96,7 +97,12 @@ fn points_of_the_surface_are_held_and_their_neighbours_are_not() {
 fn nested_placements_lose_no_point() {
     for nested in nested_placements(SEED + 5) {
         let mut prototypes = nested.scene.prototypes.clone();
-        prototypes[3] = prototype_of(&crowd(SEED + 6, 100));
+        prototypes[3] = Prototype::default();
+        for (number, solid) in (0..).zip(crowd(SEED + 6, 100)) {
+            let material = MaterialIndex((number % 3) as u16);
+            let record = SolidRecord::new(solid, number, material);
+            prototypes[3].solids.push(record).expect("f64 keeps it");
+        }
         let tracer = tracer_of(prototypes);
         let held: usize = (0..test_support::ray_count() / 50)
             .into_par_iter()
@@ -107,6 +113,13 @@ fn nested_placements_lose_no_point() {
                 let found = tracer.contains(point);
                 assert_eq!(found, tracer.contains_exhaustive(point), "{point:?}");
                 assert!(found.is_sorted());
+                let mut materials = found.iter().rev().filter_map(|one| {
+                    let solids = &tracer.scene().prototypes[one.prototype.0 as usize].solids;
+                    solids.material(one.solid, one.primitive)
+                });
+                let counts = |material: MaterialIndex| material.0 == 1;
+                let last = materials.find(|one| counts(*one));
+                assert_eq!(tracer.material_at(point, counts), last, "{point:?}");
                 found.len()
             })
             .sum();
