@@ -53,6 +53,7 @@ impl Scene {
             clear_sky: None,
             environment: None,
             lights: Vec::new(),
+            clips: Vec::new(),
             legend: None,
             background: Background::DEFAULT,
             skipped_rows: 0,

@@ -2,6 +2,7 @@
 //! independent of the files it came from.
 
 use super::background::Background;
+use super::clip::Clip;
 use super::colors::{PlacementValues, ValueList};
 use super::environment::Environment;
 use super::legend::Legend;
@@ -37,6 +38,8 @@ pub struct Scene {
     pub environment: Option<Environment>,
     /// The lights with a place, which integrator `path` sees.
     pub lights: Vec<Light>,
+    /// The planes that cut the picture open. What all of them leave is visible.
+    pub clips: Vec<Clip>,
     /// The legend over the picture, if any.
     pub legend: Option<Legend>,
     /// What camera rays see that miss.

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::background::BackgroundKey;
+use super::clip::ClipKeys;
 use super::colors::ValueKeys;
 use super::defaults;
 use super::description::Integrator;
@@ -112,6 +113,8 @@ for_each_solid_format! {
         pub sky: Option<Keys<SkyKeys>>,
         pub legend: Option<Keys<LegendKeys>>,
         pub environment: Option<Keys<EnvironmentKeys>>,
+        #[serde(default)]
+        pub clip: Vec<Keys<ClipKeys>>,
         #[serde(default)]
         pub point_light: Vec<Keys<PointLightKeys>>,
         #[serde(default)]

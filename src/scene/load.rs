@@ -8,6 +8,7 @@ use toml::Spanned;
 
 use super::background::background;
 use super::camera::camera;
+use super::clip::clips;
 use super::colors::{DataColumns, Found};
 use super::description::{Prototype, PrototypeIndex, Scene};
 use super::document::{Body, Document, PrototypeKeys};
@@ -71,6 +72,7 @@ pub(super) fn lower(
     let legend = legend.map(|Keys(keys)| keys.legend(source, &materials));
     let legend = legend.transpose()?;
 
+    let clips = clips(source, &materials, &document.clip)?;
     let placed_lights = placed_lights(
         source,
         &document.point_light,
@@ -102,6 +104,7 @@ pub(super) fn lower(
         environment: environment.transpose()?,
         lights: placed_lights,
         background: background(source, document.background.as_ref())?,
+        clips,
         legend,
         skipped_rows: bodies.iter().map(|body| body.skipped).sum(),
         notes,

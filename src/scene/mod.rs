@@ -25,6 +25,7 @@ mod aimed_camera;
 mod background;
 mod camera;
 mod clear_sky;
+mod clip;
 mod colors;
 mod contents;
 mod cylinder_list;
@@ -77,6 +78,7 @@ mod view_volume;
 
 pub use aimed_camera::AimedCamera;
 pub use background::Background;
+pub use clip::Clip;
 pub use colors::{
     Along, Checker, ColorMap, DataColor, PlacementValues, Stripes, Texture, TextureError, ValueList,
 };

@@ -67,7 +67,7 @@ pub(super) fn placed_lights(
 }
 
 /// A point whose coordinates are not too large.
-fn point(source: &Source, name: &str, key: &Triple) -> Result<DVec3, SceneError> {
+pub(super) fn point(source: &Source, name: &str, key: &Triple) -> Result<DVec3, SceneError> {
     let point = vector(key);
     let size = point.abs().max_element();
     if size <= Cylinder::GREATEST {

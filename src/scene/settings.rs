@@ -140,7 +140,7 @@ fn angle_degrees(source: &Source, key: Option<&Spanned<Number>>) -> Result<f64, 
 
 /// The unit vector along a vector. One whose length is 1 to within roundings is its own, so
 /// that the direction of a scene survives a file.
-fn unit_or_same(vector: DVec3) -> Option<DVec3> {
+pub(super) fn unit_or_same(vector: DVec3) -> Option<DVec3> {
     match is_unit(vector) {
         true => Some(vector),
         false => unit(vector),

@@ -8,11 +8,12 @@ use crate::solid::SolidKind;
 
 /// The top-level keys for arrays of tables, `[[...]]`, besides those of solids and of their
 /// files.
-const LISTS: [&str; 8] = [
+const LISTS: [&str; 9] = [
     "material",
     "point_light",
     "sphere_light",
     "rectangle_light",
+    "clip",
     "prototype",
     "instance",
     "instance_table",

@@ -62,6 +62,8 @@ pub enum Part {
     ZMin,
     /// The face at the greatest z.
     ZMax,
+    /// The inside of a solid where a clip plane cuts it.
+    Cut,
 }
 
 impl Part {
@@ -78,6 +80,7 @@ impl Part {
             Self::YMax => "y+",
             Self::ZMin => "z-",
             Self::ZMax => "z+",
+            Self::Cut => "cut",
         }
     }
 

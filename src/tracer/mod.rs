@@ -12,6 +12,7 @@ mod batch;
 mod build;
 mod contains;
 pub mod counters;
+mod cut;
 mod decisions;
 mod estimate;
 mod filter;

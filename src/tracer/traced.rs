@@ -120,6 +120,9 @@ pub(crate) trait TracedSolid: Listed + Send + Sync {
 
     /// Whether the closed solid contains a point.
     fn contains(&self, point: DVec3) -> bool;
+
+    /// Whether its surface is the boundary of a solid with an inside.
+    fn is_closed(&self) -> bool;
 }
 
 impl<S: ConvexSolid + Listed> TracedSolid for S {
@@ -191,6 +194,10 @@ impl<S: ConvexSolid + Listed> TracedSolid for S {
     fn contains(&self, point: DVec3) -> bool {
         ConvexSolid::contains(self, point)
     }
+
+    fn is_closed(&self) -> bool {
+        ConvexSolid::is_closed(self)
+    }
 }
 
 impl From<ComposedIntersection> for SurfaceHit {
@@ -257,5 +264,9 @@ impl TracedSolid for Composition {
 
     fn contains(&self, point: DVec3) -> bool {
         self.contains(point)
+    }
+
+    fn is_closed(&self) -> bool {
+        true
     }
 }

@@ -3,7 +3,8 @@
 use std::fs;
 
 use cyltrace::scene::{
-    Color, Integrator, Lens, Light, LightShape, MaterialKind, Projection, SceneFile,
+    Clip, Color, Integrator, Lens, Light, LightShape, MaterialIndex, MaterialKind, Projection,
+    SceneFile, load,
 };
 use glam::DVec3;
 
@@ -185,4 +186,52 @@ fn clear_sky_has_the_sun_that_belongs_to_it() {
 
     let constant = scene(&format!("{SOLID}[sky]\nmodel = \"constant\"\n"));
     assert!(constant.sky.is_some() && constant.clear_sky.is_none() && constant.sun.is_none());
+}
+
+#[test]
+fn clip_planes_are_read_and_cut_faces_have_one_color() {
+    let clips = |keys: &str| scene(&format!("{SOLID}{BARK}{keys}")).clips;
+    assert_eq!(clips(""), []);
+    let both = clips(
+        "[[clip]]\npoint = [1, 2, 3]\nnormal = [0, 0, 2]\n\
+         [[clip]]\npoint = [0, 0, 0]\nnormal = [0, 3, 4]\nmaterial = \"bark\"\nshadows = false\n",
+    );
+    let expected = [
+        Clip {
+            point: DVec3::new(1.0, 2.0, 3.0),
+            normal: DVec3::Z,
+            material: None,
+            casts_shadows: true,
+        },
+        Clip {
+            point: DVec3::ZERO,
+            normal: DVec3::new(0.0, 0.6, 0.8),
+            material: Some(MaterialIndex(1)),
+            casts_shadows: false,
+        },
+    ];
+    assert_eq!(both, expected);
+    let checker = "[[material]]\nname = \"a\"\ncolor = { checker = [[0, 0, 0], [1, 1, 1]] }\n";
+    for (keys, expected) in [
+        ("point = [0, 0, 0]", "missing field `normal`"),
+        ("point = [0, 0, 0]\nnormal = [0, 0, 0]", "normal is zero"),
+        (
+            "point = [1e300, 0, 0]\nnormal = [0, 0, 1]",
+            "at most 1.4e45",
+        ),
+        (
+            "point = [0, 0, 0]\nnormal = [0, 0, 1]\nmaterial = \"a\"",
+            "same color everywhere",
+        ),
+        (
+            "point = [0, 0, 0]\nnormal = [0, 0, 1]\nmaterial = \"b\"",
+            "unknown material \"b\"",
+        ),
+    ] {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("scene.toml");
+        fs::write(&path, format!("{SOLID}{checker}[[clip]]\n{keys}\n")).expect("written");
+        let message = load(&path).expect_err(keys).to_string();
+        assert!(message.contains(expected), "{keys}: {message}");
+    }
 }

@@ -8,6 +8,7 @@
 mod bsdf;
 mod channels;
 mod clear_sky;
+mod clips;
 mod colors;
 mod disk;
 mod environment;

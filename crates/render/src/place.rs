@@ -162,9 +162,9 @@ fn middle_hits(
     let mut hits = Vec::new();
     if let Some(fields) = channels.fields(&view.colors) {
         let middle = |(x, y)| DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-        let middles: Vec<Ray> = pixels.map(|pixel| view.camera.ray(middle(pixel))).collect();
+        let mut middles: Vec<Ray> = pixels.map(|pixel| view.camera.ray(middle(pixel))).collect();
         rays.camera += middles.len() as u64;
-        view.tracer.closest_batch_with(&middles, fields, &mut hits);
+        view.first_hits(&mut middles, fields, &mut hits);
     }
     hits
 }

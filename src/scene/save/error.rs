@@ -67,12 +67,17 @@ pub enum SaveError {
         /// The number.
         number: f64,
     },
-    /// The direction of the sun is not a unit vector.
-    #[error("the sun's direction has the length {length}: it must be 1 to within roundings")]
-    SunDirection {
+    /// The direction of the sun or the normal of a clip plane is not a unit vector.
+    #[error("{what} has the length {length}: it must be 1 to within roundings")]
+    NotUnit {
+        /// `"the sun's direction"` or `"the normal of a clip plane"`.
+        what: &'static str,
         /// Its length.
         length: f64,
     },
+    /// Cut faces have the default material.
+    #[error("a clip plane has the default material, which has no name to refer to")]
+    DefaultMaterialOfClip,
     /// Some prototypes store cylinders in f64 and others in f32.
     #[error("cylinders are stored in f64 and in f32: a scene file has one precision for all")]
     MixedRecords,

@@ -275,7 +275,7 @@ fn face(part: Part) -> (usize, bool) {
         Part::YMax => (1, true),
         Part::ZMin => (2, false),
         Part::ZMax => (2, true),
-        Part::Side | Part::Cap0 | Part::Cap1 => {
+        Part::Side | Part::Cap0 | Part::Cap1 | Part::Cut => {
             unreachable!("a cuboid has no part {}", part.name())
         }
     }

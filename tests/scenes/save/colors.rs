@@ -4,8 +4,8 @@ use std::fs::File;
 
 use cyltrace::math::Random;
 use cyltrace::scene::{
-    Color, ColorMap, Corner, DataColor, Legend, Listed, MaterialIndex, PlacementValues, Prototype,
-    Scene, SolidList, ValueList, load,
+    Clip, Color, ColorMap, Corner, DataColor, Legend, Listed, MaterialIndex, PlacementValues,
+    Prototype, Scene, SolidList, ValueList, load,
 };
 use cyltrace::solid::SolidKind;
 use cyltrace::with_solid_kind;
@@ -52,6 +52,13 @@ fn with_values(seed: u64) -> Scene {
         background: DVec3::splat(1.0 / 3.0),
         opacity: 0.1,
     });
+    let material = [None, Some(MaterialIndex(3))][seed as usize % 2];
+    scene.clips = vec![Clip {
+        point: DVec3::new(0.1, -1e40, 1.0 / 3.0),
+        normal: DVec3::new(1.0, 2.0, -3.0).normalize(),
+        material: material.filter(|_| scene.materials.len() > 3),
+        casts_shadows: seed.is_multiple_of(3),
+    }];
     scene.materials[2].color = data("x, y; z's", "tab10", [0.0, 1.0], &labels);
     let mut random = Random::new(seed, 2);
     for prototype in &mut scene.prototypes {

@@ -24,6 +24,7 @@ pub fn assert_same(one: &Scene, other: &Scene, name: &str) {
     };
     assert_eq!(bits(one), bits(other), "{name}");
     same(&one.lights, &other.lights, name);
+    same(&one.clips, &other.clips, name);
     same(&one.legend, &other.legend, name);
     same(&one.background, &other.background, name);
     assert_eq!(one.records(), other.records(), "{name}");

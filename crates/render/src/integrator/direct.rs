@@ -14,7 +14,7 @@ use std::f64::consts::FRAC_1_PI;
 use cyltrace::tracer::HitFields;
 use glam::DVec3;
 
-use super::{Batch, RayCounts, SUN, Sample, View, facing_normal, spawn};
+use super::{Batch, RayCounts, SUN, Sample, View, facing_normal};
 use crate::bsdf::cosine_direction;
 use crate::frame::Frame;
 use crate::sampler::Pairs;
@@ -26,7 +26,7 @@ impl View<'_> {
         batch: &mut Batch,
         rays: &mut RayCounts,
     ) {
-        self.closest(batch, HitFields::NORMAL | HitFields::SPAWN);
+        self.camera_hits(batch, HitFields::NORMAL | HitFields::SPAWN);
         let hits = batch.hits.iter();
         let colors = hits.map(|hit| {
             if hit.is_some() {
@@ -47,7 +47,7 @@ impl View<'_> {
         rays: &mut RayCounts,
     ) {
         let fields = HitFields::NORMAL | HitFields::SPAWN | self.colors.fields();
-        self.closest(batch, fields);
+        self.camera_hits(batch, fields);
         let rays_and_hits = batch.rays.iter().zip(&batch.hits);
         let colors = rays_and_hits.map(|(ray, hit)| match hit {
             Some(_) => DVec3::ZERO,
@@ -91,7 +91,7 @@ impl View<'_> {
             let cosine = facing_normal(ray, hit).dot(direction);
             if cosine > 0.0 {
                 let light = arriving * cosine * FRAC_1_PI;
-                shadows.push(sample, spawn(hit, direction), light);
+                shadows.push(sample, self.spawn(hit, direction), light);
             }
         }
         rays.shadow += shadows.add_to(&mut batch.colors, self.tracer);
@@ -113,8 +113,8 @@ impl View<'_> {
             if let Some(hit) = hit {
                 let direction = cosine_direction(samples[number].direction());
                 let direction = Frame::about(facing_normal(ray, hit)).in_world(direction);
-                let mut ray = spawn(hit, direction);
-                ray.t_max = distance;
+                let mut ray = self.spawn(hit, direction);
+                ray.t_max = ray.t_max.min(distance);
                 openings.push(number, ray, radiance(direction));
             }
         }

@@ -20,6 +20,7 @@ use glam::{DVec2, DVec3};
 
 use super::Lights;
 use super::bsdf::Bsdf;
+use super::clips::Clips;
 use super::colors::Colors;
 use super::sampler::PixelSampler;
 use cyltrace::math::{Bounds, Ray};
@@ -87,6 +88,7 @@ pub(super) struct View<'a> {
     bsdfs: Vec<Option<Box<dyn Bsdf>>>,
     /// Whether a ray may be in glass.
     has_glass: bool,
+    clips: Clips,
     /// A box around the scene.
     bounds: Bounds,
 }
@@ -153,6 +155,7 @@ impl<'a> View<'a> {
         Self {
             has_glass: bsdfs.iter().any(transmits),
             tracer,
+            clips: Clips::new(&scene.clips),
             colors: Colors::new(tracer.scene()),
             camera,
             lights,
@@ -186,7 +189,7 @@ impl<'a> View<'a> {
     }
 
     fn normals(&self, batch: &mut Batch) {
-        self.closest(batch, HitFields::NORMAL);
+        self.camera_hits(batch, HitFields::NORMAL);
         let hits = batch.hits.iter().map(Option::as_ref);
         let color = |hit: &PartialHit| normal(hit) * 0.5 + 0.5;
         let colors = hits.map(|hit| hit.map_or(DVec3::ZERO, color));
@@ -202,10 +205,26 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The first hits of the batch's rays.
-    fn closest(&self, batch: &mut Batch, fields: HitFields) {
-        self.tracer
-            .closest_batch_with(&batch.rays, fields, &mut batch.hits);
+    /// The first hits of the batch's rays, which come from the camera.
+    fn camera_hits(&self, batch: &mut Batch, fields: HitFields) {
+        self.first_hits(&mut batch.rays, fields, &mut batch.hits);
+    }
+
+    /// The first hits of rays from the camera. Clip planes shorten the rays.
+    pub(super) fn first_hits(
+        &self,
+        rays: &mut [Ray],
+        fields: HitFields,
+        hits: &mut Vec<Option<PartialHit>>,
+    ) {
+        self.clips.first_hits(self.tracer, rays, fields, hits);
+    }
+
+    /// A ray from a hit, up to where it leaves what clip planes leave.
+    fn spawn(&self, hit: &PartialHit, direction: DVec3) -> Ray {
+        let ray = hit.spawn(direction);
+        let ray = ray.expect("every integrator that spawns rays requests it");
+        self.clips.limited(ray, hit)
     }
 }
 
@@ -221,9 +240,4 @@ fn facing_normal(ray: &Ray, hit: &PartialHit) -> DVec3 {
 
 fn normal(hit: &PartialHit) -> DVec3 {
     hit.normal().expect("every integrator requests normals")
-}
-
-fn spawn(hit: &PartialHit, direction: DVec3) -> Ray {
-    hit.spawn(direction)
-        .expect("every integrator that spawns rays requests it")
 }

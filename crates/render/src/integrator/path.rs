@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::segment::Path;
 use super::vertex::PathNumbers;
-use super::{Batch, RayCounts, Sample, View, spawn};
+use super::{Batch, RayCounts, Sample, View};
 use crate::lights::Arriving;
 
 /// The paths of a batch that go on.
@@ -55,7 +55,7 @@ impl View<'_> {
             throughput: DVec3::ONE,
             point: ray.origin,
             density: None,
-            ior: self.ior_at(ray.origin),
+            ior: self.ior_before(ray),
             depth: 0,
             is_direct: true,
         });
@@ -64,12 +64,19 @@ impl View<'_> {
         batch.paths.are_hits.clear();
         batch.paths.are_hits.resize(samples.len(), false);
         let fields = self.path_fields();
+        let mut is_first = true;
         while !batch.paths.paths.is_empty() {
             batch.rays.clear();
             batch
                 .rays
                 .extend(batch.paths.paths.iter().map(|path| path.ray));
-            self.closest(batch, fields);
+            match is_first {
+                true => self.camera_hits(batch, fields),
+                false => self
+                    .tracer
+                    .closest_batch_with(&batch.rays, fields, &mut batch.hits),
+            }
+            is_first = false;
             self.step(samples, batch);
             rays.shadow += batch.occlusion.add_to(&mut batch.colors, self.tracer);
             rays.shadow += self.add_solids(batch);
@@ -97,7 +104,9 @@ impl View<'_> {
         paths.to_solids.clear();
         paths.rays.clear();
         for (path, hit) in paths.paths.iter().zip(&batch.hits) {
-            let t = hit.as_ref().map_or(f64::INFINITY, PartialHit::t);
+            let cut = self.cut_from_inside(path, hit.as_ref());
+            let hit = hit.as_ref().or(cut.as_ref());
+            let t = hit.map_or(f64::INFINITY, PartialHit::t);
             let color = &mut batch.colors[path.sample];
             let light = self.lights.on(&path.ray, t, path.point);
             paths.are_hits[path.sample] |= light.is_some() || hit.is_some();
@@ -123,7 +132,7 @@ impl View<'_> {
             let Some(vertex) = self.vertex(path, hit, &**bsdf, numbers) else {
                 // The same glass is on both sides.
                 paths.next.push(Path {
-                    ray: spawn(hit, path.ray.direction),
+                    ray: self.spawn(hit, path.ray.direction),
                     density: None,
                     ..*path
                 });

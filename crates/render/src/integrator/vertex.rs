@@ -8,7 +8,7 @@ use cyltrace::tracer::PartialHit;
 use glam::DVec3;
 
 use super::segment::{Path, weight};
-use super::{Sample, View, facing_normal, spawn};
+use super::{Sample, View, facing_normal};
 use crate::bsdf::{Bsdf, Local, Numbers, Scattered};
 use crate::frame::Frame;
 use crate::lights::Towards;
@@ -75,7 +75,7 @@ impl View<'_> {
         let normal = facing_normal(&path.ray, hit);
         let mut far_ior = path.ior;
         if bsdf.transmits() {
-            far_ior = self.ior_at(spawn(hit, -normal).origin);
+            far_ior = self.ior_behind(path, hit);
             if far_ior == path.ior {
                 return None;
             }
@@ -124,8 +124,8 @@ impl View<'_> {
             weight(density, other)
         });
         let light = vertex.path.throughput * value * sample.arriving * weight;
-        let mut ray = spawn(vertex.hit, sample.direction);
-        ray.t_max = sample.distance;
+        let mut ray = self.spawn(vertex.hit, sample.direction);
+        ray.t_max = ray.t_max.min(sample.distance);
         let number = match towards {
             Towards::Solid(_, number) => Some(number),
             Towards::Open(..) => None,
@@ -169,7 +169,7 @@ impl View<'_> {
         let direction = vertex.frame.in_world(incoming);
         Some(Path {
             sample: path.sample,
-            ray: spawn(vertex.hit, direction),
+            ray: self.spawn(vertex.hit, direction),
             throughput,
             point: vertex.hit.point().unwrap_or_default(),
             density,

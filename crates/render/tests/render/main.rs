@@ -1,5 +1,6 @@
 //! Light, and pictures that are the same on all paths.
 
+mod clip;
 mod colors;
 mod lens;
 mod light;

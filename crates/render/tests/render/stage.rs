@@ -52,7 +52,19 @@ pub fn scene(cylinders: &[(DVec3, DVec3, f64, Caps)]) -> Scene {
 pub const GROUND: (DVec3, DVec3, f64, Caps) =
     (DVec3::new(0.0, 0.0, -1.0), DVec3::ZERO, 100.0, Caps::Both);
 
+/// The picture of any scene.
+pub fn film_of(scene: Scene, spp: u32) -> Film {
+    rendered(scene, spp).0
+}
+
 pub fn picture(scene: Scene, spp: u32) -> Film {
+    let (film, done) = rendered(scene, spp);
+    assert_eq!(done, u64::from(SIZE * SIZE), "all pixels reported");
+    film
+}
+
+/// The picture, and the number of pixels that were reported.
+fn rendered(scene: Scene, spp: u32) -> (Film, u64) {
     let tracer = Tracer::new(Arc::new(scene), &Options::default()).expect("built");
     let settings = Settings {
         spp,
@@ -64,12 +76,7 @@ pub fn picture(scene: Scene, spp: u32) -> Film {
         done.fetch_add(pixels, Ordering::Relaxed);
     };
     let picture = render(&tracer, &settings, &pool, &count, &AtomicBool::new(false));
-    assert_eq!(
-        done.into_inner(),
-        u64::from(SIZE * SIZE),
-        "all pixels reported"
-    );
-    picture.expect("rendered").film
+    (picture.expect("rendered").film, done.into_inner())
 }
 
 pub fn mean(film: &Film) -> DVec3 {

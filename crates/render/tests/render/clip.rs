@@ -1,0 +1,237 @@
+//! Clip planes: against set operations, which are other code, and closed forms.
+
+use std::f64::consts::PI;
+use std::fs;
+
+use cyltrace::scene::{
+    self, Background, Clip, Integrator, MaterialIndex, MaterialKind, Scene, Sky, SolidRecord, Sun,
+};
+use cyltrace::solid::{AnySolid, Sphere};
+use cyltrace_output::Film;
+use glam::DVec3;
+
+use super::stage::{self, assert_all_pixels, mean, picture};
+
+const VIEW: &str = r#"
+background = [0.1, 0.2, 0.3]
+[camera]
+position = [5, -6, 7]
+look_at = [0.3, 0, 0]
+fov_degrees = 40
+[film]
+width = 48
+height = 48
+[sun]
+direction = [1, -0.4, 1.2]
+angle_degrees = 0
+color = [1, 1, 1]
+strength = 3
+[sky]
+color = [0.6, 0.8, 1]
+"#;
+
+/// Solids of all kinds with an inside, by their keys.
+const SOLIDS: [(&str, &str); 6] = [
+    (
+        "cuboid",
+        "center = [0, 0, -1.6], half_widths = [3, 3, 0.25]",
+    ),
+    ("sphere", "center = [-1, -1, 0], radius = 1.1"),
+    (
+        "cylinder",
+        "p0 = [-1.5, 0.5, -1], p1 = [1.2, 1.6, 1.5], radius = 0.5",
+    ),
+    (
+        "cone",
+        "p0 = [1.2, -1, -1], p1 = [1.2, -1, 2], radius0 = 0.9, radius1 = 0.1",
+    ),
+    (
+        "rounded_cone",
+        "p0 = [-2, 1.8, 0], p1 = [1, 1.8, 0.3], radius0 = 0.3, radius1 = 0.6",
+    ),
+    // Overlaps the sphere.
+    (
+        "cuboid",
+        "center = [-0.2, -1, 0.4], half_widths = [0.5, 0.4, 1]",
+    ),
+];
+
+/// Loads a scene from text.
+fn load(text: &str) -> Scene {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, format!("{VIEW}{text}")).expect("a scene file");
+    scene::load(&path).expect("a scene")
+}
+
+/// The solids below z = 0.2 and before x = 1.1, by planes and by intersections with a cuboid.
+fn by_planes_and_by_operations(solids: &[(&str, &str)], shadows: bool) -> [Scene; 2] {
+    let keys = |keys: &str| keys.replace("], ", "]\n").replace(", radius", "\nradius");
+    let mut planes = format!(
+        "[[clip]]\npoint = [9, 9, 0.2]\nnormal = [0, 0, 3]\nshadows = {shadows}\n\
+         [[clip]]\npoint = [1.1, 0, 0]\nnormal = [1, 0, 0]\nshadows = {shadows}\n"
+    );
+    let mut operations = String::new();
+    for (kind, list) in solids {
+        planes += &format!("[[{kind}]]\n{}\n", keys(list));
+        operations += &format!(
+            "[[intersection]]\nof = [{{ {kind} = {{ {list} }} }}, {{ cuboid = {{ center = \
+             [-98.9, 0, -99.8], half_widths = [100, 100, 100] }} }}]\n"
+        );
+    }
+    [load(&planes), load(&operations)]
+}
+
+fn greatest_difference(one: &Film, other: &Film) -> f32 {
+    let pixels = one.pixels().as_flattened().iter();
+    let pairs = pixels.zip(other.pixels().as_flattened());
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+/// What removes a part for all rays is an intersection with a cuboid.
+#[test]
+fn cuts_are_those_of_intersections() {
+    let scenes = by_planes_and_by_operations(&SOLIDS, false);
+    for integrator in Integrator::ALL {
+        let [planes, operations] = scenes.clone().map(|mut scene| {
+            scene.render.integrator = integrator;
+            stage::film_of(scene, 4)
+        });
+        let apart = greatest_difference(&planes, &operations);
+        assert!(apart < 1e-5, "{integrator:?}: {apart}");
+    }
+}
+
+/// Planes that keep the shadows leave the same surfaces, and other light.
+#[test]
+fn planes_with_shadows_change_light_alone() {
+    let [mut planes, mut operations] = by_planes_and_by_operations(&SOLIDS, true);
+    for scene in [&mut planes, &mut operations] {
+        scene.render.integrator = Integrator::Normal;
+    }
+    let normals = [&planes, &operations].map(|scene| stage::film_of(scene.clone(), 4));
+    assert!(greatest_difference(&normals[0], &normals[1]) < 1e-5);
+    for scene in [&mut planes, &mut operations] {
+        scene.render.integrator = Integrator::Sun;
+    }
+    let light = [planes, operations].map(|scene| stage::film_of(scene, 4));
+    assert!(greatest_difference(&light[0], &light[1]) > 0.1);
+    assert!(mean(&light[0]).element_sum() < mean(&light[1]).element_sum());
+}
+
+/// A block that is cut at half its height, under a roof that is removed.
+fn block_under_a_roof(casts_shadows: bool, height: f64) -> Film {
+    let block = |z: f64, top: f64| {
+        (
+            DVec3::new(0.0, 0.0, z),
+            DVec3::new(0.0, 0.0, top),
+            50.0,
+            cyltrace::solid::Caps::Both,
+        )
+    };
+    let mut scene = stage::scene(&[block(-1.0, height), block(2.0, 3.0)]);
+    scene.sun = Some(Sun {
+        angle_degrees: 0.0,
+        ..sun()
+    });
+    scene.render.integrator = Integrator::Sun;
+    scene.clips = vec![Clip {
+        point: DVec3::ZERO,
+        normal: DVec3::Z,
+        material: None,
+        casts_shadows,
+    }];
+    picture(scene, 1)
+}
+
+fn sun() -> Sun {
+    Sun {
+        direction: DVec3::new(0.6, 0.0, 0.8),
+        color: DVec3::ONE,
+        strength: 2.0,
+        angle_degrees: 0.0,
+    }
+}
+
+/// The light of the sun on the material of the stage.
+fn sunlit() -> DVec3 {
+    DVec3::new(0.5, 0.25, 1.0) * 2.0 * 0.8 / PI
+}
+
+#[test]
+fn cut_faces_are_lit_and_other_surfaces_keep_shadows_if_requested() {
+    for casts_shadows in [false, true] {
+        assert_all_pixels(&block_under_a_roof(casts_shadows, 1.0), sunlit());
+    }
+    assert_all_pixels(&block_under_a_roof(false, -0.5), sunlit());
+    assert_all_pixels(&block_under_a_roof(true, -0.5), DVec3::ZERO);
+}
+
+/// A tube that is cut along its axis shows its inside, a rod a face.
+#[test]
+fn tubes_stay_open_where_they_are_cut() {
+    let up = |caps| {
+        let along = (DVec3::NEG_X * 60.0, DVec3::X * 60.0, 20.0, caps);
+        let mut scene = stage::scene(&[along]);
+        scene.render.integrator = Integrator::Normal;
+        scene.clips = vec![Clip {
+            point: DVec3::ZERO,
+            normal: DVec3::Z,
+            material: None,
+            casts_shadows: true,
+        }];
+        picture(scene, 1)
+    };
+    let color = |normal: DVec3| 0.5 * normal + 0.5;
+    assert_all_pixels(&up(cyltrace::solid::Caps::Both), color(DVec3::Z));
+    let inside = up(cyltrace::solid::Caps::None);
+    // The picture is 2 wide, so that the wall's normals there are within 1/20 of -z.
+    let apart = (mean(&inside) - color(DVec3::NEG_Z)).abs().max_element();
+    assert!(apart < 1e-3, "{:?}", mean(&inside));
+}
+
+/// A cut ball of glass without color vanishes in a sky that is the same everywhere, if what is
+/// removed is removed for all rays. Otherwise paths from the cut face would be caught by total
+/// reflection in the ball, which is still round for them.
+#[test]
+fn cut_glass_loses_no_light() {
+    let radiance = DVec3::new(0.5, 0.75, 1.0);
+    let mut scene = stage::scene(&[]);
+    scene.background = Background::Color(DVec3::ZERO);
+    scene.sky = Some(Sky {
+        color: radiance,
+        strength: 1.0,
+    });
+    scene.render.integrator = Integrator::Path;
+    scene.render.max_depth = 200;
+    scene.materials[0].kind = MaterialKind::Glass {
+        roughness: 0.0,
+        ior: 1.5,
+    };
+    scene.materials[0].color = scene::Color::Constant(DVec3::ONE);
+    let ball: AnySolid = Sphere::new(DVec3::ZERO, 0.9).expect("a ball").into();
+    let record = SolidRecord::new(ball, 0, MaterialIndex(0));
+    scene.prototypes[0].solids.push(record).expect("pushed");
+    scene.clips = vec![Clip {
+        point: DVec3::new(0.0, 0.0, 0.3),
+        normal: DVec3::new(0.6, 0.0, 0.8),
+        material: None,
+        casts_shadows: false,
+    }];
+    let film = picture(scene, 64);
+    let apart = (mean(&film) / radiance - 1.0).abs().max_element();
+    assert!(apart < 2e-3, "{apart}");
+}
+
+/// The material of a plane colors its faces.
+#[test]
+fn cut_faces_have_the_material_of_the_plane() {
+    let scene = load(
+        "[[material]]\nname = \"red\"\ncolor = [0.8, 0.1, 0.1]\n[[clip]]\npoint = [0, 0, 0]\n\
+         normal = [0, 0, 1]\nmaterial = \"red\"\n[[cuboid]]\nhalf_widths = [200, 200, 1]\n",
+    );
+    let cosine = 1.2 / DVec3::new(1.0, -0.4, 1.2).length();
+    let sky = DVec3::new(0.6, 0.8, 1.0);
+    let expected = DVec3::new(0.8, 0.1, 0.1) * (3.0 * cosine / PI + sky);
+    assert_all_pixels(&stage::film_of(scene, 1), expected);
+}
