@@ -7,6 +7,7 @@ use super::background::Background;
 use super::description::{
     Camera, Film, Frame, Integrator, Projection, Prototype, RenderSettings, Scene,
 };
+use super::illustration::Illustration;
 use super::material::Material;
 
 pub(super) const FOV_DEGREES: f64 = 40.0;
@@ -55,6 +56,7 @@ impl Scene {
             lights: Vec::new(),
             clips: Vec::new(),
             legend: None,
+            illustration: Illustration::default(),
             background: Background::DEFAULT,
             skipped_rows: 0,
             notes: Vec::new(),

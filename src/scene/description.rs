@@ -5,6 +5,7 @@ use super::background::Background;
 use super::clip::Clip;
 use super::colors::{PlacementValues, ValueList};
 use super::environment::Environment;
+use super::illustration::Illustration;
 use super::legend::Legend;
 use super::light::{ClearSky, Light, Sky, Sun};
 use super::material::{Color, Material};
@@ -42,6 +43,8 @@ pub struct Scene {
     pub clips: Vec<Clip>,
     /// The legend over the picture, if any.
     pub legend: Option<Legend>,
+    /// Scale bar, axes, outlines and depth cue, if any.
+    pub illustration: Illustration,
     /// What camera rays see that miss.
     pub background: Background,
     /// The number of table rows skipped because of `degenerate = "skip"`.

@@ -13,6 +13,7 @@ use super::description::Integrator;
 use super::formats::{
     BeamLatticeKeys, CylinderTableKeys, SolidFile, SwcKeys, for_each_solid_format,
 };
+use super::illustration_keys::{AxesKeys, DepthCueKeys, OutlinesKeys, ScaleBarKeys};
 use super::legend_keys::LegendKeys;
 use super::materials::MaterialKeys;
 use super::set_operations::{CompositionKeys, Operation};
@@ -112,6 +113,10 @@ for_each_solid_format! {
         pub sun: Option<Keys<SunKeys>>,
         pub sky: Option<Keys<SkyKeys>>,
         pub legend: Option<Keys<LegendKeys>>,
+        pub scale_bar: Option<Spanned<Keys<ScaleBarKeys>>>,
+        pub axes: Option<Keys<AxesKeys>>,
+        pub outlines: Option<Keys<OutlinesKeys>>,
+        pub depth_cue: Option<Keys<DepthCueKeys>>,
         pub environment: Option<Keys<EnvironmentKeys>>,
         #[serde(default)]
         pub clip: Vec<Keys<ClipKeys>>,

@@ -1,7 +1,6 @@
 //! What a picture shows of a data color, and where.
 
-use glam::DVec3;
-
+use super::inset::Inset;
 use super::record::MaterialIndex;
 
 /// The legend of a data color, which is drawn over the picture.
@@ -11,46 +10,6 @@ pub struct Legend {
     pub material: MaterialIndex,
     /// The line above it; none if empty.
     pub title: String,
-    /// The corner of the picture that it is in.
-    pub corner: Corner,
-    /// The height of its text over the height of the picture, in [0.005, 0.2].
-    pub size: f64,
-    /// The color of its text, linear RGB, each component in [0, 1].
-    pub color: DVec3,
-    /// The color behind the text, linear RGB, each component in [0, 1].
-    pub background: DVec3,
-    /// The opacity of the color behind, in [0, 1].
-    pub opacity: f64,
-}
-
-/// A corner of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
-pub enum Corner {
-    TopLeft,
-    TopRight,
-    BottomLeft,
-    BottomRight,
-}
-
-impl Corner {
-    /// All corners and their names in scene files.
-    pub(super) const NAMES: [(&'static str, Self); 4] = [
-        ("top left", Self::TopLeft),
-        ("top right", Self::TopRight),
-        ("bottom left", Self::BottomLeft),
-        ("bottom right", Self::BottomRight),
-    ];
-
-    /// The name in scene files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        let [top_left, top_right, bottom_left, bottom_right] = Self::NAMES.map(|(name, _)| name);
-        match self {
-            Self::TopLeft => top_left,
-            Self::TopRight => top_right,
-            Self::BottomLeft => bottom_left,
-            Self::BottomRight => bottom_right,
-        }
-    }
+    /// Its place and look.
+    pub inset: Inset,
 }

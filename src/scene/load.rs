@@ -11,11 +11,12 @@ use super::camera::camera;
 use super::clip::clips;
 use super::colors::{DataColumns, Found};
 use super::description::{Prototype, PrototypeIndex, Scene};
-use super::document::{Body, Document, PrototypeKeys};
+use super::document::{Body, CameraKeys, Document, PrototypeKeys};
 use super::environment_file;
 use super::error::SceneError;
 use super::formats::Context;
 use super::graph::{self, Node};
+use super::illustration_keys::{IllustrationKeys, illustration};
 use super::materials::{Materials, check_names};
 use super::named_table::{PipeMemory, Tables};
 use super::names::{quoted, suggestion};
@@ -71,6 +72,18 @@ pub(super) fn lower(
     let legend = document.legend.as_ref();
     let legend = legend.map(|Keys(keys)| keys.legend(source, &materials));
     let legend = legend.transpose()?;
+    let default_camera = CameraKeys::default();
+    let camera_keys = document.camera.as_ref();
+    let camera_keys = camera_keys.map_or(&default_camera, |Keys(keys)| keys);
+    let camera = camera(source, camera_keys)?;
+    let legend_keys = document.legend.as_ref().map(|Keys(keys)| keys);
+    let tables = IllustrationKeys {
+        scale_bar: document.scale_bar.as_ref(),
+        axes: document.axes.as_ref(),
+        outlines: document.outlines.as_ref(),
+        depth_cue: document.depth_cue.as_ref(),
+    };
+    let illustration = illustration(source, tables, &camera, legend_keys.zip(legend.as_ref()))?;
 
     let clips = clips(source, &materials, &document.clip)?;
     let placed_lights = placed_lights(
@@ -95,7 +108,7 @@ pub(super) fn lower(
     let table_notes = bodies.iter().flat_map(|body| body.table_notes.clone());
     let notes = notes.chain(table_notes).collect();
     Ok(Scene {
-        camera: camera(source, &keys(document.camera))?,
+        camera,
         film: film(source, &keys(document.film))?,
         render: render(source, &keys(document.render), integrator)?,
         sun: lights.sun,
@@ -106,6 +119,7 @@ pub(super) fn lower(
         background: background(source, document.background.as_ref())?,
         clips,
         legend,
+        illustration,
         skipped_rows: bodies.iter().map(|body| body.skipped).sum(),
         notes,
         prototypes: bodies.into_iter().map(|body| body.prototype).collect(),

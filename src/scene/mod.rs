@@ -6,7 +6,8 @@
 //! 2. The entries are turned into solids, placements and settings, one kind in each
 //!    file: `solids` with their `pose`, `set_operations`, the `formats` of files,
 //!    `placing`, `scatter`, `camera`, `materials` with `material_kinds` and `colors`,
-//!    `placed_lights`, `environment_file`, `clear_sky` and `settings`, with `light_values`. Rows
+//!    `placed_lights`, `environment_file`, `clear_sky` and `settings`, with `light_values`, and
+//!    `legend_keys` and `illustration_keys`, with `inset_keys`. Rows
 //!    of tables are streamed;
 //!    `named_table` opens the tables and `table` reads them. `solid_collector` collects
 //!    and numbers the solids of a prototype.
@@ -38,6 +39,10 @@ mod error;
 mod formats;
 mod graph;
 mod hit_table;
+mod illustration;
+mod illustration_keys;
+mod inset;
+mod inset_keys;
 mod instance_rows;
 mod legend;
 mod legend_keys;
@@ -93,7 +98,9 @@ pub use environment::{Environment, EnvironmentError};
 pub use error::{SceneError, Statement};
 pub use formats::{SOLID_FORMATS, SolidFormatInfo, beams_of_model, check_swc};
 pub use hit_table::{GivenHit, GivenHits};
-pub use legend::{Corner, Legend};
+pub use illustration::{Axes, DepthCue, Illustration, Outlines, ScaleBar};
+pub use inset::{Corner, Inset};
+pub use legend::Legend;
 pub use light::{ClearSky, Light, LightShape, Sky, Sun};
 pub use limits::*;
 pub use material::{Color, Material, MaterialKind};

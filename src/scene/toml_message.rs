@@ -20,7 +20,7 @@ const LISTS: [&str; 9] = [
     "scatter",
 ];
 /// The other top-level keys.
-const SINGLE: [&str; 8] = [
+const SINGLE: [&str; 12] = [
     "background",
     "camera",
     "film",
@@ -28,6 +28,10 @@ const SINGLE: [&str; 8] = [
     "sun",
     "sky",
     "legend",
+    "scale_bar",
+    "axes",
+    "outlines",
+    "depth_cue",
     "environment",
 ];
 

@@ -411,18 +411,19 @@ fn legend_is_of_a_data_color() {
         (MaterialIndex(1), "x")
     );
     assert_eq!(
-        (legend.corner, legend.size, legend.opacity),
+        (legend.inset.corner, legend.inset.size, legend.inset.opacity),
         (Corner::BottomRight, 0.03, 0.8)
     );
     let keys = "material = \"m\"\ntitle = \"\"\ncorner = \"top left\"\nsize = 0.1\n\
         color = [1, 0, 0]\nbackground = [0, 0, 1]\nopacity = 0";
     let legend = scene(&data(keys)).legend.expect("a legend");
     assert_eq!(
-        (legend.title.as_str(), legend.corner),
+        (legend.title.as_str(), legend.inset.corner),
         ("", Corner::TopLeft)
     );
-    assert_eq!((legend.size, legend.opacity), (0.1, 0.0));
-    assert_eq!((legend.color, legend.background), (DVec3::X, DVec3::Z));
+    let inset = legend.inset;
+    assert_eq!((inset.size, inset.opacity), (0.1, 0.0));
+    assert_eq!((inset.color, inset.background), (DVec3::X, DVec3::Z));
     for (keys, text) in [
         ("", "missing field `material`"),
         ("material = \"n\"", "unknown material \"n\""),

@@ -3,8 +3,8 @@
 use std::fs;
 
 use cyltrace::scene::{
-    Clip, Color, Integrator, Lens, Light, LightShape, MaterialIndex, MaterialKind, Projection,
-    SceneFile, load,
+    Axes, Clip, Color, Corner, DepthCue, Illustration, Inset, Integrator, Lens, Light, LightShape,
+    MaterialIndex, MaterialKind, Outlines, Projection, ScaleBar, SceneFile,
 };
 use glam::DVec3;
 
@@ -228,10 +228,142 @@ fn clip_planes_are_read_and_cut_faces_have_one_color() {
             "unknown material \"b\"",
         ),
     ] {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let path = folder.path().join("scene.toml");
-        fs::write(&path, format!("{SOLID}{checker}[[clip]]\n{keys}\n")).expect("written");
-        let message = load(&path).expect_err(keys).to_string();
+        let message = failure(&format!("{SOLID}{checker}[[clip]]\n{keys}\n"));
         assert!(message.contains(expected), "{keys}: {message}");
+    }
+}
+
+/// The message of a scene that cannot be loaded.
+fn failure(text: &str) -> String {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, text).expect("written");
+    let loaded = SceneFile::read(&path).and_then(SceneFile::load);
+    loaded.expect_err(text).to_string()
+}
+
+/// The look of what is in a corner if nothing is stated.
+fn plain(corner: Corner) -> Inset {
+    Inset {
+        corner,
+        size: 0.03,
+        color: DVec3::ZERO,
+        background: DVec3::ONE,
+        opacity: 0.8,
+    }
+}
+
+#[test]
+fn illustrations_have_the_documented_defaults() {
+    assert_eq!(scene(SOLID).illustration, Illustration::default());
+    let bare = scene(&format!(
+        "{SOLID}[scale_bar]\n[axes]\n[outlines]\n[depth_cue]\n"
+    ));
+    let expected = Illustration {
+        scale_bar: Some(ScaleBar {
+            length: None,
+            unit: String::new(),
+            inset: plain(Corner::BottomLeft),
+        }),
+        axes: Some(Axes {
+            labels: true,
+            inset: plain(Corner::TopLeft),
+        }),
+        outlines: Some(Outlines {
+            width: 1.0,
+            color: DVec3::ZERO,
+            crease_degrees: 30.0,
+            between_solids: true,
+        }),
+        depth_cue: Some(DepthCue {
+            color: None,
+            start: None,
+            end: None,
+            strength: 0.8,
+        }),
+    };
+    assert_eq!(bare.illustration, expected);
+    let stated = scene(&format!(
+        "{SOLID}[scale_bar]\nlength = 20\nunit = \"µm\"\ncorner = \"top right\"\nsize = 0.05\n\
+         [axes]\nlabels = false\ncolor = [1, 0, 0]\nbackground = [0, 0, 1]\nopacity = 0\n\
+         [outlines]\nwidth = 32\ncolor = [0, 1, 0]\ncrease_degrees = 180\nbetween_solids = false\n\
+         [depth_cue]\ncolor = [1, 1, 0]\nstart = 2\nend = 3\nstrength = 1\n"
+    ));
+    let expected = Illustration {
+        scale_bar: Some(ScaleBar {
+            length: Some(20.0),
+            unit: "µm".to_owned(),
+            inset: Inset {
+                size: 0.05,
+                ..plain(Corner::TopRight)
+            },
+        }),
+        axes: Some(Axes {
+            labels: false,
+            inset: Inset {
+                color: DVec3::X,
+                background: DVec3::Z,
+                opacity: 0.0,
+                ..plain(Corner::TopLeft)
+            },
+        }),
+        outlines: Some(Outlines {
+            width: 32.0,
+            color: DVec3::Y,
+            crease_degrees: 180.0,
+            between_solids: false,
+        }),
+        depth_cue: Some(DepthCue {
+            color: Some(DVec3::new(1.0, 1.0, 0.0)),
+            start: Some(2.0),
+            end: Some(3.0),
+            strength: 1.0,
+        }),
+    };
+    assert_eq!(stated.illustration, expected);
+}
+
+#[test]
+fn illustrations_that_cannot_be_drawn_are_errors_with_help() {
+    for (keys, text) in [
+        (
+            "[scale_bar]\nlength = 0",
+            "length is 0: it must be a positive number",
+        ),
+        ("[scale_bar]\nunit = \"a\\nb\"", "one line of text"),
+        ("[scale_bar]\nsize = 1", "between 0.005 and 0.2"),
+        (
+            "[scale_bar]\n[camera]\ntype = \"panorama\"",
+            "choose another type of [camera]",
+        ),
+        (
+            "[axes]\ncorner = \"bottom left\"\n[scale_bar]",
+            "[scale_bar] and [axes] are both in the corner \"bottom left\"",
+        ),
+        (
+            "[scale_bar]\ncorner = \"top left\"\n[axes]",
+            "free corners: \"top right\", \"bottom left\", \"bottom right\"",
+        ),
+        (
+            "[outlines]\nwidth = 0",
+            "width is 0: it must be greater than 0",
+        ),
+        (
+            "[outlines]\nwidth = 33",
+            "width is 33: it must be between 0 and 32",
+        ),
+        ("[outlines]\ncrease_degrees = 181", "crease_degrees is 181"),
+        ("[outlines]\ncolor = [0, 0, 2]", "must be in [0, 1]"),
+        ("[depth_cue]\nstrength = 1.5", "strength is 1.5"),
+        ("[depth_cue]\nstart = -1", "start is -1"),
+        (
+            "[depth_cue]\nstart = 3\nend = 3",
+            "end is 3: it must be greater than start, which is 3",
+        ),
+        ("[[axes]]", "axes must be a single table"),
+        ("[depth_cues]", "depth_cue"),
+    ] {
+        let error = failure(&format!("{keys}\n{SOLID}"));
+        assert!(error.contains(text), "{keys}: {error}");
     }
 }

@@ -19,8 +19,8 @@
 use glam::{DVec2, DVec3};
 
 use super::AimedCamera;
-use crate::math::{Bounds, Ray};
-use crate::scene::description::{Frame, Lens};
+use crate::math::Ray;
+use crate::scene::description::Lens;
 
 /// A lens at a known distance from its sharp plane.
 #[derive(Clone, Copy, Debug)]
@@ -40,17 +40,10 @@ impl AimedLens {
 impl AimedCamera {
     /// The lens of a camera whose eye is in place. `None` if the default distance of the sharp plane
     /// is not positive, as in a scene whose box is a point.
-    pub(super) fn aimed_lens(
-        &self,
-        lens: Lens,
-        frame: Frame,
-        bounds: &Bounds,
-    ) -> Option<AimedLens> {
-        let target = match frame {
-            Frame::Auto => super::center(bounds),
-            Frame::LookAt { look_at, .. } => look_at,
-        };
-        let focus = lens.focus.unwrap_or_else(|| self.coordinates(target).z);
+    pub(super) fn aimed_lens(&self, lens: Lens) -> Option<AimedLens> {
+        let focus = lens
+            .focus
+            .unwrap_or_else(|| self.coordinates(self.target).z);
         (focus > 0.0).then_some(AimedLens {
             radius: 0.5 * lens.aperture,
             focus,
@@ -85,8 +78,8 @@ impl AimedCamera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Random;
-    use crate::scene::description::{Camera, Film, Projection};
+    use crate::math::{Bounds, Random};
+    use crate::scene::description::{Camera, Film, Frame, Projection};
 
     const FILM: Film = Film {
         width: 300,

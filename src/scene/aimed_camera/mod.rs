@@ -3,11 +3,14 @@
 //! Film positions are in pixels, `x` to the right and `y` downward, with
 //! `(0, 0)` at the picture's upper left corner. Rays start at the eye
 //! (perspective, panorama) or on the plane through it (orthographic), at `t = 0`. `lens` moves
-//! them to a point of the lens.
+//! them to a point of the lens. `measures` has lengths and depths, and `turning` goes round the
+//! scene.
 
 mod framing;
 mod lens;
+mod measures;
 mod panorama;
+mod turning;
 
 use glam::{DVec2, DVec3};
 
@@ -34,6 +37,10 @@ pub struct AimedCamera {
     kind: Kind,
     film: DVec2,
     lens: Option<AimedLens>,
+    /// What the camera looks at: the stated point, or the center of the scene's box.
+    target: DVec3,
+    /// The unit vector of the frame's upward direction.
+    axis: DVec3,
 }
 
 /// The kind of a projection.
@@ -51,18 +58,18 @@ impl AimedCamera {
     pub fn new(description: &Camera, bounds: &Bounds, film: Film) -> Self {
         let size = DVec2::new(f64::from(film.width), f64::from(film.height));
         let shape = DVec2::new(size.x / size.y, 1.0);
-        let (towards_eye, up, target) = match description.frame {
-            Frame::Auto => (AUTO_EYE, DVec3::Z, center(bounds)),
+        let (towards_eye, up, eye, target) = match description.frame {
+            Frame::Auto => (AUTO_EYE, DVec3::Z, center(bounds), center(bounds)),
             Frame::LookAt {
                 position,
                 look_at,
                 up,
-            } => (position - look_at, up, position),
+            } => (position - look_at, up, position, look_at),
         };
         let forward = -unit(towards_eye);
         let right = unit(forward.cross(unit(up)));
         let mut camera = Self {
-            eye: target,
+            eye,
             right,
             up: right.cross(forward),
             forward,
@@ -70,6 +77,8 @@ impl AimedCamera {
             kind: Kind::of(description.projection),
             film: size,
             lens: None,
+            target,
+            axis: unit(up),
         };
         let corners = camera.corners(bounds);
         let auto = description.frame == Frame::Auto;
@@ -90,9 +99,7 @@ impl AimedCamera {
             }
             Projection::Panorama => camera.level(unit(up)),
         }
-        camera.lens = description
-            .lens
-            .and_then(|lens| camera.aimed_lens(lens, description.frame, bounds));
+        camera.lens = description.lens.and_then(|lens| camera.aimed_lens(lens));
         camera
     }
 
@@ -163,12 +170,7 @@ impl AimedCamera {
 
     /// A point in camera coordinates: to the right, upward, forward.
     fn coordinates(&self, point: DVec3) -> DVec3 {
-        let from_eye = point - self.eye;
-        DVec3::new(
-            from_eye.dot(self.right),
-            from_eye.dot(self.up),
-            from_eye.dot(self.forward),
-        )
+        self.seen_direction(point - self.eye)
     }
 
     /// The corners of the scene's box in camera coordinates.

@@ -2,8 +2,8 @@
 //! [`load`](super::load()).
 //!
 //! `text` writes keys, and `tables` the rows of tables; the parts of a scene are written one a
-//! file: `picture` (camera, film, lights, materials), `environment`, `solids`, `cylinders`, `operations` and
-//! `placements`. The keys of each kind of solid are written where they are read, in
+//! file: `picture` (camera, film, lights, materials), `drawings` (legend, scale bar, axes, outlines,
+//! depth cue), `environment`, `solids`, `cylinders`, `operations` and `placements`. The keys of each kind of solid are written where they are read, in
 //! [`solids`](super::solids).
 //!
 //! A number is written as the shortest decimal that reads back as the same f64. Primitive
@@ -11,6 +11,7 @@
 //! `primitive` states them.
 
 mod cylinders;
+mod drawings;
 mod environment;
 mod error;
 mod operations;
@@ -50,7 +51,7 @@ struct Saver<'a, W> {
 /// **What is promised.** [`load`](super::load()) reads the same scene from the files, to the
 /// last bit of every number: prototypes, solids with their primitive numbers and materials,
 /// placements with their instance numbers, the values that materials show, camera, film,
-/// render settings, lights, environment, legend and background. If the scene breaks a rule of
+/// render settings, lights, environment, legend, illustration and background. If the scene breaks a rule of
 /// `docs/scene-file.md`, which only scenes made in code
 /// do, this function or `load` fails; `load` never reads another scene.
 ///

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use super::drawings;
 use super::tables::Tables;
 use super::text::{Entry, Text};
 use super::{SaveError, check_names};
@@ -11,7 +12,6 @@ use crate::scene::description::{Camera, Frame, Projection, Scene};
 use crate::scene::light::{Light, LightShape};
 use crate::scene::material::Color;
 use crate::scene::material_kinds::keys_of;
-use crate::scene::record::MaterialIndex;
 use crate::scene::settings::is_unit;
 
 pub(super) fn state<W: Write>(
@@ -39,8 +39,7 @@ pub(super) fn state<W: Write>(
 
     lights(text, scene)?;
     materials(text, tables, scene)?;
-    legend(text, scene)?;
-    clips(text, scene)?;
+    drawings::state(text, scene)?;
     text.check()
 }
 
@@ -133,52 +132,6 @@ fn placed_light(text: &mut Text, light: &Light) {
     };
     entry.vector("color", light.color);
     entry.number("strength", light.strength);
-}
-
-fn legend(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
-    let Some(legend) = &scene.legend else {
-        return Ok(());
-    };
-    let material = material_name(scene, legend.material)?;
-    let mut entry = text.table("[legend]");
-    entry.text("material", material);
-    entry.text("title", &legend.title);
-    entry.text("corner", legend.corner.name());
-    entry.number("size", legend.size);
-    entry.vector("color", legend.color);
-    entry.vector("background", legend.background);
-    entry.number("opacity", legend.opacity);
-    Ok(())
-}
-
-fn clips(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
-    for clip in &scene.clips {
-        if clip.material == Some(MaterialIndex::default()) {
-            return Err(SaveError::DefaultMaterialOfClip);
-        }
-        let material = clip.material.map(|index| material_name(scene, index));
-        if !is_unit(clip.normal) {
-            return Err(SaveError::NotUnit {
-                what: "the normal of a clip plane",
-                length: clip.normal.length(),
-            });
-        }
-        let mut entry = text.table("[[clip]]");
-        entry.vector("point", clip.point);
-        entry.vector("normal", clip.normal);
-        entry.material(material.transpose()?);
-        entry.verbatim("shadows", if clip.casts_shadows { "true" } else { "false" });
-    }
-    Ok(())
-}
-
-fn material_name(scene: &Scene, index: MaterialIndex) -> Result<&str, SaveError> {
-    let material = scene.materials.get(usize::from(index.0));
-    let material = material.ok_or(SaveError::Reference {
-        what: "material",
-        index: index.0.into(),
-    })?;
-    Ok(&material.name)
 }
 
 fn materials<W: Write>(

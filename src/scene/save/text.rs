@@ -81,6 +81,11 @@ impl<'t> Entry<'t> {
         self.value(key, format_args!("{number}"));
     }
 
+    /// States true or false.
+    pub fn truth(&mut self, key: &'static str, truth: bool) {
+        self.value(key, format_args!("{truth}"));
+    }
+
     /// States three numbers.
     pub fn vector(&mut self, key: &'static str, vector: DVec3) {
         self.check(key, &vector.to_array());

@@ -4,8 +4,9 @@ use std::fs::File;
 
 use cyltrace::math::Random;
 use cyltrace::scene::{
-    Clip, Color, ColorMap, Corner, DataColor, Legend, Listed, MaterialIndex, PlacementValues,
-    Prototype, Scene, SolidList, ValueList, load,
+    Axes, Clip, Color, ColorMap, Corner, DataColor, DepthCue, Illustration, Inset, Legend, Listed,
+    MaterialIndex, Outlines, PlacementValues, Prototype, ScaleBar, Scene, SolidList, ValueList,
+    load,
 };
 use cyltrace::solid::SolidKind;
 use cyltrace::with_solid_kind;
@@ -46,11 +47,7 @@ fn with_values(seed: u64) -> Scene {
     scene.legend = Some(Legend {
         material: MaterialIndex(1),
         title: "a \"title\"\nü".to_owned(),
-        corner: [Corner::TopLeft, Corner::BottomRight][seed as usize % 2],
-        size: 0.1 / 3.0,
-        color: DVec3::X,
-        background: DVec3::splat(1.0 / 3.0),
-        opacity: 0.1,
+        inset: inset([Corner::TopLeft, Corner::BottomRight][seed as usize % 2]),
     });
     let material = [None, Some(MaterialIndex(3))][seed as usize % 2];
     scene.clips = vec![Clip {
@@ -59,6 +56,7 @@ fn with_values(seed: u64) -> Scene {
         material: material.filter(|_| scene.materials.len() > 3),
         casts_shadows: seed.is_multiple_of(3),
     }];
+    scene.illustration = illustration(seed);
     scene.materials[2].color = data("x, y; z's", "tab10", [0.0, 1.0], &labels);
     let mut random = Random::new(seed, 2);
     for prototype in &mut scene.prototypes {
@@ -89,6 +87,49 @@ fn with_values(seed: u64) -> Scene {
         }
     }
     scene
+}
+
+fn inset(corner: Corner) -> Inset {
+    Inset {
+        corner,
+        size: 0.1 / 3.0,
+        color: DVec3::X,
+        background: DVec3::splat(1.0 / 3.0),
+        opacity: 0.1,
+    }
+}
+
+/// An illustration with all parts or some, and with all keys or some.
+fn illustration(seed: u64) -> Illustration {
+    let stated = |number: f64| (!seed.is_multiple_of(3)).then_some(number);
+    let scale_bar = ScaleBar {
+        length: stated(1.0 / 3.0),
+        unit: "\"µm\"".to_owned(),
+        inset: inset(Corner::TopRight),
+    };
+    let axes = Axes {
+        labels: seed.is_multiple_of(2),
+        inset: inset(Corner::BottomLeft),
+    };
+    let outlines = Outlines {
+        width: 1.0 / 3.0,
+        color: DVec3::splat(0.1),
+        crease_degrees: 180.0,
+        between_solids: !seed.is_multiple_of(2),
+    };
+    let depth_cue = DepthCue {
+        color: stated(0.1).map(DVec3::splat),
+        start: stated(1e-3),
+        end: stated(1e9 / 3.0),
+        strength: 1.0,
+    };
+    let is_stated = |part: u64| seed & part == 0;
+    Illustration {
+        scale_bar: is_stated(1).then_some(scale_bar),
+        axes: is_stated(2).then_some(axes),
+        outlines: is_stated(4).then_some(outlines),
+        depth_cue: is_stated(8).then_some(depth_cue),
+    }
 }
 
 #[test]

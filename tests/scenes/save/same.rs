@@ -26,6 +26,7 @@ pub fn assert_same(one: &Scene, other: &Scene, name: &str) {
     same(&one.lights, &other.lights, name);
     same(&one.clips, &other.clips, name);
     same(&one.legend, &other.legend, name);
+    same(&one.illustration, &other.illustration, name);
     same(&one.background, &other.background, name);
     assert_eq!(one.records(), other.records(), "{name}");
     assert_eq!(one.prototypes.len(), other.prototypes.len(), "{name}");
