@@ -22,7 +22,9 @@ pub use figure::{Figure, Mark, Series, Symbol};
 pub use film::Film;
 pub use html::Page;
 pub use new_file::{FileError, NewFile, followed};
-pub use overlay::{Corner, Legend, Overlay, Scale, with_overlay};
+pub use overlay::{
+    Axes, Corner, Inset, Insets, Legend, Overlay, Scale, ScaleBar, ScaleBarError, with_overlays,
+};
 pub use picture::{
     Band, Bands, Channel, Contents, Format, Numbers, Output, OutputError, film_png_bytes, png_bytes,
 };

@@ -2,13 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use cyltrace::scene::{
-    Color, Corner as SceneCorner, DataColor, Listed, MaterialIndex, Prototype, Scene, SolidList,
-};
+use cyltrace::scene::{Color, DataColor, Listed, MaterialIndex, Prototype, Scene, SolidList};
 use cyltrace::solid::SolidKind;
 use cyltrace::with_solid_kind;
-use cyltrace_output::{Corner, Legend, Scale};
-use glam::DVec3;
+use cyltrace_output::{Legend, Scale};
+
+use super::inset::{inset, numbers};
 
 /// The colors of a bar, as many as 8-bit gradients have.
 const STEPS: u32 = 256;
@@ -16,12 +15,11 @@ const STEPS: u32 = 256;
 /// The most categories that are listed.
 const MOST_CATEGORIES: usize = 24;
 
-/// The legend of a scene for [`Legend::overlay`], if it states one.
+/// The legend of a scene, if it states one.
 ///
 /// A legend of categories lists those that solids of its material or placements have, up to
 /// 24, each with its label or its number.
-#[must_use]
-pub fn legend(scene: &Scene) -> Option<Legend> {
+pub(super) fn legend(scene: &Scene) -> Option<Legend> {
     let legend = scene.legend.as_ref()?;
     let Color::Data(data) = &scene.materials.get(usize::from(legend.material.0))?.color else {
         return None;
@@ -32,28 +30,15 @@ pub fn legend(scene: &Scene) -> Option<Legend> {
             let places = (0..STEPS).map(|step| f64::from(step) / f64::from(STEPS - 1));
             Scale::Range {
                 ends: data.range,
-                colors: places.map(|place| rgb(data.map.at(place))).collect(),
+                colors: places.map(|place| numbers(data.map.at(place))).collect(),
             }
         }
     };
     Some(Legend {
         title: legend.title.clone(),
-        corner: match legend.corner {
-            SceneCorner::TopLeft => Corner::TopLeft,
-            SceneCorner::TopRight => Corner::TopRight,
-            SceneCorner::BottomLeft => Corner::BottomLeft,
-            SceneCorner::BottomRight => Corner::BottomRight,
-        },
-        size: legend.size as f32,
-        color: rgb(legend.color),
-        background: rgb(legend.background),
-        opacity: legend.opacity as f32,
+        inset: inset(&legend.inset),
         scale,
     })
-}
-
-fn rgb(color: DVec3) -> [f32; 3] {
-    color.as_vec3().to_array()
 }
 
 /// The categories in the scene with their colors and names.
@@ -75,7 +60,7 @@ fn categories(scene: &Scene, material: MaterialIndex, data: &DataColor) -> Vec<(
     let listed = listed.map(|category| {
         let label = data.labels.get(category as usize);
         let name = label.cloned().unwrap_or_else(|| category.to_string());
-        (rgb(data.map.of_category(category)), name)
+        (numbers(data.map.of_category(category)), name)
     });
     listed.collect()
 }

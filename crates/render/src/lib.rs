@@ -13,6 +13,8 @@ mod colors;
 mod disk;
 mod environment;
 mod frame;
+mod inset;
+mod insets;
 mod integrator;
 mod legend;
 mod lights;
@@ -32,8 +34,8 @@ pub use channels::{ChannelGroup, Channels, NO_ID};
 pub use clear_sky::ClearSkyModel;
 pub use cyltrace::scene::GREATEST_PIXELS;
 pub use environment::EnvironmentMap;
+pub use insets::insets;
 pub use integrator::RayCounts;
-pub use legend::legend;
 pub use lights::{Lights, SunLight};
 pub use tiles::Tiles;
 pub use until_error::{Reached, Target};
@@ -63,6 +65,8 @@ pub struct Settings {
     pub channels: Channels,
     /// When a pixel has enough samples; `None` gives every pixel the same number.
     pub target: Option<Target>,
+    /// The camera is turned by this, see [`AimedCamera::turned`].
+    pub turn_degrees: f64,
 }
 
 impl Settings {
@@ -82,7 +86,15 @@ impl Settings {
             seed: 0,
             channels: Channels::new([], background.is_transparent()),
             target: None,
+            turn_degrees: 0.0,
         }
+    }
+
+    /// The camera of a picture.
+    #[must_use]
+    pub fn camera(&self, tracer: &Tracer) -> AimedCamera {
+        let camera = &tracer.scene().camera;
+        AimedCamera::new(camera, &tracer.bounds(), self.film).turned(self.turn_degrees)
     }
 
     /// The part of space that all rays of the picture will be in, where that is
@@ -94,7 +106,7 @@ impl Settings {
             Integrator::Normal => AimedCamera::stated(&scene.camera, self.film)?,
             Integrator::Ao | Integrator::Sun | Integrator::Path => return None,
         };
-        camera.view_volume()
+        camera.turned(self.turn_degrees).view_volume()
     }
 
     /// Says whether a picture can be made with these settings.
@@ -257,9 +269,7 @@ pub fn render_tiles(
     settings.check()?;
     let count = Tiles::of(settings.film).count();
     assert!(tiles.end <= count, "tiles {tiles:?} of {count}");
-    let scene = tracer.scene();
-    let camera = AimedCamera::new(&scene.camera, &tracer.bounds(), settings.film);
-    let view = View::new(tracer, camera, settings.integrator);
+    let view = View::new(tracer, settings.camera(tracer), settings.integrator);
     let work = Work {
         view: &view,
         settings,

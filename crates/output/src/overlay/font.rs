@@ -33,6 +33,20 @@ pub(super) fn length(text: &str, height: f32) -> f32 {
     glyphs(text, height).1
 }
 
+/// Draws a line of text of this height with its middle near a position. It may be beside the
+/// middle by half a pixel.
+pub(super) fn draw_around(
+    canvas: &mut Canvas,
+    text: &str,
+    height: f32,
+    [x, y]: [f32; 2],
+    color: [f32; 3],
+) {
+    let left = (x - 0.5 * length(text, height)).round() as i32;
+    let top = (y - 0.5 * height).round() as i32;
+    draw(canvas, text, height, [left, top], color);
+}
+
 /// Draws a line of text of this height, which is the distance from the lowest to the highest
 /// letters; its left upper corner is a whole pixel.
 pub(super) fn draw(

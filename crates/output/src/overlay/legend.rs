@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::canvas::Canvas;
+use super::inset::{Inset, Unit};
 use super::ticks::ticks;
 use super::{Overlay, font};
 
@@ -14,10 +15,8 @@ const BAR: f32 = 9.0;
 const LINE: f32 = 1.3;
 /// The width of the bar and of a category's square.
 const SWATCH: f32 = 0.9;
-/// Space within the edge of the legend, between its parts, and outside to the picture's edge.
-const PADDING: f32 = 0.6;
+/// Space between its parts.
 const GAP: f32 = 0.4;
-const MARGIN: f32 = 0.8;
 /// The length and width of the line beside a number.
 const TICK: f32 = 0.25;
 const STROKE: f32 = 0.07;
@@ -29,28 +28,10 @@ const MOST_STEPS: u32 = 5;
 pub struct Legend {
     /// The line above it; none if empty.
     pub title: String,
-    /// Where it is.
-    pub corner: Corner,
-    /// The height of its text over the height of the picture, greater than 0.
-    pub size: f32,
-    /// The color of the text, linear RGB.
-    pub color: [f32; 3],
-    /// The color behind, linear RGB.
-    pub background: [f32; 3],
-    /// The opacity of the color behind, in [0, 1].
-    pub opacity: f32,
+    /// Its place and look.
+    pub inset: Inset,
     /// What it shows.
     pub scale: Scale,
-}
-
-/// A corner of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names say it")]
-pub enum Corner {
-    TopLeft,
-    TopRight,
-    BottomLeft,
-    BottomRight,
 }
 
 /// What a legend shows.
@@ -83,22 +64,11 @@ mod exact {
     }
 }
 
-/// Lengths in pixels for a height of the text.
-#[derive(Clone, Copy)]
-struct Unit(f32);
-
-impl Unit {
-    /// A length in whole pixels, at least 1.
-    fn pixels(self, length: f32) -> i32 {
-        ((length * self.0).round() as i32).max(1)
-    }
-}
-
 impl Legend {
     /// The legend for a picture of this size.
     #[must_use]
-    pub fn overlay(&self, (width, height): (u32, u32)) -> Overlay {
-        let unit = Unit(self.size * height as f32);
+    pub fn overlay(&self, size: (u32, u32)) -> Overlay {
+        let (unit, color) = (self.inset.unit(size), self.inset.color);
         let title = match self.title.is_empty() {
             true => 0,
             false => unit.pixels(TITLE + GAP),
@@ -108,24 +78,16 @@ impl Legend {
         let beside = unit.pixels(SWATCH) + unit.pixels(TICK) + unit.pixels(GAP);
         let widest = beside as f32 + texts.fold(0.0, f32::max);
         let widest = widest.max(font::length(&self.title, TITLE * unit.0));
-        let padding = unit.pixels(PADDING);
         let content = match &self.scale {
             Scale::Range { .. } => unit.pixels(BAR),
             Scale::Categories(list) => unit.pixels(LINE) * list.len() as i32,
         };
-        let size = [
-            (widest.ceil() as i32 + 2 * padding) as u32,
-            (title + content + 2 * padding) as u32,
-        ];
-        let mut canvas = Canvas::new(size, self.background, self.opacity);
-        font::draw(
-            &mut canvas,
-            &self.title,
-            TITLE * unit.0,
-            [padding; 2],
-            self.color,
-        );
-        let corner = [padding, padding + title];
+        let (mut canvas, [left, top]) = self
+            .inset
+            .canvas(unit, [widest.ceil() as i32, title + content]);
+        let place = [left, top];
+        font::draw(&mut canvas, &self.title, TITLE * unit.0, place, color);
+        let corner = [left, top + title];
         if let Scale::Range { colors, .. } = &self.scale {
             canvas.fill(corner, [unit.pixels(SWATCH), content], |row| {
                 // From the last color at the top to the first.
@@ -134,23 +96,9 @@ impl Legend {
             });
         }
         for label in &labels {
-            label.draw(&mut canvas, corner, unit, self.color);
+            label.draw(&mut canvas, corner, unit, color);
         }
-        let margin = unit.pixels(MARGIN) as u32;
-        let far = |whole: u32, part: u32| whole.saturating_sub(part + margin);
-        let (right, bottom) = (far(width, size[0]), far(height, size[1]));
-        let (left, top) = match self.corner {
-            Corner::TopLeft => (margin, margin),
-            Corner::TopRight => (right, margin),
-            Corner::BottomLeft => (margin, bottom),
-            Corner::BottomRight => (right, bottom),
-        };
-        Overlay {
-            left,
-            top,
-            width: canvas.width,
-            pixels: canvas.pixels,
-        }
+        self.inset.overlay(unit, canvas, size)
     }
 
     /// The texts beside the bar or the squares, from the upper left corner of these.

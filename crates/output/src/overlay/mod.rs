@@ -1,12 +1,17 @@
 //! What is drawn over a finished picture: `legend` lays out the legend of a data color with
-//! round numbers from `ticks`, on a `canvas` with text of an embedded `font`.
+//! round numbers from `ticks`, `scale_bar` a bar of a known length, and `axes` those of the world,
+//! each as an `inset` in a corner, on a `canvas` with text of an embedded `font`.
 //!
 //! All lengths are in units of the text, so a picture of twice the size has the same legend at
-//! twice the size. Edges are on whole pixels, and text is anti-aliased.
+//! twice the size. Edges are on whole pixels but for lengths with a meaning, and text is
+//! anti-aliased.
 
+mod axes;
 mod canvas;
 mod font;
+mod inset;
 mod legend;
+mod scale_bar;
 mod ticks;
 
 #[cfg(test)]
@@ -14,9 +19,34 @@ mod tests;
 
 use std::io;
 
+use serde::{Deserialize, Serialize};
+
 use crate::{Band, Bands};
 
-pub use legend::{Corner, Legend, Scale};
+pub use axes::Axes;
+pub use inset::{Corner, Inset};
+pub use legend::{Legend, Scale};
+pub use scale_bar::{ScaleBar, ScaleBarError};
+
+/// What is drawn over a picture, each in a corner of its own.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the types say it")]
+pub struct Insets {
+    pub legend: Option<Legend>,
+    pub scale_bar: Option<ScaleBar>,
+    pub axes: Option<Axes>,
+}
+
+impl Insets {
+    /// Those for a picture of a size.
+    #[must_use]
+    pub fn overlays(&self, size: (u32, u32)) -> Vec<Overlay> {
+        let legend = self.legend.iter().map(|legend| legend.overlay(size));
+        let scale_bar = self.scale_bar.iter().map(|bar| bar.overlay(size));
+        let axes = self.axes.iter().map(|axes| axes.overlay(size));
+        legend.chain(scale_bar).chain(axes).collect()
+    }
+}
 
 /// A rectangle of pixels over a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,10 +90,10 @@ impl Overlay {
     }
 }
 
-/// The rows of a picture of this width, with an overlay over them if there is one. The first
+/// The rows of a picture of this width, with overlays over them. The first
 /// channel is opacity if `has_opacity` says so.
-pub fn with_overlay(
-    overlay: Option<Overlay>,
+pub fn with_overlays(
+    overlays: Vec<Overlay>,
     width: u32,
     has_opacity: bool,
     mut bands: impl Bands,
@@ -71,14 +101,16 @@ pub fn with_overlay(
     let mut row = 0;
     move |band: &mut Band| -> io::Result<()> {
         bands(band)?;
-        let Some(overlay) = &overlay else {
+        if overlays.is_empty() {
             return Ok(());
-        };
+        }
         let (width, each) = (width as usize, band.words.len() / band.colors.len().max(1));
         for (number, line) in band.colors.chunks_mut(width).enumerate() {
             let words = number * width * each..(number + 1) * width * each;
-            let words = has_opacity.then(|| &mut band.words[words]);
-            overlay.draw(row, line, words);
+            for overlay in &overlays {
+                let words = has_opacity.then(|| &mut band.words[words.clone()]);
+                overlay.draw(row, line, words);
+            }
             row += 1;
         }
         Ok(())

@@ -13,8 +13,18 @@ fn step(length: f64, most: u32) -> (f64, i32) {
     found.unwrap_or((length, exponent))
 }
 
-fn power_of_ten(exponent: i32) -> f64 {
+/// 10 to a power, the nearest f64.
+pub(super) fn power_of_ten(exponent: i32) -> f64 {
     format!("1e{exponent}").parse().unwrap_or(f64::INFINITY)
+}
+
+/// The text of a number greater than 0, with all its digits.
+pub(super) fn number_text(number: f64) -> String {
+    let text = match (1e-4..1e6).contains(&number) {
+        true => format!("{number}"),
+        false => format!("{number:e}"),
+    };
+    text.replace('-', "\u{2212}")
 }
 
 /// The round numbers from `first` to `last`, and their texts.

@@ -2,6 +2,7 @@
 
 mod clip;
 mod colors;
+mod insets;
 mod lens;
 mod light;
 mod path;
