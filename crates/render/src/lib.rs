@@ -10,6 +10,7 @@ mod channels;
 mod clear_sky;
 mod clips;
 mod colors;
+mod depth_cue;
 mod disk;
 mod environment;
 mod frame;
@@ -18,6 +19,7 @@ mod insets;
 mod integrator;
 mod legend;
 mod lights;
+mod outlines;
 mod place;
 mod rendering;
 mod sampler;
@@ -106,7 +108,10 @@ impl Settings {
             Integrator::Normal => AimedCamera::stated(&scene.camera, self.film)?,
             Integrator::Ao | Integrator::Sun | Integrator::Path => return None,
         };
-        camera.turned(self.turn_degrees).view_volume()
+        // Rays for outlines are also beside the picture.
+        let is_inside = scene.illustration.outlines.is_none();
+        let camera = is_inside.then(|| camera.turned(self.turn_degrees))?;
+        camera.view_volume()
     }
 
     /// Says whether a picture can be made with these settings.

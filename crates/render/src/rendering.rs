@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 
 use super::integrator::{Batch, Sample, View};
+use super::outlines;
 use super::place::{Pixels, Place, Sums, write};
 use super::sampler::PixelSampler;
 use super::tiles::Tile;
@@ -81,6 +82,7 @@ fn render_tile(work: &Work, place: &mut Place) -> Result<RayCounts, RenderError>
         work.view,
         &mut rays,
     );
+    outlines::draw(place, channels, work.view, &mut rays);
     Ok(rays)
 }
 

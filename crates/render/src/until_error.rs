@@ -46,6 +46,7 @@ use cyltrace::math::Random;
 use rayon::prelude::*;
 
 use super::integrator::Sample;
+use super::outlines;
 use super::place::{Pixels, Place, Sums, write};
 use super::rendering::{Work, pixels, stream, trace};
 use super::sampler::PixelSampler;
@@ -299,7 +300,9 @@ impl<'a> TileSamples<'a> {
         spread
     }
 
-    fn outcome(self) -> (RayCounts, Reached) {
+    fn outcome(mut self) -> (RayCounts, Reached) {
+        let (view, channels) = (self.work.view, &self.work.settings.channels);
+        outlines::draw(&mut self.place, channels, view, &mut self.rays);
         let halves = self.stopped.map(Option::unwrap_or_default);
         let error = halves[0].and(halves[1]).error();
         let reached = Reached {

@@ -26,7 +26,7 @@ impl View<'_> {
         batch: &mut Batch,
         rays: &mut RayCounts,
     ) {
-        self.camera_hits(batch, HitFields::NORMAL | HitFields::SPAWN);
+        self.closest_to_camera(batch, HitFields::NORMAL | HitFields::SPAWN);
         let hits = batch.hits.iter();
         let colors = hits.map(|hit| {
             if hit.is_some() {
@@ -47,7 +47,7 @@ impl View<'_> {
         rays: &mut RayCounts,
     ) {
         let fields = HitFields::NORMAL | HitFields::SPAWN | self.colors.fields();
-        self.camera_hits(batch, fields);
+        self.closest_to_camera(batch, fields);
         let rays_and_hits = batch.rays.iter().zip(&batch.hits);
         let colors = rays_and_hits.map(|(ray, hit)| match hit {
             Some(_) => DVec3::ZERO,

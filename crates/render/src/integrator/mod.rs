@@ -22,6 +22,7 @@ use super::Lights;
 use super::bsdf::Bsdf;
 use super::clips::Clips;
 use super::colors::Colors;
+use super::depth_cue::DepthCue;
 use super::sampler::PixelSampler;
 use cyltrace::math::{Bounds, Ray};
 use cyltrace::scene::{AimedCamera, Integrator, MaterialKind, RenderSettings, Scene};
@@ -89,6 +90,7 @@ pub(super) struct View<'a> {
     /// Whether a ray may be in glass.
     has_glass: bool,
     clips: Clips,
+    depth_cue: Option<DepthCue>,
     /// A box around the scene.
     bounds: Bounds,
 }
@@ -121,6 +123,9 @@ impl Sample {
 pub(super) struct Batch {
     rays: Vec<Ray>,
     hits: Vec<Option<PartialHit>>,
+    /// The depths of the surfaces that the camera sees, infinite where there is none; empty
+    /// without a depth cue.
+    depths: Vec<f64>,
     /// The colours of the samples, in their order.
     pub colors: Vec<DVec3>,
     occlusion: Occlusion,
@@ -153,6 +158,7 @@ impl<'a> View<'a> {
             Integrator::Ao | Integrator::Normal => Lights::default(),
         };
         Self {
+            depth_cue: DepthCue::of(scene, &camera, &bounds, &lights, integrator),
             has_glass: bsdfs.iter().any(transmits),
             tracer,
             clips: Clips::new(&scene.clips),
@@ -186,10 +192,17 @@ impl<'a> View<'a> {
             Integrator::Sun => self.sunlight_and_sky(samples, batch, rays),
             Integrator::Path => self.paths(samples, batch, rays),
         }
+        if let Some(cue) = &self.depth_cue {
+            for (color, &depth) in batch.colors.iter_mut().zip(&batch.depths) {
+                if depth.is_finite() {
+                    *color = cue.faded(*color, depth);
+                }
+            }
+        }
     }
 
     fn normals(&self, batch: &mut Batch) {
-        self.camera_hits(batch, HitFields::NORMAL);
+        self.closest_to_camera(batch, HitFields::NORMAL);
         let hits = batch.hits.iter().map(Option::as_ref);
         let color = |hit: &PartialHit| normal(hit) * 0.5 + 0.5;
         let colors = hits.map(|hit| hit.map_or(DVec3::ZERO, color));
@@ -205,9 +218,34 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The first hits of the batch's rays, which come from the camera.
-    fn camera_hits(&self, batch: &mut Batch, fields: HitFields) {
+    /// The first hits of the batch's rays, which start at the camera.
+    fn closest_to_camera(&self, batch: &mut Batch, fields: HitFields) {
         self.first_hits(&mut batch.rays, fields, &mut batch.hits);
+        if self.depth_cue.is_none() {
+            return;
+        }
+        let depth = |(ray, hit): (&Ray, &Option<PartialHit>)| match hit {
+            Some(hit) if !self.is_hidden(ray, hit) => self.camera.depth(ray.at(hit.t())),
+            _ => f64::INFINITY,
+        };
+        batch.depths.clear();
+        let seen = batch.rays.iter().zip(&batch.hits);
+        batch.depths.extend(seen.map(depth));
+    }
+
+    /// Whether a light with a place, which only paths see, is before the hit of a camera ray.
+    pub(super) fn is_hidden(&self, ray: &Ray, hit: &PartialHit) -> bool {
+        let before = Ray {
+            t_max: hit.t(),
+            ..*ray
+        };
+        self.integrator == Integrator::Path && self.lights.is_on(&before)
+    }
+
+    /// The first hits of the batch's rays.
+    fn closest(&self, batch: &mut Batch, fields: HitFields) {
+        self.tracer
+            .closest_batch_with(&batch.rays, fields, &mut batch.hits);
     }
 
     /// The first hits of rays from the camera. Clip planes shorten the rays.

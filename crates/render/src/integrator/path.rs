@@ -71,10 +71,8 @@ impl View<'_> {
                 .rays
                 .extend(batch.paths.paths.iter().map(|path| path.ray));
             match is_first {
-                true => self.camera_hits(batch, fields),
-                false => self
-                    .tracer
-                    .closest_batch_with(&batch.rays, fields, &mut batch.hits),
+                true => self.closest_to_camera(batch, fields),
+                false => self.closest(batch, fields),
             }
             is_first = false;
             self.step(samples, batch);

@@ -2,6 +2,7 @@
 
 mod clip;
 mod colors;
+mod illustration;
 mod insets;
 mod lens;
 mod light;
