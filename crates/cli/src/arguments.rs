@@ -17,6 +17,7 @@ use cyltrace_oracle::cases::{Family, Inputs};
 mod bench;
 mod check;
 mod farm;
+mod frames;
 mod names;
 mod numbers;
 mod parts;
@@ -25,6 +26,7 @@ mod picture;
 pub use bench::{AccuracyArguments, Bench, BenchArguments, ScaleArguments, TraversalArguments};
 pub use check::{CheckArguments, Rays};
 pub use farm::{Farm, FarmArguments, SlurmScriptArguments};
+pub use frames::FrameArguments;
 use names::one_of;
 use numbers::{count_up_to, parse_seed, parse_segments, parse_size, parse_threads};
 pub use parts::{MergeArguments, PartArguments, PartsArguments, WorkerArguments};
@@ -129,6 +131,8 @@ pub struct RenderArguments {
     pub seed: u64,
     #[command(flatten)]
     pub picture: PictureArguments,
+    #[command(flatten)]
+    pub frames: FrameArguments,
     #[command(flatten)]
     pub part: PartArguments,
     #[command(flatten)]

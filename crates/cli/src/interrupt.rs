@@ -23,7 +23,7 @@ use super::ending::end_now;
 const GRACE: Duration = Duration::from_millis(500);
 
 /// A signal ended the command.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Copy, Debug, thiserror::Error)]
 pub enum Interrupted {
     /// Before anything was written, or only to a temporary file.
     #[error("interrupted; nothing was written")]
@@ -31,6 +31,19 @@ pub enum Interrupted {
     /// After a part was written to a stream.
     #[error("interrupted; the table written so far is incomplete")]
     PartWritten,
+    /// After some pictures of a film were written.
+    #[error("interrupted; the first {0} pictures are complete")]
+    AfterPictures(usize),
+}
+
+impl Interrupted {
+    /// After a number of pictures.
+    pub fn after_pictures(count: usize) -> Self {
+        match count {
+            0 => Self::NothingWritten,
+            count => Self::AfterPictures(count),
+        }
+    }
 }
 
 /// The error message of a command that did not end by itself.

@@ -1,35 +1,27 @@
 //! `cyltrace render`.
 
-use std::collections::BTreeMap;
+mod frames;
+mod report;
+
 use std::sync::Arc;
 use std::time::Instant;
 
-use anyhow::{anyhow, bail};
-use cyltrace::scene::{Integrator, Scene, SceneFile};
+use anyhow::{Context, anyhow, bail};
+use cyltrace::scene::SceneFile;
 use cyltrace::tracer::{Options, Tracer};
-use cyltrace_output::{Contents, Display, Format, Legend, Output, with_overlay};
-use cyltrace_parts::{Header, PartWriter};
-use cyltrace_render::{Channels, RayCounts, Reached, RenderError, Settings, Tiles};
-use serde_json::{Value, json};
+use cyltrace_output::{Contents, Display, Format, Insets, Output, with_overlays};
+use cyltrace_parts::PartWriter;
+use cyltrace_render::{Channels, RayCounts, Reached, RenderError, RenderedTiles, Settings, Tiles};
+use serde_json::json;
 
 use super::arguments::RenderArguments;
+use super::interrupt::Interrupted;
 use super::limit::{MemoryLimit, Need};
 use super::outputs::Files;
 use super::parts::{self, Work};
-use super::{interrupt, json, memory, print, progress, reached, scene, text};
-
-/// The times of the command's parts, in seconds.
-struct Times {
-    load: f64,
-    build: f64,
-    render: f64,
-}
-
-impl Times {
-    fn all(&self) -> f64 {
-        self.load + self.build + self.render
-    }
-}
+use super::{interrupt, json, print, progress, scene};
+use frames::{FrameFigures, frames};
+use report::{Run, Times};
 
 /// Renders the scene into the picture, or a part of it into a file of its own.
 pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
@@ -50,6 +42,13 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let limit = MemoryLimit::of(&arguments.memory);
     let file = scene::read(&arguments.scene, limit)?;
     files.check_with(&file)?;
+    let frames = frames(&arguments.frames, &arguments.output);
+    if arguments.frames.frames.is_some() {
+        for frame in &frames {
+            let files = Files::new(&arguments.scene, common.json.as_deref());
+            files.output("-o", &frame.output).check_with(&file)?;
+        }
+    }
     let settings = settings(arguments, &file)?;
     let header = arguments.part.part.map(|number| {
         let work = work(arguments, &settings, &file);
@@ -66,7 +65,8 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
 
     let start = Instant::now();
     let options = Options {
-        view: settings.view(&scene),
+        // Pictures of a film have different views.
+        view: settings.view(&scene).filter(|_| frames.len() == 1),
         layout: arguments.memory.layout.into(),
         exact: arguments.decisions.exact,
         ..Options::default()
@@ -74,75 +74,95 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let tracer = scene::build(common, &scene, options)?;
     let build = start.elapsed().as_secs_f64();
 
-    let legend = legend(arguments, &settings, &scene)?;
+    insets(arguments, &settings, &tracer)?;
     let cancelled = interrupt::end_in_order();
-    let target = match &header {
-        Some(header) => Target::Part(parts::create(&arguments.output, header)?),
-        None => Target::Picture(Output::create(
-            &arguments.output,
-            contents(arguments, &settings),
-        )?),
-    };
     let workers = scene::workers(common)?;
     let all = Tiles::of(settings.film);
     let tiles = header
         .as_ref()
         .map_or(0..all.count(), |header| header.range.clone());
-    let bar = progress::bar(common, all.pixels(tiles.clone()), "pixels");
-    let start = Instant::now();
-    let rendered = cyltrace_render::render_tiles(
-        &tracer,
-        &settings,
-        tiles,
-        &workers,
-        &|pixels| bar.inc(pixels),
-        cancelled,
-    );
+    let pixels = all.pixels(tiles.clone()) * frames.len() as u64;
+    let bar = progress::bar(common, pixels, "pixels");
+    let (mut done, mut rays) = (Vec::new(), RayCounts::default());
+    let mut worst: Option<Reached> = None;
+    let mut skipped = Vec::new();
+    let mut part = None;
+    for frame in &frames {
+        let settings = Settings {
+            turn_degrees: frame.degrees,
+            ..settings.clone()
+        };
+        let target = match &header {
+            Some(header) => Target::Part(parts::create(&frame.output, header)?),
+            None => {
+                let contents = contents(arguments, &settings);
+                Target::Picture(Output::create(&frame.output, contents)?)
+            }
+        };
+        let start = Instant::now();
+        let rendered = cyltrace_render::render_tiles(
+            &tracer,
+            &settings,
+            tiles.clone(),
+            &workers,
+            &|pixels| bar.inc(pixels),
+            cancelled,
+        );
+        let interrupted = Interrupted::after_pictures(done.len());
+        let rendered = match rendered {
+            Err(RenderError::Cancelled) => return Err(interrupted.into()),
+            other => other?,
+        };
+        interrupt::check().map_err(|_| interrupted)?;
+        let reached = rendered.reached;
+        done.push(FrameFigures {
+            output: frame.output.clone(),
+            degrees: frame.degrees,
+            seconds: start.elapsed().as_secs_f64(),
+            rays: rendered.rays,
+            reached,
+        });
+        rays = rays + rendered.rays;
+        let is_worse = |worst: Reached| reached.is_none_or(|one| one.error > worst.error);
+        if worst.is_none_or(is_worse) {
+            worst = reached;
+        }
+        let insets = insets(arguments, &settings, &tracer)?;
+        match target {
+            Target::Picture(output) => write(output, &settings, &rendered, &insets)?,
+            Target::Part(mut writer) => {
+                parts::render::write(&mut writer, &rendered)?;
+                part = Some((writer, insets));
+            }
+        }
+        skipped = rendered.skipped;
+    }
+    bar.finish_and_clear();
     let times = Times {
         load,
         build,
-        render: start.elapsed().as_secs_f64(),
+        render: done.iter().map(|frame| frame.seconds).sum(),
     };
-    bar.finish_and_clear();
-    let rendered = match rendered {
-        Err(RenderError::Cancelled) => return Err(interrupt::Interrupted::NothingWritten.into()),
-        other => other?,
-    };
-    interrupt::check()?;
     let run = Run {
         arguments,
         settings: &settings,
         tracer: &tracer,
-        rays: rendered.rays,
-        reached: rendered.reached,
-        skipped: &rendered.skipped,
+        rays,
+        reached: worst,
+        skipped: &skipped,
         times,
         threads: workers.current_num_threads(),
         header: header.as_ref(),
+        frames: match arguments.frames.frames {
+            Some(_) => &done,
+            None => &[],
+        },
     };
     let figures = run.figures();
-    match target {
-        Target::Picture(mut output) => {
-            if let Some(reached) = rendered.reached {
-                output.state_error(reached.error);
-            }
-            let film = settings.film;
-            let size = (film.width, film.height);
-            let overlay = legend.map(|legend| legend.overlay(size));
-            let bands = with_overlay(
-                overlay,
-                film.width,
-                settings.channels.has_opacity(),
-                rendered.bands(film),
-            );
-            output.write_bands(size, bands)?;
-        }
-        Target::Part(mut part) => {
-            parts::render::write(&mut part, &rendered)?;
-            let seconds = run.times.all();
-            // Drawn when the parts are put together.
-            part.finish(&json!({ "figures": figures, "seconds": seconds, "legend": legend }))?;
-        }
+    if let Some((part, insets)) = part {
+        let seconds = run.times.all();
+        // Insets are drawn when the parts are put together.
+        part.finish(&json!({ "figures": figures, "seconds": seconds, "insets": insets }))?;
     }
     json::write(common, &figures)?;
     match common.prints() {
@@ -151,21 +171,42 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     }
 }
 
-/// The legend that is drawn over the picture, where that shows the color that it explains.
-fn legend(
+/// Writes a picture.
+fn write(
+    mut output: Output,
+    settings: &Settings,
+    rendered: &RenderedTiles,
+    insets: &Insets,
+) -> anyhow::Result<()> {
+    if let Some(reached) = rendered.reached {
+        output.state_error(reached.error);
+    }
+    let film = settings.film;
+    let size = (film.width, film.height);
+    let bands = with_overlays(
+        insets.overlays(size),
+        film.width,
+        settings.channels.has_opacity(),
+        rendered.bands(film),
+    );
+    Ok(output.write_bands(size, bands)?)
+}
+
+/// What is drawn over the picture.
+fn insets(
     arguments: &RenderArguments,
     settings: &Settings,
-    scene: &Scene,
-) -> anyhow::Result<Option<Legend>> {
-    let shows_colors = matches!(settings.integrator, Integrator::Sun | Integrator::Path);
-    let legend = cyltrace_render::legend(scene).filter(|_| shows_colors);
-    if legend.is_some() && contents(arguments, settings).display != Display::default() {
+    tracer: &Tracer,
+) -> anyhow::Result<Insets> {
+    let insets = cyltrace_render::insets(tracer, settings)
+        .with_context(|| format!("{:?} has a [scale_bar] that does not fit", arguments.scene))?;
+    if insets.legend.is_some() && contents(arguments, settings).display != Display::default() {
         bail!(
             "{:?} has a [legend], whose colors --exposure and --tonemap would change: leave them out, or remove the legend",
             arguments.scene
         );
     }
-    Ok(legend)
+    Ok(insets)
 }
 
 /// How many samples a pixel gets.
@@ -260,120 +301,5 @@ pub fn work<'a>(
         ),
         scene,
         long_table: None,
-    }
-}
-
-/// A rendering that is complete.
-struct Run<'a> {
-    arguments: &'a RenderArguments,
-    settings: &'a Settings,
-    tracer: &'a Tracer,
-    rays: RayCounts,
-    reached: Option<Reached>,
-    skipped: &'a [String],
-    times: Times,
-    threads: usize,
-    /// The part that it is.
-    header: Option<&'a Header>,
-}
-
-impl Run<'_> {
-    /// The rays per second.
-    fn rate(&self) -> f64 {
-        self.rays.total() as f64 / self.times.render
-    }
-
-    /// Work that the scene did not need.
-    fn skipped(&self) -> Vec<String> {
-        let of_tracer = self.tracer.statistics().skipped;
-        self.skipped.iter().cloned().chain(of_tracer).collect()
-    }
-
-    /// The JSON of `--json`.
-    fn figures(&self) -> Value {
-        let (arguments, settings, times) = (self.arguments, self.settings, &self.times);
-        let statistics = &self.tracer.statistics();
-        let scene = self.tracer.scene();
-        let purposes = RayCounts::PURPOSES.into_iter().zip(self.rays.by_purpose());
-        let counts: BTreeMap<_, _> = purposes.collect();
-        let channels = settings.channels.list();
-        let names: Vec<_> = channels.iter().map(|channel| channel.name).collect();
-        let mut figures = json!({
-            "scene": arguments.scene,
-            "output": arguments.output,
-            "size": [settings.film.width, settings.film.height],
-            "spp": settings.spp,
-            "integrator": settings.integrator.name(),
-            "seed": settings.seed,
-            "load_s": times.load,
-            "build_s": times.build,
-            "render_s": times.render,
-            "rays": counts,
-            "channels": names,
-            "rays_per_s": self.rate(),
-            "solids": json::Solids::of(statistics).by_kind(),
-            "cylinders": json::Solids::of(statistics).cylinders(),
-            "instances": json::count(statistics.instances),
-            "memory": json::memory(statistics),
-            "skipped": self.skipped(),
-            "skipped_rows": scene.skipped_rows,
-            "notes": scene.notes,
-            "embree": statistics.embree_version,
-            "isa": statistics.isa,
-            "threads": self.threads,
-            "records": json::records(scene),
-        });
-        if let Some(reached) = &self.reached {
-            figures[reached::KEY] = reached::figures(reached);
-        }
-        if let Some(header) = self.header {
-            figures["part"] = json!(header.number.to_string());
-        }
-        figures
-    }
-
-    /// The figures for people.
-    fn text(&self) -> String {
-        let (arguments, settings, times) = (self.arguments, self.settings, &self.times);
-        let statistics = &self.tracer.statistics();
-        let scene = self.tracer.scene();
-        let of_whole = match self.header {
-            Some(header) => parts::range_text(header) + ", ",
-            None => String::new(),
-        };
-        let mut text = format!(
-            "{}: {of_whole}{}x{}, {}, {}\n{}",
-            arguments.output.display(),
-            settings.film.width,
-            settings.film.height,
-            samples_text(settings),
-            settings.integrator.name(),
-            text::solids(statistics),
-        );
-        if let Some(reached) = &self.reached {
-            text += &reached::text(reached, settings);
-        }
-        text += &format!(
-            "memory: {} of records, {} in Embree {} ({})\n",
-            memory::readable(statistics.records_bytes as u64),
-            memory::readable(statistics.embree_bytes as u64),
-            statistics.embree_version,
-            statistics.isa
-        );
-        text += &text::records(scene);
-        text += &format!(
-            "time: load {:.2} s, build {:.2} s, render {:.2} s on {} threads\n",
-            times.load, times.build, times.render, self.threads
-        );
-        text += &format!(
-            "rays: {}, {:.2} million per second\n",
-            self.rays.total(),
-            self.rate() / 1e6
-        );
-        for reason in self.skipped() {
-            text += &format!("skipped: {reason}\n");
-        }
-        text += &text::notes(&scene.notes);
-        text
     }
 }

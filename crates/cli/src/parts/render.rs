@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::bail;
 use cyltrace::scene::{Film, GREATEST_PIXELS};
-use cyltrace_output::{Band, Channel, Contents, Display, Legend, Output, ToneMap, with_overlay};
+use cyltrace_output::{Band, Channel, Contents, Display, Insets, Output, ToneMap, with_overlays};
 use cyltrace_parts::{PartFile, PartSet, PartWriter, Payload};
 use cyltrace_render::{ChannelGroup, Channels, RenderedTiles, Settings, Tiles};
 use serde_json::{Value, json};
@@ -106,11 +106,11 @@ pub fn merge(set: &PartSet, output: &Path) -> anyhow::Result<()> {
         row += 1;
         Ok(())
     };
-    let legend: Option<Legend> = value(first, &first.summary()["legend"])?;
-    let overlay = legend.map(|legend| legend.overlay((width, height)));
+    let insets: Insets = value(first, &first.summary()["insets"])?;
+    let overlays = insets.overlays((width, height));
     // Opacity is the first channel.
     let has_opacity = contents.channels.first() == Some(&Channel::OPACITY);
-    let bands = with_overlay(overlay, width, has_opacity, bands);
+    let bands = with_overlays(overlays, width, has_opacity, bands);
     Output::create(output, contents)?.write_bands((width, height), bands)?;
     Ok(())
 }

@@ -331,8 +331,8 @@ mod tests {
     use crate::arguments::{Arguments, Command};
 
     /// Options that a worker does not have, or that have its own values.
-    const OWN: [&str; 8] = [
-        "output", "json", "quiet", "part", "resume", "workers", "parts", "time",
+    const OWN: [&str; 10] = [
+        "output", "json", "quiet", "part", "resume", "workers", "parts", "time", "frames", "orbit",
     ];
 
     fn render(words: &[OsString]) -> RenderArguments {

@@ -7,6 +7,7 @@ mod channels;
 mod check;
 mod check_meshes;
 mod exact;
+mod frames;
 mod fuzz_corpus;
 mod hit_rows;
 mod info;

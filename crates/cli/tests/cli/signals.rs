@@ -173,6 +173,34 @@ fn a_signal_ends_a_command_that_reads_a_scene() {
     }
 }
 
+/// The pictures of a film that are complete stay.
+#[test]
+fn a_signal_ends_a_film_with_whole_pictures() {
+    let folder = folder_of(&[("scene.toml", CYLINDER)]);
+    let line = "render scene.toml -o film.png --size 16x16 --frames 100000 --orbit --quiet";
+    let child = start(folder.path(), line);
+    let third = folder.path().join("film_00002.png");
+    wait_until("three pictures", || third.exists());
+    send("INT", &child);
+    let (code, error) = end_of(child);
+    assert_eq!(code, Some(130), "{error}");
+    assert!(error.contains("pictures are complete"), "{error}");
+    assert!(!has_temporary(folder.path()));
+    let files = fs::read_dir(folder.path()).expect("a folder");
+    for file in files {
+        let path = file.expect("a file").path();
+        let name = path
+            .file_name()
+            .and_then(|name| name.to_str())
+            .expect("a name");
+        if name.ends_with(".png") {
+            // The last chunk of a whole file.
+            let bytes = fs::read(&path).expect("a picture");
+            assert!(bytes.ends_with(b"IEND\xaeB`\x82"), "{name}");
+        }
+    }
+}
+
 #[test]
 fn a_signal_ends_commands_that_compute() {
     let folder = folder_of(&[("scene.toml", CYLINDER)]);

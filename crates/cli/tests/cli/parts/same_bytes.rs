@@ -55,6 +55,37 @@ fn picture_with_a_legend_merged_from_parts_has_the_bytes_of_one_process() {
     assert!(bytes(folder, "plain.png") != bytes(folder, "whole.png"));
 }
 
+/// Lines cross the edges of tiles, and opacity changes where there are any.
+#[test]
+fn illustrated_picture_from_parts_and_workers_has_the_bytes_of_one_process() {
+    let folder = scene();
+    let folder = folder.path();
+    run(folder, "render scene.toml -o plain.png -q");
+    let text = fs::read_to_string(folder.join("scene.toml")).expect("the scene file");
+    let tables = "background = \"transparent\"\n[scale_bar]\nunit = \"m\"\n[axes]\n\
+                  [outlines]\nwidth = 3\ncolor = [1, 0, 0]\n[depth_cue]\n";
+    let text = text.lines().filter(|line| !line.starts_with("background"));
+    let text = text.collect::<Vec<_>>().join("\n");
+    fs::write(folder.join("scene.toml"), tables.to_owned() + &text).expect("a scene file");
+    make_parts(folder, "render scene.toml", 3);
+    for picture in ["whole.png", "whole.exr"] {
+        run(
+            folder,
+            &format!("render scene.toml -o {picture} --threads 1 -q"),
+        );
+        run(folder, &format!("merge parts -o merged-{picture} -q"));
+        run(
+            folder,
+            &format!("render scene.toml -o shared-{picture} --workers 2 --parts 5 -q"),
+        );
+        for other in ["merged", "shared"] {
+            let other = format!("{other}-{picture}");
+            assert!(bytes(folder, picture) == bytes(folder, &other), "{other}");
+        }
+    }
+    assert!(bytes(folder, "plain.png") != bytes(folder, "whole.png"));
+}
+
 /// Rays of every kind of line end, with comments and blank lines between them.
 fn rays() -> String {
     let mut text = String::from("# rays\nox,oy,oz,dx,dy,dz,note\n");
