@@ -60,8 +60,8 @@ def render(
     progress: Progress | None = None,
 ) -> Picture:
     """Renders a scene, as ``cyltrace render`` does: the same scene, settings and seed give the
-    same bits on any number of threads. A legend is not drawn, and a transparent background is
-    black.
+    same bits on any number of threads. Legend, scale bar and axes are not drawn, and a
+    transparent background is black.
 
     Parameters
     ----------

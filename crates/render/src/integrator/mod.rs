@@ -236,6 +236,7 @@ impl<'a> View<'a> {
     /// Whether a light with a place, which only paths see, is before the hit of a camera ray.
     pub(super) fn is_hidden(&self, ray: &Ray, hit: &PartialHit) -> bool {
         let before = Ray {
+            t_min: 0.0,
             t_max: hit.t(),
             ..*ray
         };
