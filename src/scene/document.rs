@@ -6,7 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::background::BackgroundKey;
-use super::clip::ClipKeys;
+use super::clip_keys::ClipKeys;
 use super::colors::ValueKeys;
 use super::defaults;
 use super::description::Integrator;

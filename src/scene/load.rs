@@ -8,7 +8,7 @@ use toml::Spanned;
 
 use super::background::background;
 use super::camera::camera;
-use super::clip::clips;
+use super::clip_keys::clips;
 use super::colors::{DataColumns, Found};
 use super::description::{Prototype, PrototypeIndex, Scene};
 use super::document::{Body, CameraKeys, Document, PrototypeKeys};

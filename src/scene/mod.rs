@@ -27,6 +27,7 @@ mod background;
 mod camera;
 mod clear_sky;
 mod clip;
+mod clip_keys;
 mod colors;
 mod contents;
 mod cylinder_list;
