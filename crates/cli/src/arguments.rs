@@ -127,6 +127,11 @@ pub struct RenderArguments {
         allow_negative_numbers = true
     )]
     pub seed: u64,
+    /// Keep finished tiles in FILE while rendering. The same command goes on from there after it
+    /// was interrupted or killed, and FILE is removed when the picture is written. Parts have
+    /// `--resume` instead, and a picture with `--time` cannot be resumed
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["divided", "time"])]
+    pub checkpoint: Option<PathBuf>,
     #[command(flatten)]
     pub picture: PictureArguments,
     #[command(flatten)]

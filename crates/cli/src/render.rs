@@ -1,35 +1,30 @@
 //! `cyltrace render`.
 
-use std::collections::BTreeMap;
+mod report;
+
+use std::fs::File;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use anyhow::{anyhow, bail};
+use anyhow::{Context, anyhow, bail};
 use cyltrace::scene::{Integrator, Scene, SceneFile};
-use cyltrace::tracer::{Options, Tracer};
+use cyltrace::tracer::Options;
 use cyltrace_output::{Contents, Display, Format, Legend, Output, with_overlay};
-use cyltrace_parts::{Header, PartWriter};
-use cyltrace_render::{Channels, RayCounts, Reached, RenderError, Settings, Tiles};
-use serde_json::{Value, json};
+use cyltrace_parts::{Header, PartNumber, PartWriter};
+use cyltrace_render::{Channels, KeptTiles, RenderError, Settings, Tiles, Watch};
+use serde_json::json;
 
 use super::arguments::RenderArguments;
+use super::interrupt::Interrupted;
 use super::limit::{MemoryLimit, Need};
 use super::outputs::Files;
+use super::parts::checkpoint::KeptInFile;
 use super::parts::{self, Work};
-use super::{interrupt, json, memory, print, progress, reached, scene, text};
-
-/// The times of the command's parts, in seconds.
-struct Times {
-    load: f64,
-    build: f64,
-    render: f64,
-}
-
-impl Times {
-    fn all(&self) -> f64 {
-        self.load + self.build + self.render
-    }
-}
+use super::print::{note, print};
+use super::{interrupt, json, progress, scene};
+pub use report::samples_text;
+use report::{Run, Times};
 
 /// Renders the scene into the picture, or a part of it into a file of its own.
 pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
@@ -61,6 +56,9 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     {
         return Ok(());
     }
+    let whole = PartNumber::new(1, 1).filter(|_| arguments.checkpoint.is_some());
+    let whole = whole.map(|whole| work(arguments, &settings, &file).header(whole));
+    let whole = whole.transpose()?;
     let scene = Arc::new(scene::load(common, file, Need::Build, limit)?);
     let load = start.elapsed().as_secs_f64();
 
@@ -83,6 +81,11 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
             contents(arguments, &settings),
         )?),
     };
+    // A scene that is wrong leaves no checkpoint.
+    let kept = match (&arguments.checkpoint, &whole) {
+        (Some(path), Some(header)) => Some(checkpoint(arguments, path, header)?),
+        _ => None,
+    };
     let workers = scene::workers(common)?;
     let all = Tiles::of(settings.film);
     let tiles = header
@@ -90,23 +93,25 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         .map_or(0..all.count(), |header| header.range.clone());
     let bar = progress::bar(common, all.pixels(tiles.clone()), "pixels");
     let start = Instant::now();
-    let rendered = cyltrace_render::render_tiles(
-        &tracer,
-        &settings,
-        tiles,
-        &workers,
-        &|pixels| bar.inc(pixels),
+    let watch = Watch {
+        progress: &|pixels| bar.inc(pixels),
         cancelled,
-    );
+        kept: kept.as_ref().map(|kept| kept as &dyn KeptTiles),
+    };
+    let rendered = cyltrace_render::render_tiles(&tracer, &settings, tiles, &workers, &watch);
     let times = Times {
         load,
         build,
         render: start.elapsed().as_secs_f64(),
     };
     bar.finish_and_clear();
-    let rendered = match rendered {
-        Err(RenderError::Cancelled) => return Err(interrupt::Interrupted::NothingWritten.into()),
-        other => other?,
+    if let Some(failure) = kept.as_ref().and_then(KeptInFile::flush) {
+        note(common.quiet, &failure);
+    }
+    let rendered = match (rendered, &kept) {
+        (Err(RenderError::Cancelled), Some(_)) => return Err(Interrupted::TilesKept.into()),
+        (Err(RenderError::Cancelled), None) => return Err(Interrupted::NothingWritten.into()),
+        (other, _) => other?,
     };
     interrupt::check()?;
     let run = Run {
@@ -119,6 +124,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         times,
         threads: workers.current_num_threads(),
         header: header.as_ref(),
+        earlier: kept.as_ref().map(KeptInFile::earlier),
     };
     let figures = run.figures();
     match target {
@@ -136,6 +142,10 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
                 rendered.bands(film),
             );
             output.write_bands(size, bands)?;
+            if let Some(kept) = kept {
+                sync(&arguments.output)?;
+                kept.remove()?;
+            }
         }
         Target::Part(mut part) => {
             parts::render::write(&mut part, &rendered)?;
@@ -149,6 +159,29 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         true => print(&run.text()),
         false => Ok(()),
     }
+}
+
+/// Opens the checkpoint of the picture with this header.
+fn checkpoint(
+    arguments: &RenderArguments,
+    path: &Path,
+    header: &Header,
+) -> anyhow::Result<KeptInFile> {
+    let kept = KeptInFile::open(path, header)?;
+    if let Some(text) = kept.opened_text() {
+        note(arguments.common.quiet, &text);
+    }
+    Ok(kept)
+}
+
+/// Waits until the picture is on the disk, where it is a file: only then the checkpoint is of no
+/// more use.
+fn sync(output: &Path) -> anyhow::Result<()> {
+    let file = File::open(output).and_then(|file| match file.metadata()?.is_file() {
+        true => file.sync_all(),
+        false => Ok(()),
+    });
+    file.with_context(|| format!("cannot sync {output:?}; the checkpoint is kept"))
 }
 
 /// The legend that is drawn over the picture, where that shows the color that it explains.
@@ -168,16 +201,6 @@ fn legend(
     Ok(legend)
 }
 
-/// How many samples a pixel gets.
-pub fn samples_text(settings: &Settings) -> String {
-    let at_most = if settings.target.is_some() {
-        "at most "
-    } else {
-        ""
-    };
-    format!("{at_most}{} samples per pixel", settings.spp)
-}
-
 /// What a run writes to.
 enum Target {
     Picture(Output),
@@ -186,7 +209,12 @@ enum Target {
 
 /// The files that are read and written.
 pub fn output_files(arguments: &RenderArguments) -> Files<'_> {
-    Files::new(&arguments.scene, arguments.common.json.as_deref()).output("-o", &arguments.output)
+    let files = Files::new(&arguments.scene, arguments.common.json.as_deref());
+    let files = files.output("-o", &arguments.output);
+    match &arguments.checkpoint {
+        Some(path) => files.output("--checkpoint", path),
+        None => files,
+    }
 }
 
 /// Samples of a pixel unless the command line says otherwise, with `--error` or `--time`.
@@ -260,120 +288,5 @@ pub fn work<'a>(
         ),
         scene,
         long_table: None,
-    }
-}
-
-/// A rendering that is complete.
-struct Run<'a> {
-    arguments: &'a RenderArguments,
-    settings: &'a Settings,
-    tracer: &'a Tracer,
-    rays: RayCounts,
-    reached: Option<Reached>,
-    skipped: &'a [String],
-    times: Times,
-    threads: usize,
-    /// The part that it is.
-    header: Option<&'a Header>,
-}
-
-impl Run<'_> {
-    /// The rays per second.
-    fn rate(&self) -> f64 {
-        self.rays.total() as f64 / self.times.render
-    }
-
-    /// Work that the scene did not need.
-    fn skipped(&self) -> Vec<String> {
-        let of_tracer = self.tracer.statistics().skipped;
-        self.skipped.iter().cloned().chain(of_tracer).collect()
-    }
-
-    /// The JSON of `--json`.
-    fn figures(&self) -> Value {
-        let (arguments, settings, times) = (self.arguments, self.settings, &self.times);
-        let statistics = &self.tracer.statistics();
-        let scene = self.tracer.scene();
-        let purposes = RayCounts::PURPOSES.into_iter().zip(self.rays.by_purpose());
-        let counts: BTreeMap<_, _> = purposes.collect();
-        let channels = settings.channels.list();
-        let names: Vec<_> = channels.iter().map(|channel| channel.name).collect();
-        let mut figures = json!({
-            "scene": arguments.scene,
-            "output": arguments.output,
-            "size": [settings.film.width, settings.film.height],
-            "spp": settings.spp,
-            "integrator": settings.integrator.name(),
-            "seed": settings.seed,
-            "load_s": times.load,
-            "build_s": times.build,
-            "render_s": times.render,
-            "rays": counts,
-            "channels": names,
-            "rays_per_s": self.rate(),
-            "solids": json::Solids::of(statistics).by_kind(),
-            "cylinders": json::Solids::of(statistics).cylinders(),
-            "instances": json::count(statistics.instances),
-            "memory": json::memory(statistics),
-            "skipped": self.skipped(),
-            "skipped_rows": scene.skipped_rows,
-            "notes": scene.notes,
-            "embree": statistics.embree_version,
-            "isa": statistics.isa,
-            "threads": self.threads,
-            "records": json::records(scene),
-        });
-        if let Some(reached) = &self.reached {
-            figures[reached::KEY] = reached::figures(reached);
-        }
-        if let Some(header) = self.header {
-            figures["part"] = json!(header.number.to_string());
-        }
-        figures
-    }
-
-    /// The figures for people.
-    fn text(&self) -> String {
-        let (arguments, settings, times) = (self.arguments, self.settings, &self.times);
-        let statistics = &self.tracer.statistics();
-        let scene = self.tracer.scene();
-        let of_whole = match self.header {
-            Some(header) => parts::range_text(header) + ", ",
-            None => String::new(),
-        };
-        let mut text = format!(
-            "{}: {of_whole}{}x{}, {}, {}\n{}",
-            arguments.output.display(),
-            settings.film.width,
-            settings.film.height,
-            samples_text(settings),
-            settings.integrator.name(),
-            text::solids(statistics),
-        );
-        if let Some(reached) = &self.reached {
-            text += &reached::text(reached, settings);
-        }
-        text += &format!(
-            "memory: {} of records, {} in Embree {} ({})\n",
-            memory::readable(statistics.records_bytes as u64),
-            memory::readable(statistics.embree_bytes as u64),
-            statistics.embree_version,
-            statistics.isa
-        );
-        text += &text::records(scene);
-        text += &format!(
-            "time: load {:.2} s, build {:.2} s, render {:.2} s on {} threads\n",
-            times.load, times.build, times.render, self.threads
-        );
-        text += &format!(
-            "rays: {}, {:.2} million per second\n",
-            self.rays.total(),
-            self.rate() / 1e6
-        );
-        for reason in self.skipped() {
-            text += &format!("skipped: {reason}\n");
-        }
-        text += &text::notes(&scene.notes);
-        text
     }
 }

@@ -13,11 +13,13 @@ mod disk;
 mod environment;
 mod frame;
 mod integrator;
+mod kept;
 mod legend;
 mod lights;
 mod place;
 mod rendering;
 mod sampler;
+mod spread;
 mod tiles;
 mod until_error;
 
@@ -32,6 +34,7 @@ pub use clear_sky::ClearSkyModel;
 pub use cyltrace::scene::GREATEST_PIXELS;
 pub use environment::EnvironmentMap;
 pub use integrator::RayCounts;
+pub use kept::{KeptTiles, Taken};
 pub use legend::legend;
 pub use lights::{Lights, SunLight};
 pub use tiles::Tiles;
@@ -42,6 +45,7 @@ use cyltrace::scene::{
 };
 use cyltrace::tracer::Tracer;
 use integrator::View;
+use place::Pixels;
 use rendering::Work;
 use until_error::LEAST_SAMPLES;
 
@@ -164,6 +168,18 @@ pub enum RenderError {
     Cancelled,
 }
 
+/// What a rendering reports to while it runs, and what it takes from an earlier one.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Gets the number of pixels that are done since the last call, from any of the threads.
+    pub progress: &'a (dyn Fn(u64) + Sync),
+    /// The rendering ends within some hundred samples of every thread when this becomes true.
+    pub cancelled: &'a AtomicBool,
+    /// Tiles of an earlier rendering with the same settings, and the place of new ones. A
+    /// rendering with a limit of time takes and keeps none.
+    pub kept: Option<&'a dyn KeptTiles>,
+}
+
 /// Some tiles of a picture and what they took.
 #[derive(Clone, Debug)]
 pub struct RenderedTiles {
@@ -223,7 +239,12 @@ pub fn render(
     settings.check()?;
     let tiles = Tiles::of(settings.film);
     let all = 0..tiles.count();
-    let rendered = render_tiles(tracer, settings, all, workers, progress, cancelled)?;
+    let watch = Watch {
+        progress,
+        cancelled,
+        kept: None,
+    };
+    let rendered = render_tiles(tracer, settings, all, workers, &watch)?;
     let (mut pixels, mut words) = (Vec::new(), Vec::new());
     tiles.arrange(0, 1, &rendered.pixels, &mut pixels);
     tiles.arrange(0, rendered.words_each, &rendered.words, &mut words);
@@ -250,8 +271,7 @@ pub fn render_tiles(
     settings: &Settings,
     tiles: Range<u64>,
     workers: &ThreadPool,
-    progress: &(dyn Fn(u64) + Sync),
-    cancelled: &AtomicBool,
+    watch: &Watch,
 ) -> Result<RenderedTiles, RenderError> {
     settings.check()?;
     let count = Tiles::of(settings.film).count();
@@ -262,20 +282,22 @@ pub fn render_tiles(
     let work = Work {
         view: &view,
         settings,
-        progress,
-        cancelled,
+        watch,
     };
-    let (pixels, rays, reached) = workers.install(|| match settings.target {
-        None => rendering::render(&work, tiles).map(|(pixels, rays)| (pixels, rays, None)),
-        Some(target) => until_error::render(&work, tiles, target)
-            .map(|(pixels, rays, reached)| (pixels, rays, Some(reached))),
+    let all = Tiles::of(settings.film);
+    let words_each = settings.channels.list().len();
+    let mut pixels = Pixels::new(all.pixels(tiles.clone()), words_each);
+    let places = pixels.places(all, tiles, words_each);
+    let taken = workers.install(|| match settings.target {
+        None => rendering::render(&work, places),
+        Some(target) => until_error::render(&work, places, target),
     })?;
     Ok(RenderedTiles {
         pixels: pixels.colors,
         words: pixels.words,
-        words_each: settings.channels.list().len(),
-        reached,
-        rays,
+        words_each,
+        reached: settings.target.map(|_| taken.reached),
+        rays: taken.rays,
         skipped: skipped(settings.integrator, &view.lights),
     })
 }

@@ -37,6 +37,7 @@ impl Pixels {
             let (own, later) = colors.split_at_mut(pixels);
             let (own_words, later_words) = rest.split_at_mut(pixels * words);
             places.push(Place {
+                number,
                 tile,
                 colors: own,
                 words: own_words,
@@ -49,6 +50,8 @@ impl Pixels {
 
 /// The place of a tile's pixels.
 pub(super) struct Place<'a> {
+    /// The number of the tile.
+    pub number: u64,
     pub tile: Tile,
     pub colors: &'a mut [[f32; 3]],
     pub words: &'a mut [u32],

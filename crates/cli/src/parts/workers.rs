@@ -331,8 +331,16 @@ mod tests {
     use crate::arguments::{Arguments, Command};
 
     /// Options that a worker does not have, or that have its own values.
-    const OWN: [&str; 8] = [
-        "output", "json", "quiet", "part", "resume", "workers", "parts", "time",
+    const OWN: [&str; 9] = [
+        "output",
+        "json",
+        "quiet",
+        "part",
+        "resume",
+        "workers",
+        "parts",
+        "time",
+        "checkpoint",
     ];
 
     fn render(words: &[OsString]) -> RenderArguments {
