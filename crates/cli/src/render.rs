@@ -59,6 +59,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let whole = PartNumber::new(1, 1).filter(|_| arguments.checkpoint.is_some());
     let whole = whole.map(|whole| work(arguments, &settings, &file).header(whole));
     let whole = whole.transpose()?;
+    let limit = limit.with_samples(settings.samples_bytes());
     let scene = Arc::new(scene::load(common, file, Need::Build, limit)?);
     let load = start.elapsed().as_secs_f64();
 

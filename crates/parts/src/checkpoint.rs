@@ -248,11 +248,9 @@ impl Checkpoint {
         }
     }
 
-    /// Writes all units and syncs the file.
+    /// Writes all units.
     pub fn flush(&self) {
-        let mut file = locked(&self.file);
-        self.write(&mut file);
-        file.sync();
+        self.write(&mut locked(&self.file));
     }
 
     /// Why units could not be written; none is after that, and those before remain.

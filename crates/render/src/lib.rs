@@ -100,6 +100,16 @@ impl Settings {
         camera.view_volume()
     }
 
+    /// The bytes that the samples take while the picture is rendered: with a limit of time those of
+    /// all tiles, otherwise little.
+    #[must_use]
+    pub fn samples_bytes(&self) -> u64 {
+        match self.target {
+            Some(Target { time: Some(_), .. }) => until_error::samples_bytes(self),
+            _ => 0,
+        }
+    }
+
     /// Says whether a picture can be made with these settings.
     ///
     /// # Errors

@@ -81,6 +81,14 @@ impl Sums {
         }
     }
 
+    /// The bytes of a sequence of a pixel.
+    pub fn bytes_each(channels: &Channels) -> usize {
+        let of = |is_requested: bool, bytes| if is_requested { bytes } else { 0 };
+        size_of::<DVec3>()
+            + of(channels.has_variance(), size_of::<DVec3>())
+            + of(channels.has_opacity(), size_of::<u32>())
+    }
+
     /// Adds a batch of samples. `place` is the pixel of a sample by its number in the batch, times
     /// the number of sequences, plus the sample's sequence.
     pub fn add(&mut self, batch: &mut Batch, place: impl Fn(usize) -> usize) {

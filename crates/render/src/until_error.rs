@@ -50,7 +50,7 @@ use super::place::{Place, Sums, write};
 use super::rendering::{Work, pixels, stream, trace};
 use super::sampler::PixelSampler;
 use super::spread::Spread;
-use super::{RayCounts, RenderError};
+use super::{RayCounts, RenderError, Settings, Tiles};
 
 /// Samples of a sequence before the first decision. Fewer would decide by luck.
 const FIRST: u32 = 4;
@@ -139,6 +139,16 @@ pub(super) fn render(
     }
     let all = tiles.into_iter().map(TileSamples::taken);
     Ok(all.fold(Taken::default(), Taken::and))
+}
+
+/// The bytes that the samples of all tiles take where they are taken side by side.
+pub(super) fn samples_bytes(settings: &Settings) -> u64 {
+    let pixels = u64::from(settings.film.width) * u64::from(settings.film.height);
+    let of_pixel = size_of::<((u32, u32), usize)>()
+        + SEQUENCES * size_of::<((u32, u32), PixelSampler)>()
+        + SEQUENCES * Sums::bytes_each(&settings.channels);
+    let of_tile = (size_of::<TileSamples>() + size_of::<Place>()) as u64;
+    pixels * of_pixel as u64 + Tiles::of(settings.film).count() * of_tile
 }
 
 /// A number of samples of a sequence after `taken`: 4, 6, 8, 12, 16, 24 and so on.
