@@ -9,7 +9,7 @@ use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{
-    Decimal, Delimiter, Film, GREATEST_CASES, GREATEST_SAMPLES, Integrator, TableFormat,
+    Decimal, Delimiter, Film, GREATEST_CASES, GREATEST_SAMPLES, Integrator, Sampler, TableFormat,
 };
 use cyltrace_bench::stress::{Contender, StressFamily};
 use cyltrace_oracle::cases::{Family, Inputs};
@@ -118,6 +118,10 @@ pub struct RenderArguments {
     /// Show the result of this integrator [default: the scene's, else `path` if it has lights or materials that need it, else `sun`]
     #[arg(long, value_name = "NAME", value_enum)]
     pub integrator: Option<IntegratorName>,
+    /// Spread samples evenly (`sobol`), or as independent random numbers (`random`), for
+    /// comparisons [default: the scene's, else `sobol`]
+    #[arg(long, value_name = "NAME", value_parser = one_of(Sampler::ALL, Sampler::name))]
+    pub sampler: Option<Sampler>,
     /// Seed the random numbers
     #[arg(
         long,

@@ -268,6 +268,7 @@ pub fn settings(arguments: &RenderArguments, file: &SceneFile) -> anyhow::Result
     if let Some(integrator) = arguments.integrator {
         settings.integrator = integrator.into();
     }
+    settings.sampler = arguments.sampler.unwrap_or(settings.sampler);
     settings.check()?;
     Ok(settings)
 }

@@ -41,7 +41,7 @@ pub use tiles::Tiles;
 pub use until_error::{Reached, Target};
 
 use cyltrace::scene::{
-    self, AimedCamera, Background, Integrator, RenderSettings, Scene, ViewVolume,
+    self, AimedCamera, Background, Integrator, RenderSettings, Sampler, Scene, ViewVolume,
 };
 use cyltrace::tracer::Tracer;
 use integrator::View;
@@ -60,6 +60,8 @@ pub struct Settings {
     pub spp: u32,
     /// What a pixel shows.
     pub integrator: Integrator,
+    /// How samples are spread.
+    pub sampler: Sampler,
     /// Chooses the random numbers.
     pub seed: u64,
     /// The channels beside the colors.
@@ -82,6 +84,7 @@ impl Settings {
             film,
             spp: render.spp,
             integrator: render.integrator,
+            sampler: render.sampler,
             seed: 0,
             channels: Channels::new([], background.is_transparent()),
             target: None,

@@ -114,7 +114,11 @@ pub(super) fn pixels(
         let position = (tile.x + column, tile.y + row);
         (
             position,
-            PixelSampler::new(settings.seed, stream(position, settings, sequence)),
+            PixelSampler::new(
+                settings.sampler,
+                settings.seed,
+                stream(position, settings, sequence),
+            ),
         )
     };
     tile.pixels_along_curve().map(pixel).collect()

@@ -19,7 +19,7 @@
 //! one. The number `N` of samples of a pixel is then a function of samples of other pixels,
 //! which are independent of its own, and of nothing else. For every `n` the mean `M(n)` of its
 //! samples has the expectation `I`, the pixel's true value, because every point of a scrambled
-//! sequence is uniform. So `E M(N) = Σ P(N = n) E M(n) = I`. Until both halves have stopped,
+//! sequence is uniform, and every number of the sampler `random`. So `E M(N) = Σ P(N = n) E M(n) = I`. Until both halves have stopped,
 //! both are sampled; what the one that stopped first gets after that is not used for its own
 //! pixels. (The idea is that of the dual buffers of Rousselle, Knaus, Zwicker, "Adaptive
 //! Rendering with Non-Local Means Filtering", ACM Transactions on Graphics 31(6), 2012, with

@@ -25,6 +25,7 @@ pub fn settings(settings: &Settings, display: Display, exact: bool) -> Value {
         "size": [settings.film.width, settings.film.height],
         "spp": settings.spp,
         "integrator": settings.integrator.name(),
+        "sampler": settings.sampler.name(),
         "seed": settings.seed,
         "exact": exact,
         "channels": channels.map(|group| group.name()).collect::<Vec<_>>(),

@@ -78,6 +78,7 @@ impl Run<'_> {
             "size": [settings.film.width, settings.film.height],
             "spp": settings.spp,
             "integrator": settings.integrator.name(),
+            "sampler": settings.sampler.name(),
             "seed": settings.seed,
             "load_s": times.load,
             "build_s": times.build,
