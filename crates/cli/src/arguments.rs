@@ -22,7 +22,9 @@ mod numbers;
 mod parts;
 mod picture;
 
-pub use bench::{AccuracyArguments, Bench, BenchArguments, ScaleArguments, TraversalArguments};
+pub use bench::{
+    AccuracyArguments, Bench, BenchArguments, ImageArguments, ScaleArguments, TraversalArguments,
+};
 pub use check::{CheckArguments, Rays};
 pub use farm::{Farm, FarmArguments, SlurmScriptArguments};
 use names::one_of;

@@ -9,6 +9,7 @@ mod bsdf;
 mod channels;
 mod clear_sky;
 mod colors;
+mod compare;
 mod disk;
 mod environment;
 mod frame;
@@ -31,6 +32,7 @@ use rayon::ThreadPool;
 
 pub use channels::{ChannelGroup, Channels, NO_ID};
 pub use clear_sky::ClearSkyModel;
+pub use compare::tile_errors;
 pub use cyltrace::scene::GREATEST_PIXELS;
 pub use environment::EnvironmentMap;
 pub use integrator::RayCounts;

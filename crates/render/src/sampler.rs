@@ -117,6 +117,7 @@ impl PairKey {
         }
     }
 
+    #[cold]
     fn random_point(&self, sample: u32) -> (f64, f64) {
         let joined = |high: u32, low: u32| u64::from(high) << 32 | u64::from(low);
         let key = joined(self.order, self.first);

@@ -3,7 +3,7 @@
 
 /// Mean below which the error of a tile is no longer relative to it: 1 % of white. Black tiles
 /// would never be done.
-const DARK: f64 = 0.01;
+pub(super) const DARK: f64 = 0.01;
 
 /// The one-sided quantile of 95 % of a normal variable, over √2.
 const QUANTILE: f64 = 1.644_853_626_951_472_7 * std::f64::consts::FRAC_1_SQRT_2;
