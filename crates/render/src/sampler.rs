@@ -323,8 +323,8 @@ mod tests {
             .map(|n| (of(n).place(9), of(n).place(10)))
             .collect();
         for list in [within, over] {
-            type Both = ((f64, f64), (f64, f64));
-            let pairs: [fn(&Both) -> (f64, f64); 4] = [
+            type Pick = fn(&((f64, f64), (f64, f64))) -> (f64, f64);
+            let pairs: [Pick; 4] = [
                 |((x, y), _)| (*x, *y),
                 |((x, _), (z, _))| (*x, *z),
                 |((_, y), (z, _))| (*y, *z),

@@ -40,12 +40,18 @@ impl Spread {
         (self.variances / self.pixels).sqrt() / self.scale()
     }
 
-    /// Whether the error is at most `target` with the probability of the promise. No pixels say
-    /// nothing.
-    pub fn is_within(&self, target: f64) -> bool {
+    /// The squared error that is not exceeded with the probability of the promise, over that of
+    /// `target`.
+    pub fn excess(&self, target: f64) -> f64 {
         let limit = target * self.scale();
         let greatest = self.variances + QUANTILE * (4.0 / 3.0 * self.squares).sqrt();
-        self.pixels > 0.0 && greatest <= limit * limit * self.pixels
+        greatest / (limit * limit * self.pixels)
+    }
+
+    /// Whether the error is at most `target` with the probability of the promise. No pixels say
+    /// nothing, and no noise is enough for any target.
+    pub fn is_within(&self, target: f64) -> bool {
+        self.pixels > 0.0 && (self.variances == 0.0 || self.excess(target) <= 1.0)
     }
 }
 

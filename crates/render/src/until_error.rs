@@ -36,8 +36,13 @@
 //! stops where `S + 1.645/√2 √(4/3 Σ v²)` is at most the target's. The components of a color
 //! are taken as one value, since they vary together.
 //!
-//! Decisions are at numbers of samples that grow by a third or a half ([`next`]): finer steps
-//! would decide more often, and so stop by luck; coarser ones take more than is needed.
+//! # When is decided
+//! A half is decided at numbers of samples of two or three significant bits, each a fifth or so above
+//! the one before. Far from the target most of them would be in vain, and small steps trace few
+//! samples of a pixel together, which costs time. So after a decision the next one is
+//! at the number where the error is expected to be nearly small enough ([`next`]). That number is
+//! computed from the other half's samples too, so that `N` remains a function of them alone. With a
+//! limit of time, no number is left out.
 
 use std::time::{Duration, Instant};
 
@@ -151,13 +156,25 @@ pub(super) fn samples_bytes(settings: &Settings) -> u64 {
     pixels * of_pixel as u64 + Tiles::of(settings.film).count() * of_tile
 }
 
-/// A number of samples of a sequence after `taken`: 4, 6, 8, 12, 16, 24 and so on.
-fn next(taken: u32) -> u32 {
-    match taken {
-        0 => FIRST,
-        _ if taken.is_power_of_two() => taken / 2 * 3,
-        _ => taken / 3 * 4,
+/// How fast the squared error is taken to fall, `N^(-1/FALL)`. It falls as `N^-1` or faster; less
+/// is expected of more samples than they do, so that few tiles take more than they need.
+const FALL: f64 = 0.8;
+
+/// Most growth of a number of samples between two decisions: the first estimates are rough.
+const MOST_GROWTH: f64 = 4.0;
+
+/// The number of samples of a sequence at which a half is decided after `taken`, where the squared
+/// error was `excess` times the greatest that would be small enough.
+fn next(taken: u32, excess: f64) -> u32 {
+    if taken == 0 {
+        return FIRST;
     }
+    // The numbers up to the next power of two are a multiple of an eighth of it.
+    let unit = |number: u32| (number.next_power_of_two() / 8).max(1);
+    let least = taken + unit(taken + 1);
+    let growth = libm::pow(excess, FALL).clamp(1.0, MOST_GROWTH);
+    let expected = (f64::from(taken) * growth) as u32;
+    (expected / unit(expected) * unit(expected)).max(least)
 }
 
 /// A tile while it is sampled.
@@ -171,6 +188,8 @@ struct TileSamples<'a, 'p> {
     sums: Sums,
     /// Samples of each sequence so far.
     samples_of_each: u32,
+    /// The number of samples at which each half is decided next.
+    due: [u32; 2],
     /// What each half has come to, once it has stopped.
     stopped: [Option<Spread>; 2],
     rays: RayCounts,
@@ -197,6 +216,7 @@ impl<'a, 'p> TileSamples<'a, 'p> {
             samplers: all.map(|pixels| pixels.into_iter().map(|(_, sampler)| sampler).collect()),
             sums,
             samples_of_each: 0,
+            due: [next(0, 1.0); 2],
             stopped: [None, None],
             rays: RayCounts::default(),
             samples: 0,
@@ -210,7 +230,10 @@ impl<'a, 'p> TileSamples<'a, 'p> {
     /// Takes samples up to the next decision, and decides.
     fn advance(&mut self) -> Result<(), RenderError> {
         let most = (self.work.settings.spp / LEAST_SAMPLES).max(1);
-        let end = next(self.samples_of_each).min(most);
+        let halves = [0, 1].into_iter();
+        let due = halves.filter(|&half| self.stopped[half].is_none());
+        let due = due.map(|half| self.due[half]).min();
+        let end = due.unwrap_or(most).min(most);
         let more = u64::from(end - self.samples_of_each);
         // The samples of a pixel are neighbours, those of both sequences.
         let place = |number: u64| (number / more) as usize;
@@ -235,12 +258,28 @@ impl<'a, 'p> TileSamples<'a, 'p> {
                 true => spreads[1 - half],
                 false => spreads[half],
             };
-            let by_other = other.is_within(self.error);
-            if self.stopped[half].is_none() && (by_other || end == most) {
-                self.stop_half(half);
+            if self.stopped[half].is_none() && (end >= self.due[half] || end == most) {
+                match end == most || other.is_within(self.error) {
+                    true => self.stop_half(half),
+                    false => self.due[half] = next(end, self.foreseen(other)),
+                }
             }
         }
         Ok(())
+    }
+
+    /// How much greater than permitted the squared error of a half was, if that says when it
+    /// is decided next.
+    fn foreseen(&self, spread: Spread) -> f64 {
+        let has_time = self
+            .work
+            .settings
+            .target
+            .is_some_and(|target| target.time.is_some());
+        match has_time {
+            true => 1.0,
+            false => spread.excess(self.error),
+        }
     }
 
     /// Stops with the samples so far.
@@ -310,11 +349,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn decisions_are_at_numbers_that_grow_by_a_third_or_a_half() {
-        let all = std::iter::successors(Some(next(0)), |&taken| Some(next(taken)));
-        assert_eq!(
-            all.take(8).collect::<Vec<_>>(),
-            [4, 6, 8, 12, 16, 24, 32, 48]
-        );
+    fn decisions_are_at_numbers_of_few_bits_that_grow_with_the_error() {
+        let all = |excess: f64| {
+            let numbers =
+                std::iter::successors(Some(next(0, excess)), move |&n| Some(next(n, excess)));
+            numbers.take(12).collect::<Vec<_>>()
+        };
+        assert_eq!(all(1.0), [4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28]);
+        // 2^0.8 is 1.74.
+        assert_eq!(all(2.0)[..6], [4, 6, 10, 16, 24, 40]);
+        assert_eq!(all(f64::INFINITY)[..4], [4, 16, 64, 256]);
+        assert_eq!(next(8, f64::NAN), 10);
     }
 }
