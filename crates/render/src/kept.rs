@@ -1,6 +1,29 @@
 //! Tiles that outlive a rendering, so that a later one of the same picture need not make them again.
 
-use super::{RayCounts, Reached};
+use super::RayCounts;
+
+/// What a picture with a [`crate::Target`] has reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reached {
+    /// The greatest error of a tile, as estimated from its own samples.
+    pub error: f32,
+    /// The number of tiles whose estimated error is greater than the target's.
+    pub tiles_above: u64,
+    /// The samples of all pixels.
+    pub samples: u64,
+}
+
+impl Reached {
+    /// What both have reached together.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            error: self.error.max(other.error),
+            tiles_above: self.tiles_above + other.tiles_above,
+            samples: self.samples + other.samples,
+        }
+    }
+}
 
 /// What tiles took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -36,11 +36,11 @@ pub use compare::tile_errors;
 pub use cyltrace::scene::GREATEST_PIXELS;
 pub use environment::EnvironmentMap;
 pub use integrator::RayCounts;
-pub use kept::{KeptTiles, Taken};
+pub use kept::{KeptTiles, Reached, Taken};
 pub use legend::legend;
 pub use lights::{Lights, SunLight};
 pub use tiles::Tiles;
-pub use until_error::{Reached, Target};
+pub use until_error::Target;
 
 use cyltrace::scene::{
     self, AimedCamera, Background, Integrator, RenderSettings, Sampler, Scene, ViewVolume,

@@ -335,7 +335,10 @@ mod tests {
                 for (x, y) in list.iter().map(pair) {
                     bins[(x * 8.0) as usize * 8 + (y * 8.0) as usize] += 1.0;
                 }
-                let statistic: f64 = bins.iter().map(|n| (n - 1000.0).powi(2) / 1000.0).sum();
+                let statistic: f64 = bins
+                    .iter()
+                    .map(|n| (n - 1000.0) * (n - 1000.0) / 1000.0)
+                    .sum();
                 let deviations = (statistic - 63.0) / 126.0_f64.sqrt();
                 assert!(deviations.abs() < 5.0, "{deviations} deviations");
             }

@@ -50,7 +50,7 @@ use cyltrace::math::Random;
 use rayon::prelude::*;
 
 use super::integrator::Sample;
-use super::kept::Taken;
+use super::kept::{Reached, Taken};
 use super::place::{Place, Sums, write};
 use super::rendering::{Work, pixels, stream, trace};
 use super::sampler::PixelSampler;
@@ -78,29 +78,6 @@ pub struct Target {
     /// The time after which the rendering ends in any case, each tile with the samples that it
     /// has; each has a few. With it, the picture depends on the speed of the machine.
     pub time: Option<Duration>,
-}
-
-/// What a picture with a [`Target`] has reached.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Reached {
-    /// The greatest error of a tile, as estimated from its own samples.
-    pub error: f32,
-    /// The number of tiles whose estimated error is greater than the target's.
-    pub tiles_above: u64,
-    /// The samples of all pixels.
-    pub samples: u64,
-}
-
-impl Reached {
-    /// What both have reached together.
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        Self {
-            error: self.error.max(other.error),
-            tiles_above: self.tiles_above + other.tiles_above,
-            samples: self.samples + other.samples,
-        }
-    }
 }
 
 /// Renders tiles on the rayon pool that this is called in.

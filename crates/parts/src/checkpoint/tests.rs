@@ -1,3 +1,5 @@
+//! Checkpoints that are cut off, changed, foreign or in use.
+
 use super::*;
 use crate::file::tests::header;
 
