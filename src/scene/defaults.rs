@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::background::Background;
 use super::description::{
-    Camera, Film, Frame, Integrator, Projection, Prototype, RenderSettings, Scene,
+    Camera, Film, Frame, Integrator, Projection, Prototype, RenderSettings, Sampler, Scene,
 };
 use super::illustration::Illustration;
 use super::material::Material;
@@ -20,6 +20,7 @@ pub(super) const FILM: Film = Film {
 pub(super) const RENDER: RenderSettings = RenderSettings {
     integrator: Integrator::Sun,
     spp: 4,
+    sampler: Sampler::Sobol,
     max_depth: 16,
     ao_distance: f64::INFINITY,
 };

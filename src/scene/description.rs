@@ -215,10 +215,35 @@ pub struct RenderSettings {
     pub integrator: Integrator,
     /// Samples a pixel, at least 1.
     pub spp: u32,
+    /// How samples are spread.
+    pub sampler: Sampler,
     /// The most rays of a path of integrator `path`, at least 1: with 1, only lights are seen.
     pub max_depth: u32,
     /// The distance beyond which surfaces do not occlude under integrator `ao`, greater than 0.
     pub ao_distance: f64,
+}
+
+/// How the samples of a pixel are spread over it and over directions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Sampler {
+    /// Evenly, along a scrambled sequence of Sobol'.
+    Sobol,
+    /// By independent uniform numbers: noise that falls as the root of their number.
+    Random,
+}
+
+impl Sampler {
+    /// All samplers.
+    pub const ALL: [Self; 2] = [Self::Sobol, Self::Random];
+
+    /// The name in scene files and on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sobol => "sobol",
+            Self::Random => "random",
+        }
+    }
 }
 
 /// The quantity that a pixel shows.

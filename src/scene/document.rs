@@ -220,6 +220,7 @@ pub(super) struct FilmKeys {
 pub(super) struct RenderKeys {
     pub integrator: Option<Spanned<String>>,
     pub spp: Option<Spanned<Whole>>,
+    pub sampler: Option<Spanned<String>>,
     pub max_depth: Option<Spanned<Whole>>,
     pub ao_distance: Option<Spanned<Number>>,
 }

@@ -93,7 +93,7 @@ pub(crate) use cylinder_list::SharedRecords;
 pub use cylinder_list::{CylinderList, Iter as CylinderIter};
 pub use description::{
     Camera, Film, Frame, Integrator, Lens, Placement, Projection, Prototype, PrototypeIndex,
-    RenderSettings, Scene,
+    RenderSettings, Sampler, Scene,
 };
 pub use environment::{Environment, EnvironmentError};
 pub use error::{SceneError, Statement};

@@ -5,7 +5,7 @@ use toml::Spanned;
 
 use super::clear_sky::clear_sky;
 use super::defaults;
-use super::description::{Film, Integrator, RenderSettings};
+use super::description::{Film, Integrator, RenderSettings, Sampler};
 use super::document::{FilmKeys, RenderKeys, SkyKeys, SunKeys};
 use super::error::SceneError;
 use super::light::{ClearSky, Sky, Sun};
@@ -189,6 +189,13 @@ pub(super) fn render(
         },
         spp: count(source, "spp", keys.spp.as_ref(), GREATEST_SAMPLES)?
             .unwrap_or(defaults::RENDER.spp),
+        sampler: match &keys.sampler {
+            Some(word) => {
+                let names = Sampler::ALL.map(|sampler| (sampler.name(), sampler));
+                source.choose("sampler", word, &names)?
+            }
+            None => defaults::RENDER.sampler,
+        },
         max_depth: count(
             source,
             "max_depth",

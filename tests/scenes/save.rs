@@ -13,8 +13,8 @@ use std::sync::Arc;
 use cyltrace::math::{Bounds, Orientation, Random, Ray, power_of_two};
 use cyltrace::scene::{
     Background, Camera, ClearSky, Environment, Film, Frame, Integrator, Lens, Light, LightShape,
-    Material, MaterialIndex, MaterialKind, Projection, Prototype, RenderSettings, Scene, Sky,
-    SolidRecord, Sun, load, save,
+    Material, MaterialIndex, MaterialKind, Projection, Prototype, RenderSettings, Sampler, Scene,
+    Sky, SolidRecord, Sun, load, save,
 };
 use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 use cyltrace::tracer::{Options, Tracer};
@@ -233,6 +233,7 @@ fn pictures_and_names_saved_are_the_same() {
         scene.render = RenderSettings {
             integrator,
             spp: 1 + case as u32,
+            sampler: Sampler::ALL[case % 2],
             max_depth: 1 + case as u32,
             ao_distance: [f64::INFINITY, 0.5, 1e90, 7.0][case],
         };

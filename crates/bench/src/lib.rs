@@ -26,6 +26,6 @@ pub use accuracy::{
 pub use machine::Environment;
 pub use outputs::{Record, SUMMARY_HEADINGS, figure, page, records, summaries};
 pub use rivals::Shape;
-pub use statistics::Spread;
+pub use statistics::{PowerLaw, Spread, percentile};
 pub use timing::{Rounds, ThreadClock, Timer, WallClock};
 pub use truth::{Errors, JudgedCases, draw};

@@ -9,7 +9,7 @@ use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use cyltrace::embree::MaxIsa;
 use cyltrace::scene::{
-    Decimal, Delimiter, Film, GREATEST_CASES, GREATEST_SAMPLES, Integrator, TableFormat,
+    Decimal, Delimiter, Film, GREATEST_CASES, GREATEST_SAMPLES, Integrator, Sampler, TableFormat,
 };
 use cyltrace_bench::stress::{Contender, StressFamily};
 use cyltrace_oracle::cases::{Family, Inputs};
@@ -23,7 +23,9 @@ mod numbers;
 mod parts;
 mod picture;
 
-pub use bench::{AccuracyArguments, Bench, BenchArguments, ScaleArguments, TraversalArguments};
+pub use bench::{
+    AccuracyArguments, Bench, BenchArguments, ImageArguments, ScaleArguments, TraversalArguments,
+};
 pub use check::{CheckArguments, Rays};
 pub use farm::{Farm, FarmArguments, SlurmScriptArguments};
 pub use frames::FrameArguments;
@@ -120,6 +122,10 @@ pub struct RenderArguments {
     /// Show the result of this integrator [default: the scene's, else `path` if it has lights or materials that need it, else `sun`]
     #[arg(long, value_name = "NAME", value_enum)]
     pub integrator: Option<IntegratorName>,
+    /// Spread samples evenly (`sobol`), or as independent random numbers (`random`), for
+    /// comparisons [default: the scene's, else `sobol`]
+    #[arg(long, value_name = "NAME", value_parser = one_of(Sampler::ALL, Sampler::name))]
+    pub sampler: Option<Sampler>,
     /// Seed the random numbers
     #[arg(
         long,
@@ -129,6 +135,11 @@ pub struct RenderArguments {
         allow_negative_numbers = true
     )]
     pub seed: u64,
+    /// Keep finished tiles in FILE while rendering. The same command goes on from there after it
+    /// was interrupted or killed, and FILE is removed when the picture is written. Parts have
+    /// `--resume` instead, and pictures with `--time` or `--frames` cannot be resumed
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["divided", "time", "frames"])]
+    pub checkpoint: Option<PathBuf>,
     #[command(flatten)]
     pub picture: PictureArguments,
     #[command(flatten)]

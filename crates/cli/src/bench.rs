@@ -1,5 +1,6 @@
 //! `cyltrace bench`.
 
+mod image;
 mod scale;
 mod traversal;
 
@@ -26,6 +27,7 @@ pub fn run(arguments: &BenchArguments) -> anyhow::Result<u8> {
         Bench::Accuracy(arguments) => accuracy(arguments).map(|()| GOOD),
         Bench::Traversal(arguments) => traversal::run(arguments),
         Bench::Scale(arguments) => scale::run(arguments).map(|()| GOOD),
+        Bench::Image(arguments) => image::run(arguments).map(|()| GOOD),
     }
 }
 

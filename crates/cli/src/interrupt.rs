@@ -28,6 +28,9 @@ pub enum Interrupted {
     /// Before anything was written, or only to a temporary file.
     #[error("interrupted; nothing was written")]
     NothingWritten,
+    /// While a checkpoint keeps the tiles that are finished.
+    #[error("interrupted; the same command goes on from the checkpoint")]
+    TilesKept,
     /// After a part was written to a stream.
     #[error("interrupted; the table written so far is incomplete")]
     PartWritten,

@@ -68,9 +68,19 @@ pub struct MemoryLimit {
     is_stated: bool,
     /// The layout that the estimate assumes.
     layout: Layout,
+    /// What the samples of a picture take beside the scene.
+    samples_bytes: u64,
 }
 
 impl MemoryLimit {
+    /// This limit, for a command that also needs memory for samples.
+    pub fn with_samples(self, samples_bytes: u64) -> Self {
+        Self {
+            samples_bytes,
+            ..self
+        }
+    }
+
     /// The limit of `--max-memory`, or the memory that the system has available.
     pub fn of(arguments: &MemoryArguments) -> Self {
         match arguments.max_memory {
@@ -78,6 +88,7 @@ impl MemoryLimit {
                 bytes: Some(bytes),
                 is_stated: true,
                 layout: arguments.layout.into(),
+                samples_bytes: 0,
             },
             None => Self {
                 layout: arguments.layout.into(),
@@ -95,6 +106,7 @@ impl MemoryLimit {
             bytes: [free, address_space_left()].into_iter().flatten().min(),
             is_stated: false,
             layout: Layout::default(),
+            samples_bytes: 0,
         }
     }
 
@@ -121,7 +133,8 @@ impl MemoryLimit {
         let estimate = MemoryEstimate::of(contents, self.layout, max_isa);
         let needed = match need {
             Need::Records => estimate.records_bytes,
-            Need::Build => estimate.peak_bytes(),
+            // Prototypes are built when a ray reaches them, beside the samples.
+            Need::Build => estimate.peak_bytes().saturating_add(self.samples_bytes),
         };
         let needed = needed.max(estimate.records_bytes.saturating_add(reading_bytes));
         let left = self.bytes.map(|allowed| allowed.checked_sub(needed));
@@ -133,7 +146,7 @@ impl MemoryLimit {
             path.display(),
             readable(needed),
             self.allowed(allowed),
-            takers(contents, &estimate, need, needed)
+            takers(contents, &estimate, need, needed, self.samples_bytes)
         ))
     }
 
@@ -166,6 +179,7 @@ fn takers(
     estimate: &MemoryEstimate,
     need: Need,
     needed: u64,
+    samples_bytes: u64,
 ) -> String {
     let quoted = |name: &str| match name {
         "" => "the scene itself".to_owned(),
@@ -187,6 +201,8 @@ fn takers(
         lines.push((estimate.embree_bytes, "Embree's trees of them".to_owned()));
         let building = "Embree, while it builds".to_owned();
         lines.push((estimate.building_bytes, building));
+        let samples = "the samples of all tiles at once, for --time".to_owned();
+        lines.push((samples_bytes, samples));
     }
     lines.retain(|(bytes, _)| *bytes > needed / 100);
     lines.sort_by_key(|(bytes, _)| std::cmp::Reverse(*bytes));

@@ -10,17 +10,22 @@ use anyhow::{Context, anyhow, bail};
 use cyltrace::scene::SceneFile;
 use cyltrace::tracer::{Options, Tracer};
 use cyltrace_output::{Contents, Display, Format, Insets, Output, with_overlays};
-use cyltrace_parts::PartWriter;
-use cyltrace_render::{Channels, RayCounts, Reached, RenderError, RenderedTiles, Settings, Tiles};
+use cyltrace_parts::{Header, PartNumber, PartWriter};
+use cyltrace_render::{
+    Channels, KeptTiles, RayCounts, Reached, RenderError, RenderedTiles, Settings, Tiles, Watch,
+};
 use serde_json::json;
 
 use super::arguments::RenderArguments;
 use super::interrupt::Interrupted;
 use super::limit::{MemoryLimit, Need};
 use super::outputs::Files;
+use super::parts::checkpoint::KeptInFile;
 use super::parts::{self, Work};
-use super::{interrupt, json, print, progress, scene};
+use super::print::{note, print};
+use super::{interrupt, json, progress, scene};
 use frames::{FrameFigures, frames};
+pub use report::samples_text;
 use report::{Run, Times};
 
 /// Renders the scene into the picture, or a part of it into a file of its own.
@@ -60,6 +65,10 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     {
         return Ok(());
     }
+    let whole = PartNumber::new(1, 1).filter(|_| arguments.checkpoint.is_some());
+    let whole = whole.map(|whole| work(arguments, &settings, &file).header(whole));
+    let whole = whole.transpose()?;
+    let limit = limit.with_samples(settings.samples_bytes());
     let scene = Arc::new(scene::load(common, file, Need::Build, limit)?);
     let load = start.elapsed().as_secs_f64();
 
@@ -76,6 +85,8 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
 
     insets(arguments, &settings, &tracer)?;
     let cancelled = interrupt::end_in_order();
+    // A scene that is wrong leaves no checkpoint.
+    let kept = checkpoint(arguments, whole.as_ref())?;
     let workers = scene::workers(common)?;
     let all = Tiles::of(settings.film);
     let tiles = header
@@ -100,15 +111,20 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
             }
         };
         let start = Instant::now();
-        let rendered = cyltrace_render::render_tiles(
-            &tracer,
-            &settings,
-            tiles.clone(),
-            &workers,
-            &|pixels| bar.inc(pixels),
+        let watch = Watch {
+            progress: &|pixels| bar.inc(pixels),
             cancelled,
-        );
-        let interrupted = Interrupted::after_pictures(done.len());
+            kept: kept.as_ref().map(|kept| kept as &dyn KeptTiles),
+        };
+        let tiles = tiles.clone();
+        let rendered = cyltrace_render::render_tiles(&tracer, &settings, tiles, &workers, &watch);
+        if let Some(failure) = kept.as_ref().and_then(KeptInFile::flush) {
+            note(common.quiet, &failure);
+        }
+        let interrupted = match kept {
+            Some(_) => Interrupted::TilesKept,
+            None => Interrupted::after_pictures(done.len()),
+        };
         let rendered = match rendered {
             Err(RenderError::Cancelled) => return Err(interrupted.into()),
             other => other?,
@@ -153,6 +169,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         times,
         threads: workers.current_num_threads(),
         header: header.as_ref(),
+        earlier: kept.as_ref().map(KeptInFile::earlier),
         frames: match arguments.frames.frames {
             Some(_) => &done,
             None => &[],
@@ -164,11 +181,29 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         // Insets are drawn when the parts are put together.
         part.finish(&json!({ "figures": figures, "seconds": seconds, "insets": insets }))?;
     }
+    if let Some(kept) = kept {
+        kept.end(&arguments.output)?;
+    }
     json::write(common, &figures)?;
     match common.prints() {
         true => print(&run.text()),
         false => Ok(()),
     }
+}
+
+/// Opens the checkpoint of the picture with this header, if it has one.
+fn checkpoint(
+    arguments: &RenderArguments,
+    whole: Option<&Header>,
+) -> anyhow::Result<Option<KeptInFile>> {
+    let (Some(path), Some(whole)) = (&arguments.checkpoint, whole) else {
+        return Ok(None);
+    };
+    let kept = KeptInFile::open(path, whole)?;
+    if let Some(text) = kept.opened_text() {
+        note(arguments.common.quiet, &text);
+    }
+    Ok(Some(kept))
 }
 
 /// Writes a picture.
@@ -209,16 +244,6 @@ fn insets(
     Ok(insets)
 }
 
-/// How many samples a pixel gets.
-pub fn samples_text(settings: &Settings) -> String {
-    let at_most = if settings.target.is_some() {
-        "at most "
-    } else {
-        ""
-    };
-    format!("{at_most}{} samples per pixel", settings.spp)
-}
-
 /// What a run writes to.
 enum Target {
     Picture(Output),
@@ -227,7 +252,12 @@ enum Target {
 
 /// The files that are read and written.
 pub fn output_files(arguments: &RenderArguments) -> Files<'_> {
-    Files::new(&arguments.scene, arguments.common.json.as_deref()).output("-o", &arguments.output)
+    let files = Files::new(&arguments.scene, arguments.common.json.as_deref());
+    let files = files.output("-o", &arguments.output);
+    match &arguments.checkpoint {
+        Some(path) => files.output("--checkpoint", path),
+        None => files,
+    }
 }
 
 /// Samples of a pixel unless the command line says otherwise, with `--error` or `--time`.
@@ -280,6 +310,7 @@ pub fn settings(arguments: &RenderArguments, file: &SceneFile) -> anyhow::Result
     if let Some(integrator) = arguments.integrator {
         settings.integrator = integrator.into();
     }
+    settings.sampler = arguments.sampler.unwrap_or(settings.sampler);
     settings.check()?;
     Ok(settings)
 }

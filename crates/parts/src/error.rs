@@ -19,7 +19,7 @@ pub enum PartError {
     },
     /// An input of a part is a pipe or a device.
     #[error(
-        "{path:?} is not a regular file: every part reads the files of a scene again, so none may be a pipe"
+        "{path:?} is not a regular file: every part, and every run with a checkpoint, reads the files of a scene again, so none may be a pipe"
     )]
     NotRegular {
         /// The input.

@@ -12,7 +12,7 @@
 //! line, and one with any changed byte has another hash.
 
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Take, Write};
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Take, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -23,49 +23,11 @@ use sha2::{Digest, Sha256};
 
 use super::error::PartError;
 use super::fingerprint::{digits, hash};
-use super::number::PartNumber;
-
-/// The format of parts that this program reads and writes.
-const FORMAT: u32 = 1;
+use super::header::{self, FORMAT, Fault, Header, LONGEST_LINE, json};
 
 const BEGIN: &str = "#cyltrace-part ";
 const END: &[u8] = b"\n#end ";
 const CHECKSUM: &str = " sha256:";
-
-/// Most bytes of the first and the last line. Both are some kilobytes of JSON.
-const LONGEST_LINE: u64 = 1 << 22;
-
-/// What a part is.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Header {
-    /// The version of cyltrace that wrote the part.
-    pub version: String,
-    /// The command: `render`, `trace` or `check`.
-    pub command: String,
-    /// The number of the part, from 1, and of all parts.
-    #[serde(flatten)]
-    pub number: PartNumber,
-    /// What the range counts, such as `tiles`.
-    pub unit: String,
-    /// The part's range of units.
-    pub range: Range<u64>,
-    /// The number of all units.
-    pub whole: u64,
-    /// The settings that determine the result.
-    pub settings: Value,
-    /// The hash of the settings and of the files that determine the result.
-    pub fingerprint: String,
-    /// The hash of the input that this part alone reads, if there is one.
-    pub own_input: Option<String>,
-}
-
-/// A header with the format, which is read first.
-#[derive(Serialize, Deserialize)]
-struct FirstLine<H> {
-    format: u32,
-    #[serde(flatten)]
-    header: H,
-}
 
 /// The last line without its checksum.
 #[derive(Serialize, Deserialize)]
@@ -94,11 +56,7 @@ impl PartWriter {
             hasher: Sha256::new(),
             payload_bytes: 0,
         };
-        let line = FirstLine {
-            format: FORMAT,
-            header,
-        };
-        let line = format!("{BEGIN}{}\n", json(&line));
+        let line = header::line(BEGIN, header);
         writer.hasher.update(&line);
         let written = writer.file.write_all(line.as_bytes());
         written.map_err(|source| writer.unwritten(source))?;
@@ -147,10 +105,6 @@ impl Write for PartWriter {
     }
 }
 
-fn json(value: &impl Serialize) -> String {
-    serde_json::to_string(value).expect("keys are texts and writing to a string cannot fail")
-}
-
 /// A part whose checksum was right when it was read.
 #[derive(Clone, Debug)]
 pub struct PartFile {
@@ -171,7 +125,8 @@ impl PartFile {
     /// If the file cannot be read, is not a part, has another format, or is damaged.
     pub fn read(path: &Path) -> Result<Self, PartError> {
         let mut file = File::open(path).map_err(|source| unreadable(path, source))?;
-        let (header, start) = first_line(path, &mut file)?;
+        let first = header::read(BEGIN, &mut file);
+        let (header, start) = first.map_err(|fault| without_header(path, fault))?;
         let (line, end) = last_line(path, &mut file, start)?;
         let range = &header.range;
         if range.start > range.end || range.end > header.whole {
@@ -259,27 +214,19 @@ fn damaged(path: &Path, what: &'static str) -> PartError {
     }
 }
 
-/// The header, and the place where the payload begins.
-fn first_line(path: &Path, file: &mut File) -> Result<(Header, u64), PartError> {
-    let mut first = Vec::new();
-    let mut beginning = BufReader::new(file).take(LONGEST_LINE);
-    let read = beginning.read_until(b'\n', &mut first);
-    read.map_err(|source| unreadable(path, source))?;
-    let text = first.strip_prefix(BEGIN.as_bytes());
-    let text = text.ok_or_else(|| PartError::NotAPart { path: path.into() })?;
-    let line: FirstLine<Value> =
-        serde_json::from_slice(text).map_err(|_| damaged(path, "its first line is not JSON"))?;
-    if line.format != FORMAT {
-        return Err(PartError::Format {
+/// The error of a first line.
+fn without_header(path: &Path, fault: Fault) -> PartError {
+    match fault {
+        Fault::System(source) => unreadable(path, source),
+        Fault::Other => PartError::NotAPart { path: path.into() },
+        Fault::Format { format, version } => PartError::Format {
             path: path.into(),
-            format: line.format,
+            format,
             own: FORMAT,
-            version: line.header["version"].as_str().unwrap_or("?").into(),
-        });
+            version,
+        },
+        Fault::Damaged(what) => damaged(path, what),
     }
-    let header = serde_json::from_value(line.header)
-        .map_err(|_| damaged(path, "its first line lacks a value"))?;
-    Ok((header, first.len() as u64))
 }
 
 /// The last line, whose checksum is verified, and the place where the payload ends.
@@ -318,6 +265,7 @@ fn last_line(
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::number::PartNumber;
     use serde_json::json;
     use std::fs;
 

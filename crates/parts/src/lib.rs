@@ -7,18 +7,25 @@
 //! [`PartSet`] is a list of files that make up one whole result: it rejects damaged files,
 //! parts of something else, gaps and overlaps. A [`Survey`] describes the parts in a folder.
 //!
-//! What a part contains is a matter of its command.
+//! A [`Checkpoint`] has the units that one process has finished so far, so that the same command
+//! goes on after the process was killed.
+//!
+//! What a part or a unit contains is a matter of its command.
 
+mod checkpoint;
 mod error;
 mod file;
 mod fingerprint;
+mod header;
 mod number;
 mod set;
 mod survey;
 
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use error::PartError;
-pub use file::{Header, PartFile, PartWriter, Payload};
+pub use file::{PartFile, PartWriter, Payload};
 pub use fingerprint::Fingerprint;
+pub use header::Header;
 pub use number::{GREATEST_PARTS, PartNumber};
 pub use set::PartSet;
 pub use survey::{Damaged, Survey, Whole};

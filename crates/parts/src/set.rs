@@ -2,10 +2,9 @@
 
 use std::path::PathBuf;
 
-use serde_json::Value;
-
 use super::error::PartError;
-use super::file::{Header, PartFile};
+use super::file::PartFile;
+use super::header::{Header, difference};
 
 /// Parts that together are one whole result, in the order of their ranges.
 #[derive(Clone, Debug)]
@@ -87,39 +86,6 @@ impl PartSet {
     pub fn header(&self) -> &Header {
         self.parts[0].header()
     }
-}
-
-/// What differs between the results that two parts belong to, as a sentence.
-fn difference(first: &Header, other: &Header) -> Option<String> {
-    let differs = |what: &str, first: &str, other: &str| {
-        (first != other).then(|| format!("its {what} is {other}, not {first}"))
-    };
-    differs("command", &first.command, &other.command)
-        .or_else(|| differs("version of cyltrace", &first.version, &other.version))
-        .or_else(|| differs_in_settings(&first.settings, &other.settings))
-        .or_else(|| {
-            let is_other = first.fingerprint != other.fingerprint
-                || (&first.unit, first.whole) != (&other.unit, other.whole);
-            is_other.then(|| {
-                String::from("the scene file, or a file that it reads, has another content")
-            })
-        })
-}
-
-/// The first setting that differs.
-fn differs_in_settings(first: &Value, other: &Value) -> Option<String> {
-    let keys = |settings: &Value| {
-        let keys = settings
-            .as_object()
-            .into_iter()
-            .flat_map(|keys| keys.keys());
-        keys.cloned().collect::<Vec<_>>()
-    };
-    let all = keys(first).into_iter().chain(keys(other));
-    let mut differing = all.filter(|key| first[key] != other[key]);
-    differing
-        .next()
-        .map(|key| format!("its {key} is {}, not {}", other[&key], first[&key]))
 }
 
 #[cfg(test)]

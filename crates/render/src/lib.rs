@@ -10,6 +10,7 @@ mod channels;
 mod clear_sky;
 mod clips;
 mod colors;
+mod compare;
 mod depth_cue;
 mod disk;
 mod environment;
@@ -17,12 +18,14 @@ mod frame;
 mod inset;
 mod insets;
 mod integrator;
+mod kept;
 mod legend;
 mod lights;
 mod outlines;
 mod place;
 mod rendering;
 mod sampler;
+mod spread;
 mod tiles;
 mod until_error;
 
@@ -34,19 +37,22 @@ use rayon::ThreadPool;
 
 pub use channels::{ChannelGroup, Channels, NO_ID};
 pub use clear_sky::ClearSkyModel;
+pub use compare::tile_errors;
 pub use cyltrace::scene::GREATEST_PIXELS;
 pub use environment::EnvironmentMap;
 pub use insets::insets;
 pub use integrator::RayCounts;
+pub use kept::{KeptTiles, Reached, Taken};
 pub use lights::{Lights, SunLight};
 pub use tiles::Tiles;
-pub use until_error::{Reached, Target};
+pub use until_error::Target;
 
 use cyltrace::scene::{
-    self, AimedCamera, Background, Integrator, RenderSettings, Scene, ViewVolume,
+    self, AimedCamera, Background, Integrator, RenderSettings, Sampler, Scene, ViewVolume,
 };
 use cyltrace::tracer::Tracer;
 use integrator::View;
+use place::Pixels;
 use rendering::Work;
 use until_error::LEAST_SAMPLES;
 
@@ -61,6 +67,8 @@ pub struct Settings {
     pub spp: u32,
     /// What a pixel shows.
     pub integrator: Integrator,
+    /// How samples are spread.
+    pub sampler: Sampler,
     /// Chooses the random numbers.
     pub seed: u64,
     /// The channels beside the colors.
@@ -85,6 +93,7 @@ impl Settings {
             film,
             spp: render.spp,
             integrator: render.integrator,
+            sampler: render.sampler,
             seed: 0,
             channels: Channels::new([], background.is_transparent()),
             target: None,
@@ -112,6 +121,16 @@ impl Settings {
         let is_inside = scene.illustration.outlines.is_none();
         let camera = is_inside.then(|| camera.turned(self.turn_degrees))?;
         camera.view_volume()
+    }
+
+    /// The bytes that the samples take while the picture is rendered: with a limit of time those of
+    /// all tiles, otherwise little.
+    #[must_use]
+    pub fn samples_bytes(&self) -> u64 {
+        match self.target {
+            Some(Target { time: Some(_), .. }) => until_error::samples_bytes(self),
+            _ => 0,
+        }
     }
 
     /// Says whether a picture can be made with these settings.
@@ -182,6 +201,18 @@ pub enum RenderError {
     Cancelled,
 }
 
+/// What a rendering reports to while it runs, and what it takes from an earlier one.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Gets the number of pixels that are done since the last call, from any of the threads.
+    pub progress: &'a (dyn Fn(u64) + Sync),
+    /// The rendering ends within some hundred samples of every thread when this becomes true.
+    pub cancelled: &'a AtomicBool,
+    /// Tiles of an earlier rendering with the same settings, and the place of new ones. A
+    /// rendering with a limit of time takes and keeps none.
+    pub kept: Option<&'a dyn KeptTiles>,
+}
+
 /// Some tiles of a picture and what they took.
 #[derive(Clone, Debug)]
 pub struct RenderedTiles {
@@ -241,7 +272,12 @@ pub fn render(
     settings.check()?;
     let tiles = Tiles::of(settings.film);
     let all = 0..tiles.count();
-    let rendered = render_tiles(tracer, settings, all, workers, progress, cancelled)?;
+    let watch = Watch {
+        progress,
+        cancelled,
+        kept: None,
+    };
+    let rendered = render_tiles(tracer, settings, all, workers, &watch)?;
     let (mut pixels, mut words) = (Vec::new(), Vec::new());
     tiles.arrange(0, 1, &rendered.pixels, &mut pixels);
     tiles.arrange(0, rendered.words_each, &rendered.words, &mut words);
@@ -268,8 +304,7 @@ pub fn render_tiles(
     settings: &Settings,
     tiles: Range<u64>,
     workers: &ThreadPool,
-    progress: &(dyn Fn(u64) + Sync),
-    cancelled: &AtomicBool,
+    watch: &Watch,
 ) -> Result<RenderedTiles, RenderError> {
     settings.check()?;
     let count = Tiles::of(settings.film).count();
@@ -278,20 +313,22 @@ pub fn render_tiles(
     let work = Work {
         view: &view,
         settings,
-        progress,
-        cancelled,
+        watch,
     };
-    let (pixels, rays, reached) = workers.install(|| match settings.target {
-        None => rendering::render(&work, tiles).map(|(pixels, rays)| (pixels, rays, None)),
-        Some(target) => until_error::render(&work, tiles, target)
-            .map(|(pixels, rays, reached)| (pixels, rays, Some(reached))),
+    let all = Tiles::of(settings.film);
+    let words_each = settings.channels.list().len();
+    let mut pixels = Pixels::new(all.pixels(tiles.clone()), words_each);
+    let places = pixels.places(all, tiles, words_each);
+    let taken = workers.install(|| match settings.target {
+        None => rendering::render(&work, places),
+        Some(target) => until_error::render(&work, places, target),
     })?;
     Ok(RenderedTiles {
         pixels: pixels.colors,
         words: pixels.words,
-        words_each: settings.channels.list().len(),
-        reached,
-        rays,
+        words_each,
+        reached: settings.target.map(|_| taken.reached),
+        rays: taken.rays,
         skipped: skipped(settings.integrator, &view.lights),
     })
 }

@@ -37,6 +37,7 @@ impl Pixels {
             let (own, later) = colors.split_at_mut(pixels);
             let (own_words, later_words) = rest.split_at_mut(pixels * words);
             places.push(Place {
+                number,
                 tile,
                 colors: own,
                 words: own_words,
@@ -49,6 +50,8 @@ impl Pixels {
 
 /// The place of a tile's pixels.
 pub(super) struct Place<'a> {
+    /// The number of the tile.
+    pub number: u64,
     pub tile: Tile,
     pub colors: &'a mut [[f32; 3]],
     pub words: &'a mut [u32],
@@ -76,6 +79,14 @@ impl Sums {
             squares: vec![DVec3::ZERO; of(channels.has_variance())],
             hits: vec![0; of(channels.has_opacity())],
         }
+    }
+
+    /// The bytes of a sequence of a pixel.
+    pub fn bytes_each(channels: &Channels) -> usize {
+        let of = |is_requested: bool, bytes| if is_requested { bytes } else { 0 };
+        size_of::<DVec3>()
+            + of(channels.has_variance(), size_of::<DVec3>())
+            + of(channels.has_opacity(), size_of::<u32>())
     }
 
     /// Adds a batch of samples. `place` is the pixel of a sample by its number in the batch, times

@@ -3,17 +3,17 @@
 //! A pixel is a pure function of its index, so the picture does not depend on
 //! which thread computes what, or when.
 
-use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
 use super::integrator::{Batch, Sample, View};
+use super::kept::Taken;
 use super::outlines;
-use super::place::{Pixels, Place, Sums, write};
+use super::place::{Place, Sums, write};
 use super::sampler::PixelSampler;
 use super::tiles::Tile;
-use super::{RayCounts, RenderError, Settings, Tiles};
+use super::{RayCounts, RenderError, Settings, Watch};
 
 /// Samples that are traced together: many, so that those whose rays are near each other share
 /// packets and caches, and few enough that rays and hits, about 0.6 MB, stay in a core's
@@ -24,29 +24,48 @@ const SAMPLES_AT_ONCE: usize = 2048;
 pub(super) struct Work<'a> {
     pub view: &'a View<'a>,
     pub settings: &'a Settings,
-    /// Gets the number of pixels that are done since the last call.
-    pub progress: &'a (dyn Fn(u64) + Sync),
-    pub cancelled: &'a AtomicBool,
+    pub watch: &'a Watch<'a>,
 }
 
-/// Renders some tiles on the rayon pool that this is called in, with the same number of samples
-/// for every pixel.
-pub(super) fn render(work: &Work, numbers: Range<u64>) -> Result<(Pixels, RayCounts), RenderError> {
-    let tiles = Tiles::of(work.settings.film);
-    let words = work.settings.channels.list().len();
-    let mut pixels = Pixels::new(tiles.pixels(numbers.clone()), words);
-    let rays = pixels
-        .places(tiles, numbers, words)
-        .into_par_iter()
-        // At the end of a part, threads wait for a tile, not for a share of them.
-        .with_max_len(1)
-        .map(|mut place| {
-            let rays = render_tile(work, &mut place)?;
-            (work.progress)(place.colors.len() as u64);
-            Ok(rays)
+impl Work<'_> {
+    /// Restores each tile that is kept, and lets `render` make the others.
+    pub fn each_tile(
+        &self,
+        places: Vec<Place>,
+        render: impl Fn(&mut Place) -> Result<Taken, RenderError> + Sync,
+    ) -> Result<Taken, RenderError> {
+        let tile = |mut place: Place| {
+            let Some(kept) = self.watch.kept else {
+                return render(&mut place);
+            };
+            if let Some(taken) = kept.restore(place.number, place.colors, place.words) {
+                (self.watch.progress)(place.colors.len() as u64);
+                return Ok(taken);
+            }
+            let taken = render(&mut place)?;
+            kept.keep(place.number, place.colors, place.words, &taken);
+            Ok(taken)
+        };
+        places
+            .into_par_iter()
+            // At the end of a part, threads wait for a tile, not for a share of them.
+            .with_max_len(1)
+            .map(tile)
+            .try_reduce(Taken::default, |all, tile| Ok(all.and(tile)))
+    }
+}
+
+/// Renders tiles on the rayon pool that this is called in, with the same number of samples for
+/// every pixel.
+pub(super) fn render(work: &Work, places: Vec<Place>) -> Result<Taken, RenderError> {
+    work.each_tile(places, |place| {
+        let rays = render_tile(work, place)?;
+        (work.watch.progress)(place.colors.len() as u64);
+        Ok(Taken {
+            rays,
+            ..Taken::default()
         })
-        .try_reduce(RayCounts::default, |rays, more| Ok(rays + more))?;
-    Ok((pixels, rays))
+    })
 }
 
 /// Renders the pixels of a tile, and returns the rays they took.
@@ -97,7 +116,11 @@ pub(super) fn pixels(
         let position = (tile.x + column, tile.y + row);
         (
             position,
-            PixelSampler::new(settings.seed, stream(position, settings, sequence)),
+            PixelSampler::new(
+                settings.sampler,
+                settings.seed,
+                stream(position, settings, sequence),
+            ),
         )
     };
     tile.pixels_along_curve().map(pixel).collect()
@@ -120,7 +143,7 @@ pub(super) fn trace(
 ) -> Result<(), RenderError> {
     let (mut batch, mut samples) = (Batch::default(), Vec::new());
     for first in (0..count).step_by(SAMPLES_AT_ONCE) {
-        if work.cancelled.load(Ordering::Relaxed) {
+        if work.watch.cancelled.load(Ordering::Relaxed) {
             return Err(RenderError::Cancelled);
         }
         let numbers = first..count.min(first + SAMPLES_AT_ONCE as u64);

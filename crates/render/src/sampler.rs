@@ -9,14 +9,19 @@
 //! an order of its own. Method: B. Burley, "Practical Hash-based Owen
 //! Scrambling", JCGT 9(4), 2020.
 //!
+//! The sampler `random` is for comparisons: every number of every sample is an independent hash of
+//! (seed, pixel, pair, sample), so the variance of a mean is that of a sample over their number.
+//!
 //! No state is carried between samples, so pictures are the same for any
 //! tile order and thread count.
 
 use cyltrace::math::Random;
+use cyltrace::scene::Sampler;
 
 /// The numbers of one pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelSampler {
+    sampler: Sampler,
     place: PairKey,
     direction: PairKey,
     /// Distinguishes the pixel's further pairs.
@@ -34,9 +39,10 @@ struct PairKey {
 impl PixelSampler {
     /// The numbers of the pixel with the index `pixel` in pictures of `seed`.
     #[must_use]
-    pub fn new(seed: u64, pixel: u64) -> Self {
+    pub fn new(sampler: Sampler, seed: u64, pixel: u64) -> Self {
         let mut random = Random::new(seed, pixel);
         Self {
+            sampler,
             place: PairKey::next(&mut random),
             direction: PairKey::next(&mut random),
             further: random.bits(),
@@ -46,20 +52,20 @@ impl PixelSampler {
     /// Where in the pixel a sample lies: both in [0, 1).
     #[must_use]
     pub fn place(&self, sample: u32) -> (f64, f64) {
-        self.place.point(sample)
+        self.place.point(self.sampler, sample)
     }
 
     /// The numbers that choose a sample's direction: both in [0, 1).
     #[must_use]
     pub fn direction(&self, sample: u32) -> (f64, f64) {
-        self.direction.point(sample)
+        self.direction.point(self.sampler, sample)
     }
 
     /// Two numbers of a sample for another purpose, each with a `dimension` of its own: both in
     /// [0, 1).
     #[must_use]
     pub fn pair(&self, dimension: u32, sample: u32) -> (f64, f64) {
-        self.key(dimension).point(sample)
+        self.key(dimension).point(self.sampler, sample)
     }
 
     fn key(&self, dimension: u32) -> PairKey {
@@ -90,7 +96,7 @@ impl Pairs {
             _ => pixel.key(self.dimension),
         };
         self.last = Some((pixel.further, key));
-        key.point(sample)
+        key.point(pixel.sampler, sample)
     }
 }
 
@@ -104,7 +110,22 @@ impl PairKey {
         }
     }
 
-    fn point(&self, sample: u32) -> (f64, f64) {
+    fn point(&self, sampler: Sampler, sample: u32) -> (f64, f64) {
+        match sampler {
+            Sampler::Sobol => self.sobol_point(sample),
+            Sampler::Random => self.random_point(sample),
+        }
+    }
+
+    #[cold]
+    fn random_point(&self, sample: u32) -> (f64, f64) {
+        let joined = |high: u32, low: u32| u64::from(high) << 32 | u64::from(low);
+        let key = joined(self.order, self.first);
+        let mut random = Random::new(key, joined(self.second, sample));
+        (random.unit(), random.unit())
+    }
+
+    fn sobol_point(&self, sample: u32) -> (f64, f64) {
         let index = scrambled(sample, self.order);
         let first = scrambled(index.reverse_bits(), self.first);
         let second = scrambled(second_sobol_coordinate(index), self.second);
@@ -184,12 +205,15 @@ mod tests {
         let forward: Vec<_> = (0..64)
             .map(|n| {
                 (
-                    PixelSampler::new(3, n).place(5),
-                    PixelSampler::new(3, n).direction(5),
+                    PixelSampler::new(Sampler::Sobol, 3, n).place(5),
+                    PixelSampler::new(Sampler::Sobol, 3, n).direction(5),
                 )
             })
             .collect();
-        let sampler: Vec<_> = (0..64).rev().map(|n| PixelSampler::new(3, n)).collect();
+        let sampler: Vec<_> = (0..64)
+            .rev()
+            .map(|n| PixelSampler::new(Sampler::Sobol, 3, n))
+            .collect();
         for (n, expected) in forward.iter().enumerate() {
             let sampler = &sampler[63 - n];
             let _ = sampler.place(17);
@@ -204,7 +228,7 @@ mod tests {
     #[test]
     fn sampler_sixteen_samples_stratified_in_every_elementary_interval() {
         for pixel in 0..200 {
-            let sampler = PixelSampler::new(11, pixel);
+            let sampler = PixelSampler::new(Sampler::Sobol, 11, pixel);
             let pair =
                 |dimension| move |sampler: &PixelSampler, sample| sampler.pair(dimension, sample);
             type Pair<'a> = &'a dyn Fn(&PixelSampler, u32) -> (f64, f64);
@@ -234,10 +258,16 @@ mod tests {
 
     #[test]
     fn sampler_pairs_are_uncorrelated() {
+        for sampler in Sampler::ALL {
+            pairs_are_uncorrelated(sampler);
+        }
+    }
+
+    fn pairs_are_uncorrelated(sampler: Sampler) {
         let mut sums = [0.0_f64; 12];
         let pixels = 20_000;
         for pixel in 0..pixels {
-            let sampler = PixelSampler::new(5, pixel);
+            let sampler = PixelSampler::new(sampler, 5, pixel);
             let (x, y) = sampler.place(0);
             let (u, v) = sampler.direction(0);
             let (one, two) = (sampler.pair(0, 0), sampler.pair(1, 0));
@@ -263,7 +293,7 @@ mod tests {
     fn pairs_of_successive_samples_are_those_of_single_ones() {
         let mut pairs = Pairs::new(9);
         for pixel in [3, 3, 4, 3] {
-            let sampler = PixelSampler::new(1, pixel);
+            let sampler = PixelSampler::new(Sampler::Sobol, 1, pixel);
             for sample in 0..5 {
                 assert_eq!(pairs.of(&sampler, sample), sampler.pair(9, sample));
             }
@@ -273,8 +303,45 @@ mod tests {
     #[test]
     fn sampler_seed_changes_numbers() {
         let differing = (0..100)
-            .filter(|&n| PixelSampler::new(1, n).place(0) != PixelSampler::new(2, n).place(0))
+            .filter(|&n| {
+                PixelSampler::new(Sampler::Sobol, 1, n).place(0)
+                    != PixelSampler::new(Sampler::Sobol, 2, n).place(0)
+            })
             .count();
         assert!(differing > 98, "{differing} of 100");
+    }
+
+    /// Bins of the unit square, within a pixel and over pixels, by the chi-squared statistic, which
+    /// has the mean 63 and the deviation √126.
+    #[test]
+    fn random_samples_are_uniform_and_independent() {
+        let of = |pixel: u64| PixelSampler::new(Sampler::Random, 3, pixel);
+        let within: Vec<_> = (0..64_000)
+            .map(|n| (of(1).place(n), of(1).pair(4, n)))
+            .collect();
+        let over: Vec<_> = (0..64_000)
+            .map(|n| (of(n).place(9), of(n).place(10)))
+            .collect();
+        for list in [within, over] {
+            type Pick = fn(&((f64, f64), (f64, f64))) -> (f64, f64);
+            let pairs: [Pick; 4] = [
+                |((x, y), _)| (*x, *y),
+                |((x, _), (z, _))| (*x, *z),
+                |((_, y), (z, _))| (*y, *z),
+                |(_, (z, w))| (*z, *w),
+            ];
+            for pair in pairs {
+                let mut bins = [0.0_f64; 64];
+                for (x, y) in list.iter().map(pair) {
+                    bins[(x * 8.0) as usize * 8 + (y * 8.0) as usize] += 1.0;
+                }
+                let statistic: f64 = bins
+                    .iter()
+                    .map(|n| (n - 1000.0) * (n - 1000.0) / 1000.0)
+                    .sum();
+                let deviations = (statistic - 63.0) / 126.0_f64.sqrt();
+                assert!(deviations.abs() < 5.0, "{deviations} deviations");
+            }
+        }
     }
 }

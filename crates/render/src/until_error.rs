@@ -10,7 +10,7 @@
 //! estimates the variance of the pixel's value without bias, although the samples of a sequence
 //! are not independent: that they are spread evenly is in `a - b`. The error of a tile is the
 //! root of the mean of `v` over its pixels and the components of their colors, divided by the
-//! mean of these components, or by [`DARK`] where the tile is darker.
+//! mean of these components, or by 0.01 (`spread`) where the tile is darker.
 //!
 //! # No bias
 //! To stop when a tile looks good is a bias if the samples that are kept made it look so: a tile
@@ -19,7 +19,7 @@
 //! one. The number `N` of samples of a pixel is then a function of samples of other pixels,
 //! which are independent of its own, and of nothing else. For every `n` the mean `M(n)` of its
 //! samples has the expectation `I`, the pixel's true value, because every point of a scrambled
-//! sequence is uniform. So `E M(N) = Σ P(N = n) E M(n) = I`. Until both halves have stopped,
+//! sequence is uniform, and every number of the sampler `random`. So `E M(N) = Σ P(N = n) E M(n) = I`. Until both halves have stopped,
 //! both are sampled; what the one that stopped first gets after that is not used for its own
 //! pixels. (The idea is that of the dual buffers of Rousselle, Knaus, Zwicker, "Adaptive
 //! Rendering with Non-Local Means Filtering", ACM Transactions on Graphics 31(6), 2012, with
@@ -36,25 +36,27 @@
 //! stops where `S + 1.645/√2 √(4/3 Σ v²)` is at most the target's. The components of a color
 //! are taken as one value, since they vary together.
 //!
-//! Decisions are at numbers of samples that grow by a third or a half ([`next`]): finer steps
-//! would decide more often, and so stop by luck; coarser ones take more than is needed.
+//! # When is decided
+//! A half is decided at numbers of samples of two or three significant bits, each a fifth or so above
+//! the one before. Far from the target most of them would be in vain, and small steps trace few
+//! samples of a pixel together, which costs time. So after a decision the next one is
+//! at the number where the error is expected to be nearly small enough ([`next`]). That number is
+//! computed from the other half's samples too, so that `N` remains a function of them alone. With a
+//! limit of time, no number is left out.
 
-use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use cyltrace::math::Random;
 use rayon::prelude::*;
 
 use super::integrator::Sample;
+use super::kept::{Reached, Taken};
 use super::outlines;
-use super::place::{Pixels, Place, Sums, write};
+use super::place::{Place, Sums, write};
 use super::rendering::{Work, pixels, stream, trace};
 use super::sampler::PixelSampler;
-use super::{RayCounts, RenderError, Tiles};
-
-/// Mean below which the error of a tile is no longer relative to it: 1 % of white. Black tiles
-/// would never be done.
-const DARK: f64 = 0.01;
+use super::spread::Spread;
+use super::{RayCounts, RenderError, Settings, Tiles};
 
 /// Samples of a sequence before the first decision. Fewer would decide by luck.
 const FIRST: u32 = 4;
@@ -69,9 +71,6 @@ pub(super) const LEAST_SAMPLES: u32 = SEQUENCES as u32;
 /// 1 and 2. Stream 0 has the samples of pictures with the same number everywhere.
 const STREAM_OF_HALVES: u64 = 3;
 
-/// The one-sided quantile of 95 % of a normal variable, over √2.
-const QUANTILE: f64 = 1.644_853_626_951_472_7 * std::f64::consts::FRAC_1_SQRT_2;
-
 /// When a picture has enough samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
@@ -82,111 +81,101 @@ pub struct Target {
     pub time: Option<Duration>,
 }
 
-/// What a picture with a [`Target`] has reached.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Reached {
-    /// The greatest error of a tile, as estimated from its own samples.
-    pub error: f32,
-    /// The number of tiles whose estimated error is greater than the target's.
-    pub tiles_above: u64,
-    /// The samples of all pixels.
-    pub samples: u64,
-}
-
-impl Reached {
-    /// What both have reached together.
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        Self {
-            error: self.error.max(other.error),
-            tiles_above: self.tiles_above + other.tiles_above,
-            samples: self.samples + other.samples,
-        }
-    }
-}
-
-/// Renders some tiles on the rayon pool that this is called in.
+/// Renders tiles on the rayon pool that this is called in.
 pub(super) fn render(
     work: &Work,
-    numbers: Range<u64>,
+    mut places: Vec<Place>,
     target: Target,
-) -> Result<(Pixels, RayCounts, Reached), RenderError> {
-    let tiles = Tiles::of(work.settings.film);
-    let words = work.settings.channels.list().len();
-    let mut all = Pixels::new(tiles.pixels(numbers.clone()), words);
-    let places = all.places(tiles, numbers, words);
-    let started = places.into_par_iter().with_max_len(1);
-    let started = started.map(|place| TileSamples::new(work, target.error, place));
+) -> Result<Taken, RenderError> {
     // A time that is too long to be added never ends.
     let deadline = target
         .time
         .and_then(|time| Instant::now().checked_add(time));
-    let outcomes: Vec<(RayCounts, Reached)> = match deadline {
+    let Some(deadline) = deadline else {
         // One tile after the other, so that few are in memory.
-        None => started
-            .map(|mut tile| {
-                while !tile.is_done() {
-                    tile.advance()?;
-                }
-                Ok(tile.outcome())
-            })
-            .collect::<Result<_, RenderError>>()?,
-        // All tiles side by side, so that none has much less when the time is over.
-        Some(deadline) => {
-            let mut tiles: Vec<_> = started.collect();
-            loop {
-                let rest = tiles.par_iter_mut().with_max_len(1);
-                rest.filter(|tile| !tile.is_done()).try_for_each(|tile| {
-                    match tile.taken > 0 && Instant::now() >= deadline {
-                        true => {
-                            tile.stop();
-                            Ok(())
-                        }
-                        false => tile.advance(),
-                    }
-                })?;
-                if tiles.iter().all(TileSamples::is_done) {
-                    break;
-                }
+        return work.each_tile(places, |place| {
+            let mut tile = TileSamples::new(work, target.error, place);
+            while !tile.is_done() {
+                tile.advance()?;
             }
-            tiles.into_iter().map(TileSamples::outcome).collect()
-        }
+            Ok(tile.taken())
+        });
     };
-    let mut sums = (RayCounts::default(), Reached::default());
-    for (rays, reached) in outcomes {
-        sums = (sums.0 + rays, sums.1.and(reached));
+    // All tiles side by side, so that none has much less when the time is over.
+    let started = places.par_iter_mut().with_max_len(1);
+    let started = started.map(|place| TileSamples::new(work, target.error, place));
+    let mut tiles: Vec<_> = started.collect();
+    loop {
+        let rest = tiles.par_iter_mut().with_max_len(1);
+        rest.filter(|tile| !tile.is_done()).try_for_each(|tile| {
+            match tile.samples_of_each > 0 && Instant::now() >= deadline {
+                true => {
+                    tile.stop();
+                    Ok(())
+                }
+                false => tile.advance(),
+            }
+        })?;
+        if tiles.iter().all(TileSamples::is_done) {
+            break;
+        }
     }
-    Ok((all, sums.0, sums.1))
+    let all = tiles.into_iter().map(TileSamples::taken);
+    Ok(all.fold(Taken::default(), Taken::and))
 }
 
-/// A number of samples of a sequence after `taken`: 4, 6, 8, 12, 16, 24 and so on.
-fn next(taken: u32) -> u32 {
-    match taken {
-        0 => FIRST,
-        _ if taken.is_power_of_two() => taken / 2 * 3,
-        _ => taken / 3 * 4,
+/// The bytes that the samples of all tiles take where they are taken side by side.
+pub(super) fn samples_bytes(settings: &Settings) -> u64 {
+    let pixels = u64::from(settings.film.width) * u64::from(settings.film.height);
+    let of_pixel = size_of::<((u32, u32), usize)>()
+        + SEQUENCES * size_of::<((u32, u32), PixelSampler)>()
+        + SEQUENCES * Sums::bytes_each(&settings.channels);
+    let of_tile = (size_of::<TileSamples>() + size_of::<Place>()) as u64;
+    pixels * of_pixel as u64 + Tiles::of(settings.film).count() * of_tile
+}
+
+/// How fast the squared error is taken to fall, `N^(-1/FALL)`. It falls as `N^-1` or faster; less
+/// is expected of more samples than they do, so that few tiles take more than they need.
+const FALL: f64 = 0.8;
+
+/// Most growth of a number of samples between two decisions: the first estimates are rough.
+const MOST_GROWTH: f64 = 4.0;
+
+/// The number of samples of a sequence at which a half is decided after `taken`, where the squared
+/// error was `excess` times the greatest that would be small enough.
+fn next(taken: u32, excess: f64) -> u32 {
+    if taken == 0 {
+        return FIRST;
     }
+    // The numbers up to the next power of two are a multiple of an eighth of it.
+    let unit = |number: u32| (number.next_power_of_two() / 8).max(1);
+    let least = taken + unit(taken + 1);
+    let growth = libm::pow(excess, FALL).clamp(1.0, MOST_GROWTH);
+    let expected = (f64::from(taken) * growth) as u32;
+    (expected / unit(expected) * unit(expected)).max(least)
 }
 
 /// A tile while it is sampled.
-struct TileSamples<'a> {
+struct TileSamples<'a, 'p> {
     work: &'a Work<'a>,
     error: f64,
-    place: Place<'a>,
+    place: &'a mut Place<'p>,
     /// Column, row and half of each pixel.
     pixels: Vec<((u32, u32), usize)>,
     samplers: [Vec<PixelSampler>; SEQUENCES],
     sums: Sums,
     /// Samples of each sequence so far.
-    taken: u32,
+    samples_of_each: u32,
+    /// The number of samples at which each half is decided next.
+    due: [u32; 2],
     /// What each half has come to, once it has stopped.
     stopped: [Option<Spread>; 2],
     rays: RayCounts,
     samples: u64,
 }
 
-impl<'a> TileSamples<'a> {
-    fn new(work: &'a Work<'a>, error: f64, place: Place<'a>) -> Self {
+impl<'a, 'p> TileSamples<'a, 'p> {
+    fn new(work: &'a Work<'a>, error: f64, place: &'a mut Place<'p>) -> Self {
         let settings = work.settings;
         let all = [1, 2].map(|sequence| pixels(&place.tile, settings, sequence));
         let half = |position| {
@@ -204,7 +193,8 @@ impl<'a> TileSamples<'a> {
             pixels: halves.collect(),
             samplers: all.map(|pixels| pixels.into_iter().map(|(_, sampler)| sampler).collect()),
             sums,
-            taken: 0,
+            samples_of_each: 0,
+            due: [next(0, 1.0); 2],
             stopped: [None, None],
             rays: RayCounts::default(),
             samples: 0,
@@ -218,8 +208,11 @@ impl<'a> TileSamples<'a> {
     /// Takes samples up to the next decision, and decides.
     fn advance(&mut self) -> Result<(), RenderError> {
         let most = (self.work.settings.spp / LEAST_SAMPLES).max(1);
-        let end = next(self.taken).min(most);
-        let more = u64::from(end - self.taken);
+        let halves = [0, 1].into_iter();
+        let due = halves.filter(|&half| self.stopped[half].is_none());
+        let due = due.map(|half| self.due[half]).min();
+        let end = due.unwrap_or(most).min(most);
+        let more = u64::from(end - self.samples_of_each);
         // The samples of a pixel are neighbours, those of both sequences.
         let place = |number: u64| (number / more) as usize;
         let sample = |number: u64| {
@@ -227,7 +220,7 @@ impl<'a> TileSamples<'a> {
             Sample {
                 pixel: self.pixels[pixel].0,
                 sampler: self.samplers[sequence][pixel],
-                number: self.taken + (number % more) as u32,
+                number: self.samples_of_each + (number % more) as u32,
             }
         };
         let count = (self.pixels.len() * SEQUENCES) as u64 * more;
@@ -235,7 +228,7 @@ impl<'a> TileSamples<'a> {
         trace(self.work, count, sample, &mut self.rays, |first, batch| {
             sums.add(batch, |sample| place(first + sample as u64));
         })?;
-        self.taken = end;
+        self.samples_of_each = end;
         let spreads = [0, 1].map(|half| self.spread(half));
         for half in [0, 1] {
             // A tile of few pixels may have all of them in one half, which then decides for itself.
@@ -243,12 +236,28 @@ impl<'a> TileSamples<'a> {
                 true => spreads[1 - half],
                 false => spreads[half],
             };
-            let by_other = other.is_within(self.error);
-            if self.stopped[half].is_none() && (by_other || end == most) {
-                self.stop_half(half);
+            if self.stopped[half].is_none() && (end >= self.due[half] || end == most) {
+                match end == most || other.is_within(self.error) {
+                    true => self.stop_half(half),
+                    false => self.due[half] = next(end, self.foreseen(other)),
+                }
             }
         }
         Ok(())
+    }
+
+    /// How much greater than permitted the squared error of a half was, if that says when it
+    /// is decided next.
+    fn foreseen(&self, spread: Spread) -> f64 {
+        let has_time = self
+            .work
+            .settings
+            .target
+            .is_some_and(|target| target.time.is_some());
+        match has_time {
+            true => 1.0,
+            false => spread.excess(self.error),
+        }
     }
 
     /// Stops with the samples so far.
@@ -264,12 +273,11 @@ impl<'a> TileSamples<'a> {
         let pixels = self.pixels.iter().enumerate();
         let own = pixels.filter(|(_, (_, of))| *of == half);
         let own = own.map(|(pixel, (position, _))| (pixel, *position));
-        let samples = SEQUENCES as u32 * self.taken;
+        let samples = SEQUENCES as u32 * self.samples_of_each;
         let count = own.clone().count() as u64;
         let (view, channels) = (self.work.view, &self.work.settings.channels);
-        let place = &mut self.place;
         write(
-            place,
+            self.place,
             own,
             &self.sums,
             samples,
@@ -279,7 +287,7 @@ impl<'a> TileSamples<'a> {
         );
         self.stopped[half] = Some(self.spread(half));
         self.samples += count * u64::from(samples);
-        (self.work.progress)(count);
+        (self.work.watch.progress)(count);
     }
 
     /// How the values of a half spread.
@@ -287,7 +295,7 @@ impl<'a> TileSamples<'a> {
         let mut spread = Spread::default();
         for (pixel, (_, of)) in self.pixels.iter().enumerate() {
             if *of == half {
-                let count = f64::from(self.taken);
+                let count = f64::from(self.samples_of_each);
                 let sums = self.sums.colors(pixel);
                 let (first, second) = (sums[0] / count, sums[1] / count);
                 let variance = (first - second).length_squared() / 12.0;
@@ -300,58 +308,19 @@ impl<'a> TileSamples<'a> {
         spread
     }
 
-    fn outcome(mut self) -> (RayCounts, Reached) {
+    fn taken(mut self) -> Taken {
         let (view, channels) = (self.work.view, &self.work.settings.channels);
-        outlines::draw(&mut self.place, channels, view, &mut self.rays);
+        outlines::draw(self.place, channels, view, &mut self.rays);
         let halves = self.stopped.map(Option::unwrap_or_default);
         let error = halves[0].and(halves[1]).error();
-        let reached = Reached {
-            error: error as f32,
-            tiles_above: u64::from(error > self.error),
-            samples: self.samples,
-        };
-        (self.rays, reached)
-    }
-}
-
-/// How the values of some pixels spread.
-#[derive(Clone, Copy, Debug, Default)]
-struct Spread {
-    pixels: f64,
-    /// The sum of the pixels' values, each the mean of its color's components.
-    values: f64,
-    /// The sum of the estimated variances `v`.
-    variances: f64,
-    /// The sum of `v²`.
-    squares: f64,
-}
-
-impl Spread {
-    fn and(self, other: Self) -> Self {
-        Self {
-            pixels: self.pixels + other.pixels,
-            values: self.values + other.values,
-            variances: self.variances + other.variances,
-            squares: self.squares + other.squares,
+        Taken {
+            rays: self.rays,
+            reached: Reached {
+                error: error as f32,
+                tiles_above: u64::from(error > self.error),
+                samples: self.samples,
+            },
         }
-    }
-
-    /// What errors are relative to.
-    fn scale(&self) -> f64 {
-        (self.values / self.pixels).max(DARK)
-    }
-
-    /// The relative error.
-    fn error(&self) -> f64 {
-        (self.variances / self.pixels).sqrt() / self.scale()
-    }
-
-    /// Whether the error is at most `target` with the probability of the promise. No pixels say
-    /// nothing.
-    fn is_within(&self, target: f64) -> bool {
-        let limit = target * self.scale();
-        let greatest = self.variances + QUANTILE * (4.0 / 3.0 * self.squares).sqrt();
-        self.pixels > 0.0 && greatest <= limit * limit * self.pixels
     }
 }
 
@@ -360,37 +329,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn decisions_are_at_numbers_that_grow_by_a_third_or_a_half() {
-        let all = std::iter::successors(Some(next(0)), |&taken| Some(next(taken)));
-        assert_eq!(
-            all.take(8).collect::<Vec<_>>(),
-            [4, 6, 8, 12, 16, 24, 32, 48]
-        );
-    }
-
-    #[test]
-    fn spread_of_no_pixels_or_black_ones_says_nothing_or_enough() {
-        assert!(!Spread::default().is_within(1e9));
-        let black = Spread {
-            pixels: 128.0,
-            ..Spread::default()
+    fn decisions_are_at_numbers_of_few_bits_that_grow_with_the_error() {
+        let all = |excess: f64| {
+            let numbers =
+                std::iter::successors(Some(next(0, excess)), move |&n| Some(next(n, excess)));
+            numbers.take(12).collect::<Vec<_>>()
         };
-        assert!(black.is_within(1e-9));
-        assert_eq!(black.error(), 0.0);
-    }
-
-    /// 100 pixels of value 2 with the variance 0.01 each have an error of 5 %; the promise needs
-    /// `1 + 1.163 √(4/3 · 100)/100` times the variance.
-    #[test]
-    fn error_is_relative_and_the_promise_has_a_margin() {
-        let spread = Spread {
-            pixels: 100.0,
-            values: 200.0,
-            variances: 1.0,
-            squares: 0.01,
-        };
-        assert!((spread.error() - 0.05).abs() < 1e-15);
-        let needed = 0.05 * (1.0 + 1.163_087 * (4.0_f64 / 3.0).sqrt() * 0.1).sqrt();
-        assert!(!spread.is_within(needed * 0.9999) && spread.is_within(needed * 1.0001));
+        assert_eq!(all(1.0), [4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28]);
+        // 2^0.8 is 1.74.
+        assert_eq!(all(2.0)[..6], [4, 6, 10, 16, 24, 40]);
+        assert_eq!(all(f64::INFINITY)[..4], [4, 16, 64, 256]);
+        assert_eq!(next(8, f64::NAN), 10);
     }
 }

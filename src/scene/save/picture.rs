@@ -32,6 +32,7 @@ pub(super) fn state<W: Write>(
     let mut render = text.table("[render]");
     render.text("integrator", scene.render.integrator.name());
     render.whole("spp", scene.render.spp);
+    render.text("sampler", scene.render.sampler.name());
     render.whole("max_depth", scene.render.max_depth);
     if scene.render.ao_distance.is_finite() {
         render.number("ao_distance", scene.render.ao_distance);

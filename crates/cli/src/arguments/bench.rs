@@ -5,13 +5,15 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Subcommand};
-use cyltrace::scene::{GREATEST_CASES, GREATEST_ROUNDS, GREATEST_TIMED_RAYS};
+use cyltrace::scene::{Film, GREATEST_CASES, GREATEST_ROUNDS, GREATEST_TIMED_RAYS, Sampler};
 use cyltrace_bench::traversal::{Representation, SceneName};
 use cyltrace_bench::{formulations, rival_names};
 
 use super::names::one_of;
-use super::numbers::{count_up_to, parse_seed};
-use super::{Common, DecisionArguments};
+use super::numbers::{count_up_to, parse_seed, parse_size};
+use super::picture::parse_error;
+use super::{Common, DecisionArguments, IntegratorName};
+use crate::limit::MemoryArguments;
 use crate::memory;
 
 /// Measure run times and errors
@@ -26,6 +28,7 @@ pub enum Bench {
     Accuracy(AccuracyArguments),
     Traversal(TraversalArguments),
     Scale(ScaleArguments),
+    Image(ImageArguments),
 }
 
 /// Compare time and error of every formulation of the ray/cylinder test
@@ -120,6 +123,47 @@ pub struct ScaleArguments {
     /// Write figures (SVG), `scale.csv` and `index.html` to DIR
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Compare time and error of pictures
+///
+/// Each scene is rendered with each integrator that suits it (`sun` only where the scene does not
+/// need `path`) and each sampler: with 4, 8, 16 and so on samples for every pixel, and until each
+/// error of `--error`. Errors are those against a picture of another seed with 16 times the samples
+/// or more. All pictures of a scene and an integrator are timed in turns.
+#[derive(Args, Debug)]
+pub struct ImageArguments {
+    /// The scene files [default: `minimal`, `lattice`, `set_operations` and `forest` in `scenes`]
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    /// Render W by H pixels
+    #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "160x96")]
+    pub size: Film,
+    /// Take up to N samples for every pixel, 4 to 65536
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(4..=65_536))]
+    pub spp: u32,
+    /// Render until this error, as `render --error`; may be repeated [default: 0.2 and 0.1]
+    #[arg(long, value_name = "E", value_parser = parse_error, allow_negative_numbers = true)]
+    pub error: Vec<f64>,
+    /// Render with this integrator only; may be repeated
+    #[arg(long, value_name = "NAME", value_enum)]
+    pub integrator: Vec<IntegratorName>,
+    /// Render with this sampler only; may be repeated
+    #[arg(long, value_name = "NAME", value_parser = one_of(Sampler::ALL, Sampler::name))]
+    pub sampler: Vec<Sampler>,
+    /// Take N samples of each time
+    #[arg(long, value_name = "N", default_value = "3", value_parser = count_up_to::<NonZeroUsize>(GREATEST_ROUNDS))]
+    pub rounds: NonZeroUsize,
+    /// Seed the random numbers
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_seed, allow_negative_numbers = true)]
+    pub seed: u64,
+    /// Write figures (SVG), `image.csv` and `index.html` to DIR
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub memory: MemoryArguments,
     #[command(flatten)]
     pub common: Common,
 }

@@ -56,7 +56,7 @@ impl PictureArguments {
 }
 
 /// A relative error.
-fn parse_error(text: &str) -> Result<f64, String> {
+pub fn parse_error(text: &str) -> Result<f64, String> {
     let error = text.parse().ok();
     error
         .filter(|error: &f64| error.is_finite() && *error > 0.0)

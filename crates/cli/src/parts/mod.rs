@@ -5,6 +5,7 @@
 //! part is a pure function of its range: the pixels of tiles, rows of a table, rays of a check.
 
 pub mod check;
+pub mod checkpoint;
 mod folder;
 pub mod list;
 pub mod merge;

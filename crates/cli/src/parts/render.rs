@@ -25,6 +25,7 @@ pub fn settings(settings: &Settings, display: Display, exact: bool) -> Value {
         "size": [settings.film.width, settings.film.height],
         "spp": settings.spp,
         "integrator": settings.integrator.name(),
+        "sampler": settings.sampler.name(),
         "seed": settings.seed,
         "exact": exact,
         "channels": channels.map(|group| group.name()).collect::<Vec<_>>(),
@@ -37,16 +38,34 @@ pub fn settings(settings: &Settings, display: Display, exact: bool) -> Value {
 
 /// Writes the payload.
 pub fn write(part: &mut PartWriter, tiles: &RenderedTiles) -> io::Result<()> {
-    let each = tiles.words_each;
-    for (number, color) in tiles.pixels.iter().enumerate() {
+    write_pixels(part, &tiles.pixels, &tiles.words)
+}
+
+/// Writes pixels, each with its words.
+pub fn write_pixels(target: &mut impl Write, colors: &[[f32; 3]], words: &[u32]) -> io::Result<()> {
+    let each = words.len() / colors.len().max(1);
+    for (number, color) in colors.iter().enumerate() {
         for value in color {
-            part.write_all(&value.to_le_bytes())?;
+            target.write_all(&value.to_le_bytes())?;
         }
-        for word in &tiles.words[number * each..][..each] {
-            part.write_all(&word.to_le_bytes())?;
+        for word in &words[number * each..][..each] {
+            target.write_all(&word.to_le_bytes())?;
         }
     }
     Ok(())
+}
+
+/// The bytes of a pixel with this number of words.
+pub fn pixel_bytes(words: usize) -> usize {
+    COLOR + words * WORD
+}
+
+/// The color and the words of a pixel.
+pub fn pixel(bytes: &[u8]) -> ([f32; 3], impl Iterator<Item = u32>) {
+    let (words, _) = bytes.as_chunks();
+    let mut words = words.iter().map(|&word| u32::from_le_bytes(word));
+    let color = [(); 3].map(|()| f32::from_bits(words.next().unwrap_or_default()));
+    (color, words)
 }
 
 /// What the file of the picture has beside its colors.
@@ -88,7 +107,7 @@ pub fn merge(set: &PartSet, output: &Path) -> anyhow::Result<()> {
     }
     let contents = contents(set)?;
     let words = contents.channels.len();
-    let bytes = COLOR + words * WORD;
+    let bytes = pixel_bytes(words);
     let tiles = Tiles::of(film);
     for part in set.parts() {
         let header = part.header();
@@ -136,7 +155,7 @@ impl<'a> Pixels<'a> {
 
     /// Reads the next `count` pixels.
     fn read(&mut self, count: u64, pixels: &mut Band) -> io::Result<()> {
-        let each = COLOR + self.words * WORD;
+        let each = pixel_bytes(self.words);
         self.bytes.resize(count as usize * each, 0);
         let mut filled = 0;
         while filled < self.bytes.len() {
@@ -151,10 +170,8 @@ impl<'a> Pixels<'a> {
             }
         }
         pixels.clear();
-        for pixel in self.bytes.chunks_exact(each) {
-            let (words, _) = pixel.as_chunks();
-            let mut words = words.iter().map(|&word| u32::from_le_bytes(word));
-            let color = [(); 3].map(|()| f32::from_bits(words.next().unwrap_or_default()));
+        for bytes in self.bytes.chunks_exact(each) {
+            let (color, words) = pixel(bytes);
             pixels.colors.push(color);
             pixels.words.extend(words);
         }

@@ -135,6 +135,10 @@ fn passed_on(arguments: &RenderArguments, workers: usize) -> anyhow::Result<Vec<
         "integrator",
         arguments.integrator.as_ref().and_then(name_of),
     );
+    option(
+        "sampler",
+        arguments.sampler.map(|one| one.name().to_owned()),
+    );
     option("seed", Some(arguments.seed.to_string()));
     let picture = &arguments.picture;
     let channels: Vec<_> = picture.channels.iter().map(|group| group.name()).collect();
@@ -331,8 +335,18 @@ mod tests {
     use crate::arguments::{Arguments, Command};
 
     /// Options that a worker does not have, or that have its own values.
-    const OWN: [&str; 10] = [
-        "output", "json", "quiet", "part", "resume", "workers", "parts", "time", "frames", "orbit",
+    const OWN: [&str; 11] = [
+        "output",
+        "json",
+        "quiet",
+        "part",
+        "resume",
+        "workers",
+        "parts",
+        "time",
+        "frames",
+        "orbit",
+        "checkpoint",
     ];
 
     fn render(words: &[OsString]) -> RenderArguments {
@@ -346,7 +360,7 @@ mod tests {
 
     #[test]
     fn every_option_of_render_reaches_the_workers() {
-        let line = "render -o p.png --size 3x2 --spp 5 --integrator ao --seed 7 --max-memory 1GB \
+        let line = "render -o p.png --size 3x2 --spp 5 --integrator ao --sampler random --seed 7 --max-memory 1GB \
                     --layout block --exact --threads 6 --max-isa avx2 --channels ids,depth --exposure -0.5 \
                     --tonemap agx --error 0.05 --workers 2 -- -s.toml";
         let words: Vec<OsString> = line.split_whitespace().map(OsString::from).collect();
@@ -369,7 +383,12 @@ mod tests {
             let layout = arguments.memory.layout;
             let integrator = format!("{:?}", arguments.integrator);
             let scene = arguments.scene.clone();
-            let numbers = (arguments.size, arguments.spp, arguments.seed);
+            let numbers = (
+                arguments.size,
+                arguments.spp,
+                arguments.seed,
+                arguments.sampler,
+            );
             let picture = format!("{:?}", arguments.picture);
             let max_isa = arguments.common.max_isa;
             (

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use cyltrace::tracer::Tracer;
 use cyltrace_parts::Header;
-use cyltrace_render::{RayCounts, Reached, Settings};
+use cyltrace_render::{RayCounts, Reached, Settings, Tiles};
 use serde_json::{Value, json};
 
 use super::frames::FrameFigures;
-use super::samples_text;
 use crate::arguments::RenderArguments;
+use crate::parts::checkpoint::Earlier;
 use crate::{json, memory, parts, reached, text};
 
 /// The times of the command's parts, in seconds.
@@ -23,6 +23,16 @@ impl Times {
     pub fn all(&self) -> f64 {
         self.load + self.build + self.render
     }
+}
+
+/// How many samples a pixel gets.
+pub fn samples_text(settings: &Settings) -> String {
+    let at_most = if settings.target.is_some() {
+        "at most "
+    } else {
+        ""
+    };
+    format!("{at_most}{} samples per pixel", settings.spp)
 }
 
 /// A rendering that is complete.
@@ -40,12 +50,15 @@ pub struct Run<'a> {
     pub header: Option<&'a Header>,
     /// The pictures of a film; empty without `--frames`.
     pub frames: &'a [FrameFigures],
+    /// What an earlier run had rendered.
+    pub earlier: Option<Earlier>,
 }
 
 impl Run<'_> {
-    /// The rays per second.
+    /// The rays per second of this run.
     fn rate(&self) -> f64 {
-        self.rays.total() as f64 / self.times.render
+        let earlier = self.earlier.map_or(0, |earlier| earlier.rays);
+        (self.rays.total() - earlier) as f64 / self.times.render
     }
 
     /// Work that the scene did not need.
@@ -81,6 +94,7 @@ impl Run<'_> {
             "size": [settings.film.width, settings.film.height],
             "spp": settings.spp,
             "integrator": settings.integrator.name(),
+            "sampler": settings.sampler.name(),
             "seed": settings.seed,
             "load_s": times.load,
             "build_s": times.build,
@@ -102,6 +116,9 @@ impl Run<'_> {
         });
         if let Some(reached) = &self.reached {
             figures[reached::KEY] = reached::figures(reached);
+        }
+        if let Some(earlier) = &self.earlier {
+            figures["resumed"] = json!({ "tiles": earlier.tiles, "rays": earlier.rays });
         }
         if !self.frames.is_empty() {
             figures["frames"] = self.frames.iter().map(FrameFigures::json).collect();
@@ -150,6 +167,13 @@ impl Run<'_> {
             self.rays.total(),
             self.rate() / 1e6
         );
+        if let Some(earlier) = self.earlier.filter(|earlier| earlier.tiles > 0) {
+            let all = Tiles::of(settings.film).count();
+            text += &format!(
+                "resumed: {} of {all} tiles and {} of the rays are of an earlier run\n",
+                earlier.tiles, earlier.rays
+            );
+        }
         for reason in self.skipped() {
             text += &format!("skipped: {reason}\n");
         }

@@ -97,3 +97,22 @@ fn info_says_what_the_limit_is_held_against() {
     let (code, _, error) = render(peak);
     assert_eq!(code, 0, "{error}");
 }
+
+#[test]
+fn samples_of_a_picture_with_a_time_count() {
+    let folder = folder_of(&[("scene.toml", "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n")]);
+    let run = |line: &str| cyltrace(folder.path(), &program::words(line));
+    // 144 bytes and more for each of 10^6 pixels.
+    let line = "render scene.toml -o out.png --size 1000x1000 --max-memory 100MB";
+    let (code, _, error) = run(&format!("{line} --time 0.01"));
+    assert_eq!(code, 2, "{error}");
+    assert!(
+        error.contains("the samples of all tiles at once, for --time"),
+        "{error}"
+    );
+    let (code, _, error) = run(&format!("{line} --spp 1"));
+    assert_eq!(code, 0, "{error}");
+    let (code, _, error) =
+        run(&format!("{line} --time 0.01 --max-memory 300MB").replace("--max-memory 100MB", ""));
+    assert_eq!(code, 0, "{error}");
+}

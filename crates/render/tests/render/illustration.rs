@@ -10,7 +10,7 @@ use cyltrace::scene::{
 };
 use cyltrace::solid::{AnySolid, Cuboid, Sphere};
 use cyltrace::tracer::{Options, Tracer, workers};
-use cyltrace_render::{Channels, Picture, Settings, Target, Tiles, render, render_tiles};
+use cyltrace_render::{Channels, Picture, Settings, Target, Tiles, Watch, render, render_tiles};
 use glam::DVec3;
 
 /// Light of which surfaces and background are half, so that black lines are what is less.
@@ -265,7 +265,12 @@ fn outlines_are_the_same_in_parts_and_cover_what_is_transparent() {
     let (count, mut parts) = (Tiles::of(settings.film).count(), Vec::new());
     for tile in 0..count {
         let never = AtomicBool::new(false);
-        let tile = render_tiles(&tracer, &settings, tile..tile + 1, &pool, &|_| (), &never);
+        let watch = Watch {
+            progress: &|_| (),
+            cancelled: &never,
+            kept: None,
+        };
+        let tile = render_tiles(&tracer, &settings, tile..tile + 1, &pool, &watch);
         parts.extend(tile.expect("rendered").pixels);
     }
     let mut arranged = Vec::new();

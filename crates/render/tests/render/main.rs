@@ -8,5 +8,6 @@ mod lens;
 mod light;
 mod path;
 mod same_pictures;
+mod samplers;
 mod stage;
 mod until_error;

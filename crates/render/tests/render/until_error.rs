@@ -25,7 +25,7 @@ fn until(error: f64) -> Option<Target> {
 
 /// The bottom of a tube, seen from above: little of the sky is visible from there, so most
 /// samples are black and few are white. What has too few white ones looks done.
-fn tube() -> Scene {
+pub fn tube() -> Scene {
     let ground = (DVec3::NEG_Z, DVec3::ZERO, 9.0, Caps::Both);
     let tube = (DVec3::NEG_Z, DVec3::new(0.0, 0.0, 6.0), 1.5, Caps::None);
     let mut scene = stage::scene(&[ground, tube]);

@@ -3,6 +3,7 @@
 
 mod accuracy;
 use crate::program;
+mod image;
 mod scale;
 mod traversal;
 

@@ -1,6 +1,7 @@
-//! `--part`, `merge`, `parts`, workers and scripts: the bytes of one process, whatever happens
+//! `--part`, `merge`, `parts`, workers, scripts and checkpoints: the bytes of one process, whatever happens
 //! to the parts.
 
+mod checkpoint;
 mod damage;
 mod same_bytes;
 mod slurm;
