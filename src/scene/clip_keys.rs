@@ -5,10 +5,10 @@ use toml::Spanned;
 
 use super::clip::Clip;
 use super::error::SceneError;
+use super::light_values::point;
 use super::material::Color;
 use super::materials::Materials;
 use super::names::quoted;
-use super::placed_lights::point;
 use super::record::MaterialIndex;
 use super::settings::unit_or_same;
 use super::source::Source;

@@ -8,7 +8,7 @@ use toml::Spanned;
 use super::document::{PointLightKeys, RectangleLightKeys, SphereLightKeys};
 use super::error::SceneError;
 use super::light::{Light, LightShape};
-use super::light_values::{color, strength};
+use super::light_values::{color, point, strength};
 use super::source::Source;
 use super::values::{Keys, List, Number, Triple, vector};
 use crate::math::unit;
@@ -64,20 +64,6 @@ pub(super) fn placed_lights(
         lights.push(light(shape, &keys.color, &keys.strength)?);
     }
     Ok(lights)
-}
-
-/// A point whose coordinates are not too large.
-pub(super) fn point(source: &Source, name: &str, key: &Triple) -> Result<DVec3, SceneError> {
-    let point = vector(key);
-    let size = point.abs().max_element();
-    if size <= Cylinder::GREATEST {
-        return Ok(point);
-    }
-    let greatest = Cylinder::GREATEST;
-    let message = format!(
-        "{name} has a coordinate of the size {size:.1e}: it must be at most {greatest:.1e}"
-    );
-    Err(source.error(key.span(), message))
 }
 
 /// A length in the range of the sizes of solids.

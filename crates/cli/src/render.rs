@@ -1,6 +1,8 @@
 //! `cyltrace render`.
 
+mod denoise;
 mod frames;
+mod pictures;
 mod report;
 
 use std::sync::Arc;
@@ -9,24 +11,23 @@ use std::time::Instant;
 use anyhow::{Context, anyhow, bail};
 use cyltrace::scene::SceneFile;
 use cyltrace::tracer::{Options, Tracer};
-use cyltrace_output::{Contents, Display, Format, Insets, Output, with_overlays};
-use cyltrace_parts::{Header, PartNumber, PartWriter};
-use cyltrace_render::{
-    Channels, KeptTiles, RayCounts, Reached, RenderError, RenderedTiles, Settings, Tiles, Watch,
-};
+use cyltrace_output::{Contents, Display, Format, Insets, Output};
+use cyltrace_parts::{Header, PartNumber};
+use cyltrace_render::{Channels, Settings, Tiles};
 use serde_json::json;
 
 use super::arguments::RenderArguments;
-use super::interrupt::Interrupted;
 use super::limit::{MemoryLimit, Need};
 use super::outputs::Files;
 use super::parts::checkpoint::KeptInFile;
 use super::parts::{self, Work};
 use super::print::{note, print};
-use super::{interrupt, json, progress, scene};
-use frames::{FrameFigures, frames};
+use super::{interrupt, json, scene};
+use denoise::Denoising;
+use frames::frames;
+use pictures::Pictures;
+use report::Run;
 pub use report::samples_text;
-use report::{Run, Times};
 
 /// Renders the scene into the picture, or a part of it into a file of its own.
 pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
@@ -55,6 +56,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         }
     }
     let settings = settings(arguments, &file)?;
+    let denoising = denoising(arguments, &settings)?;
     let header = arguments.part.part.map(|number| {
         let work = work(arguments, &settings, &file);
         work.header(number)
@@ -66,7 +68,10 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         return Ok(());
     }
     let whole = PartNumber::new(1, 1).filter(|_| arguments.checkpoint.is_some());
-    let whole = whole.map(|whole| work(arguments, &settings, &file).header(whole));
+    let whole = whole.map(|whole| {
+        let settings = denoising.as_ref().map_or(&settings, Denoising::settings);
+        work(arguments, settings, &file).header(whole)
+    });
     let whole = whole.transpose()?;
     let limit = limit.with_samples(settings.samples_bytes());
     let scene = Arc::new(scene::load(common, file, Need::Build, limit)?);
@@ -88,95 +93,35 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     // A scene that is wrong leaves no checkpoint.
     let kept = checkpoint(arguments, whole.as_ref())?;
     let workers = scene::workers(common)?;
-    let all = Tiles::of(settings.film);
-    let tiles = header
-        .as_ref()
-        .map_or(0..all.count(), |header| header.range.clone());
-    let pixels = all.pixels(tiles.clone()) * frames.len() as u64;
-    let bar = progress::bar(common, pixels, "pixels");
-    let (mut done, mut rays) = (Vec::new(), RayCounts::default());
-    let mut worst: Option<Reached> = None;
-    let mut skipped = Vec::new();
-    let mut part = None;
-    for frame in &frames {
-        let settings = Settings {
-            turn_degrees: frame.degrees,
-            ..settings.clone()
-        };
-        let target = match &header {
-            Some(header) => Target::Part(parts::create(&frame.output, header)?),
-            None => {
-                let contents = contents(arguments, &settings);
-                Target::Picture(Output::create(&frame.output, contents)?)
-            }
-        };
-        let start = Instant::now();
-        let watch = Watch {
-            progress: &|pixels| bar.inc(pixels),
-            cancelled,
-            kept: kept.as_ref().map(|kept| kept as &dyn KeptTiles),
-        };
-        let tiles = tiles.clone();
-        let rendered = cyltrace_render::render_tiles(&tracer, &settings, tiles, &workers, &watch);
-        if let Some(failure) = kept.as_ref().and_then(KeptInFile::flush) {
-            note(common.quiet, &failure);
-        }
-        let interrupted = match kept {
-            Some(_) => Interrupted::TilesKept,
-            None => Interrupted::after_pictures(done.len()),
-        };
-        let rendered = match rendered {
-            Err(RenderError::Cancelled) => return Err(interrupted.into()),
-            other => other?,
-        };
-        interrupt::check().map_err(|_| interrupted)?;
-        let reached = rendered.reached;
-        done.push(FrameFigures {
-            output: frame.output.clone(),
-            degrees: frame.degrees,
-            seconds: start.elapsed().as_secs_f64(),
-            rays: rendered.rays,
-            reached,
-        });
-        rays = rays + rendered.rays;
-        let is_worse = |worst: Reached| reached.is_none_or(|one| one.error > worst.error);
-        if worst.is_none_or(is_worse) {
-            worst = reached;
-        }
-        let insets = insets(arguments, &settings, &tracer)?;
-        match target {
-            Target::Picture(output) => write(output, &settings, &rendered, &insets)?,
-            Target::Part(mut writer) => {
-                parts::render::write(&mut writer, &rendered)?;
-                part = Some((writer, insets));
-            }
-        }
-        skipped = rendered.skipped;
+    let done = Pictures {
+        arguments,
+        settings: &settings,
+        tracer: &tracer,
+        header: header.as_ref(),
+        kept: kept.as_ref(),
+        denoising: denoising.as_ref(),
+        workers: &workers,
+        cancelled,
     }
-    bar.finish_and_clear();
-    let times = Times {
-        load,
-        build,
-        render: done.iter().map(|frame| frame.seconds).sum(),
-    };
+    .render(&frames)?;
     let run = Run {
         arguments,
         settings: &settings,
         tracer: &tracer,
-        rays,
-        reached: worst,
-        skipped: &skipped,
-        times,
+        rays: done.rays(),
+        reached: done.reached(),
+        skipped: &done.skipped,
+        times: done.times(load, build),
         threads: workers.current_num_threads(),
         header: header.as_ref(),
         earlier: kept.as_ref().map(KeptInFile::earlier),
         frames: match arguments.frames.frames {
-            Some(_) => &done,
+            Some(_) => &done.figures,
             None => &[],
         },
     };
     let figures = run.figures();
-    if let Some((part, insets)) = part {
+    if let Some((part, insets)) = done.part {
         let seconds = run.times.all();
         // Insets are drawn when the parts are put together.
         part.finish(&json!({ "figures": figures, "seconds": seconds, "insets": insets }))?;
@@ -189,6 +134,18 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         true => print(&run.text()),
         false => Ok(()),
     }
+}
+
+/// What removes the noise, if that is requested.
+fn denoising(
+    arguments: &RenderArguments,
+    settings: &Settings,
+) -> anyhow::Result<Option<Denoising>> {
+    let threads = scene::workers(&arguments.common)?.current_num_threads();
+    let denoising = arguments.picture.denoise;
+    denoising
+        .then(|| Denoising::new(settings, threads))
+        .transpose()
 }
 
 /// Opens the checkpoint of the picture with this header, if it has one.
@@ -206,27 +163,6 @@ fn checkpoint(
     Ok(Some(kept))
 }
 
-/// Writes a picture.
-fn write(
-    mut output: Output,
-    settings: &Settings,
-    rendered: &RenderedTiles,
-    insets: &Insets,
-) -> anyhow::Result<()> {
-    if let Some(reached) = rendered.reached {
-        output.state_error(reached.error);
-    }
-    let film = settings.film;
-    let size = (film.width, film.height);
-    let bands = with_overlays(
-        insets.overlays(size),
-        film.width,
-        settings.channels.has_opacity(),
-        rendered.bands(film),
-    );
-    Ok(output.write_bands(size, bands)?)
-}
-
 /// What is drawn over the picture.
 fn insets(
     arguments: &RenderArguments,
@@ -242,12 +178,6 @@ fn insets(
         );
     }
     Ok(insets)
-}
-
-/// What a run writes to.
-enum Target {
-    Picture(Output),
-    Part(PartWriter),
 }
 
 /// The files that are read and written.

@@ -34,6 +34,10 @@ pub struct PictureArguments {
     /// depends on the speed of the machine, so it cannot have parts
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, conflicts_with = "divided", allow_negative_numbers = true)]
     pub time: Option<Duration>,
+    /// Remove the noise with Open Image Denoise 2, which must be installed: for the eye, without
+    /// a bound of the error. It works on whole pictures, so the picture cannot have parts
+    #[arg(long, conflicts_with = "divided")]
+    pub denoise: bool,
 }
 
 impl PictureArguments {

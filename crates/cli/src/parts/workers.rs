@@ -335,7 +335,7 @@ mod tests {
     use crate::arguments::{Arguments, Command};
 
     /// Options that a worker does not have, or that have its own values.
-    const OWN: [&str; 11] = [
+    const OWN: [&str; 12] = [
         "output",
         "json",
         "quiet",
@@ -347,6 +347,7 @@ mod tests {
         "frames",
         "orbit",
         "checkpoint",
+        "denoise",
     ];
 
     fn render(words: &[OsString]) -> RenderArguments {

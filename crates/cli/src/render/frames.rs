@@ -59,6 +59,8 @@ pub struct FrameFigures {
     pub output: PathBuf,
     pub degrees: f64,
     pub seconds: f64,
+    /// The time that removing the noise took, if that was requested.
+    pub denoise_seconds: Option<f64>,
     pub rays: RayCounts,
     pub reached: Option<Reached>,
 }
@@ -72,6 +74,9 @@ impl FrameFigures {
             "render_s": self.seconds,
             "rays": self.rays.total(),
         });
+        if let Some(seconds) = self.denoise_seconds {
+            figures["denoise_s"] = json!(seconds);
+        }
         if let Some(reached) = &self.reached {
             figures[reached::KEY] = reached::figures(reached);
         }

@@ -17,11 +17,13 @@ pub struct Times {
     pub load: f64,
     pub build: f64,
     pub render: f64,
+    /// If the noise was removed.
+    pub denoise: Option<f64>,
 }
 
 impl Times {
     pub fn all(&self) -> f64 {
-        self.load + self.build + self.render
+        self.load + self.build + self.render + self.denoise.unwrap_or_default()
     }
 }
 
@@ -117,6 +119,9 @@ impl Run<'_> {
         if let Some(reached) = &self.reached {
             figures[reached::KEY] = reached::figures(reached);
         }
+        if let Some(seconds) = times.denoise {
+            figures["denoise_s"] = json!(seconds);
+        }
         if let Some(earlier) = &self.earlier {
             figures["resumed"] = json!({ "tiles": earlier.tiles, "rays": earlier.rays });
         }
@@ -158,8 +163,10 @@ impl Run<'_> {
             statistics.isa
         );
         text += &text::records(scene);
+        let denoise = times.denoise;
+        let denoise = denoise.map_or(String::new(), |time| format!(", denoise {time:.2} s"));
         text += &format!(
-            "time: load {:.2} s, build {:.2} s, render {:.2} s on {} threads\n",
+            "time: load {:.2} s, build {:.2} s, render {:.2} s on {} threads{denoise}\n",
             times.load, times.build, times.render, self.threads
         );
         text += &format!(

@@ -54,14 +54,14 @@ radius = 1.7
 
 const ALL: &str = "depth,position,normal,albedo,uv,ids,variance,samples";
 
-fn run(folder: &Path, line: &str) -> String {
+pub fn run(folder: &Path, line: &str) -> String {
     let (code, output, error) = cyltrace(folder, &words(line));
     assert_eq!(code, 0, "{line}: {output}{error}");
     output
 }
 
 /// The numbers of each channel of an EXR.
-fn channels(path: &Path) -> BTreeMap<String, Vec<f64>> {
+pub fn channels(path: &Path) -> BTreeMap<String, Vec<f64>> {
     let read = read_first_flat_layer_from_file(path).expect("an EXR");
     let list = read.layer_data.channel_data.list.into_iter();
     let numbers = |samples| match samples {

@@ -6,6 +6,7 @@ mod bench;
 mod channels;
 mod check;
 mod check_meshes;
+mod denoise;
 mod exact;
 mod frames;
 mod fuzz_corpus;
