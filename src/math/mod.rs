@@ -28,5 +28,5 @@ pub use pose::Pose;
 pub use random::Random;
 pub use ray::{DIRECTION_SIZES, GREATEST_ORIGIN, Ray, RayOf, RaySizeError};
 pub use real::{Real, RealVector, Wide, wide_cross, wide_square};
-pub use rotation::{rotation, sin_cos_degrees, unit};
+pub use rotation::{is_unit, rotation, sin_cos_degrees, unit, unit_or_same};
 pub use rounding::{UNIT_ROUNDOFF, f32_above, f32_below, power_of_two, power_of_two_below};

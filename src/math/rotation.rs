@@ -6,6 +6,8 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
+use super::power_of_two;
+
 /// The unit vector along `vector`, or `None` if it is zero or not finite. Its
 /// size is divided out before anything is squared, so nothing overflows.
 #[must_use]
@@ -15,6 +17,24 @@ pub fn unit(vector: DVec3) -> Option<DVec3> {
         let scaled = vector / size;
         scaled / scaled.length()
     })
+}
+
+/// The unit vector along a vector. One whose length is 1 to within roundings is its own, so
+/// that a direction survives being written and read.
+#[must_use]
+pub fn unit_or_same(vector: DVec3) -> Option<DVec3> {
+    match is_unit(vector) {
+        true => Some(vector),
+        false => unit(vector),
+    }
+}
+
+/// Whether the square of a vector's length is within 2^-49 of 1, 16 u. A direction from angles
+/// has components of 3 roundings, one from [`unit`] a length of 3 roundings, and the square has
+/// two more: 8 u.
+#[must_use]
+pub fn is_unit(vector: DVec3) -> bool {
+    (vector.length_squared() - 1.0).abs() <= power_of_two(-49)
 }
 
 /// Sine and cosine of an angle in degrees, exact at multiples of 90.

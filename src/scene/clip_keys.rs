@@ -10,9 +10,9 @@ use super::material::Color;
 use super::materials::Materials;
 use super::names::quoted;
 use super::record::MaterialIndex;
-use super::settings::unit_or_same;
 use super::source::Source;
 use super::values::{Keys, Triple, vector};
+use crate::math::unit_or_same;
 
 /// `[[clip]]`
 #[derive(Deserialize)]

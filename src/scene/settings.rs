@@ -13,7 +13,7 @@ use super::light_values::{color, strength};
 use super::limits::{GREATEST_PIXELS, GREATEST_SAMPLES};
 use super::source::Source;
 use super::values::{Number, Whole, vector};
-use crate::math::{power_of_two, sin_cos_degrees, unit};
+use crate::math::{sin_cos_degrees, unit_or_same};
 
 /// Most rays of a path. Russian roulette ends nearly all paths long before.
 const GREATEST_DEPTH_OF_PATHS: u32 = 1 << 16;
@@ -136,22 +136,6 @@ fn angle_degrees(source: &Source, key: Option<&Spanned<Number>>) -> Result<f64, 
         )),
         _ => Ok(angle),
     }
-}
-
-/// The unit vector along a vector. One whose length is 1 to within roundings is its own, so
-/// that the direction of a scene survives a file.
-pub(super) fn unit_or_same(vector: DVec3) -> Option<DVec3> {
-    match is_unit(vector) {
-        true => Some(vector),
-        false => unit(vector),
-    }
-}
-
-/// Whether the square of a vector's length is within 2^-49 of 1, 16 u. A direction from angles
-/// has components of 3 roundings, one from [`unit`] a length of 3 roundings, and the square has
-/// two more: 8 u.
-pub(super) fn is_unit(vector: DVec3) -> bool {
-    (vector.length_squared() - 1.0).abs() <= power_of_two(-49)
 }
 
 /// The picture's size.

@@ -2,10 +2,10 @@
 
 use super::SaveError;
 use super::text::{Entry, Text};
+use crate::math::is_unit;
 use crate::scene::description::Scene;
 use crate::scene::inset::Inset;
 use crate::scene::record::MaterialIndex;
-use crate::scene::settings::is_unit;
 
 pub(super) fn state(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
     legend(text, scene)?;

@@ -6,13 +6,13 @@ use super::drawings;
 use super::tables::Tables;
 use super::text::{Entry, Text};
 use super::{SaveError, check_names};
+use crate::math::is_unit;
 use crate::scene::background::Background;
 use crate::scene::defaults;
 use crate::scene::description::{Camera, Frame, Projection, Scene};
 use crate::scene::light::{Light, LightShape};
 use crate::scene::material::Color;
 use crate::scene::material_kinds::keys_of;
-use crate::scene::settings::is_unit;
 
 pub(super) fn state<W: Write>(
     text: &mut Text,
