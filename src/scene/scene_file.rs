@@ -54,7 +54,19 @@ impl SceneFile {
     }
 
     fn read_toml(path: &Path) -> Result<Self, SceneError> {
-        let source = Source::read(path)?;
+        Self::of(Source::read(path)?)
+    }
+
+    /// The scene file of this text, as if `path` had been read: files that it names are relative
+    /// to the folder of `path`.
+    ///
+    /// # Errors
+    /// If the text is not TOML, or has keys or types other than those in `docs/scene-file.md`.
+    pub fn parse(path: &Path, text: String) -> Result<Self, SceneError> {
+        Self::of(Source::new(path, text))
+    }
+
+    fn of(source: Source) -> Result<Self, SceneError> {
         let document =
             toml::from_str(source.text()).map_err(|error| toml_error(&source, &error))?;
         Ok(Self { source, document })
@@ -114,6 +126,13 @@ impl SceneFile {
                 self.document.default_integrator(),
             )?,
         ))
+    }
+
+    /// Whether the file states an integrator; otherwise it follows from materials and lights.
+    #[must_use]
+    pub fn states_integrator(&self) -> bool {
+        let keys = self.document.render.as_ref();
+        keys.is_some_and(|Keys(keys)| keys.integrator.is_some())
     }
 
     /// What is behind the scene.

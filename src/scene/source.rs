@@ -43,10 +43,15 @@ impl Source {
         if text.starts_with('\u{feff}') {
             text.drain(..'\u{feff}'.len_utf8());
         }
-        Ok(Self {
+        Ok(Self::new(path, text))
+    }
+
+    /// The text of a file that is not read.
+    pub fn new(path: &Path, text: String) -> Self {
+        Self {
             path: path.to_owned(),
             text,
-        })
+        }
     }
 
     /// The path of the file.

@@ -26,7 +26,8 @@ pub use overlay::{
     Axes, Corner, Inset, Insets, Legend, Overlay, Scale, ScaleBar, ScaleBarError, with_overlays,
 };
 pub use picture::{
-    Band, Bands, Channel, Contents, Format, Numbers, Output, OutputError, film_png_bytes, png_bytes,
+    Band, Bands, Channel, Contents, Format, Numbers, Output, OutputError, picture_png_bytes,
+    png_bytes,
 };
 pub use size::{parse_size, readable};
 pub use srgb::encode as srgb_encode;

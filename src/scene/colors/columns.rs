@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use toml::Spanned;
 
-use super::data::automatic_range;
+use super::data::DataColor;
 use super::key_types::{ColorKey, ColorKeys};
 use crate::scene::error::SceneError;
 use crate::scene::material::{Color, Material};
@@ -15,9 +15,6 @@ use crate::scene::record::MaterialIndex;
 use crate::scene::source::Source;
 use crate::scene::table::{Column, ColumnKey, Fault, Row};
 use crate::scene::values::Number;
-
-/// The greatest number of a category: greater whole numbers are not exact in f32.
-const GREATEST_CATEGORY: f64 = 16_777_216.0;
 
 /// The values that the table of a single solid or placement states, by column.
 pub(in crate::scene) type ValueKeys = BTreeMap<String, Number>;
@@ -176,7 +173,8 @@ impl DataColumns {
                 let ranges = (0..self.of_material.len())
                     .filter(|&other| self.of_material[other] == self.of_material[index])
                     .filter_map(|other| found.ranges.get(&MaterialIndex(other as u16)));
-                data.range = automatic_range(ranges.chain(placed).copied().reduce(union));
+                data.range =
+                    DataColor::automatic_range(ranges.chain(placed).copied().reduce(union));
             }
         }
         Ok(())
@@ -218,13 +216,14 @@ impl DataColumn {
             }
             Err(Fault::Wrong(error)) => return Err(error),
         };
-        if self.has_categories && !is_category(number) {
+        if self.has_categories && !DataColor::is_category(number) {
             let message = format!(
-                "{number} is not a category: it must be a whole number from 0 to {GREATEST_CATEGORY}"
+                "{number} is not a category: it must be a whole number from 0 to {}",
+                DataColor::GREATEST_CATEGORY
             );
             return Err(row.error(Some(column), message));
         }
-        Ok(stored(number))
+        Ok(DataColor::stored(number))
     }
 
     /// The value that the table of a single solid or placement states.
@@ -238,24 +237,17 @@ impl DataColumn {
         else {
             return Ok(None);
         };
-        if self.has_categories && !is_category(number.0) {
+        if self.has_categories && !DataColor::is_category(number.0) {
             let message = format!(
-                "{} is {}: a category must be a whole number from 0 to {GREATEST_CATEGORY}",
-                self.name, number.0
+                "{} is {}: a category must be a whole number from 0 to {}",
+                self.name,
+                number.0,
+                DataColor::GREATEST_CATEGORY
             );
             return Err(source.error(keys.span(), message));
         }
-        Ok(Some(stored(number.0)))
+        Ok(Some(DataColor::stored(number.0)))
     }
-}
-
-fn is_category(number: f64) -> bool {
-    (0.0..=GREATEST_CATEGORY).contains(&number) && number.fract() == 0.0
-}
-
-/// The nearest finite f32.
-pub(in crate::scene) fn stored(number: f64) -> f32 {
-    (number as f32).clamp(f32::MIN, f32::MAX)
 }
 
 impl Found {

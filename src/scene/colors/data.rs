@@ -43,20 +43,37 @@ impl DataColor {
     pub fn middle(&self) -> DVec3 {
         self.map.at(0.5)
     }
-}
 
-/// The range of a gradient for values between these: with a single value, a range about it.
-pub(in crate::scene) fn automatic_range(values: Option<[f32; 2]>) -> [f64; 2] {
-    let Some([least, greatest]) = values else {
-        return [0.0, 1.0];
-    };
-    let [least, greatest] = [least, greatest].map(f64::from);
-    if least < greatest {
-        return [least, greatest];
+    /// The greatest number of a category: greater whole numbers are not exact in f32.
+    pub const GREATEST_CATEGORY: f64 = 16_777_216.0;
+
+    /// Whether a number can be that of a category.
+    #[must_use]
+    pub fn is_category(number: f64) -> bool {
+        (0.0..=Self::GREATEST_CATEGORY).contains(&number) && number.fract() == 0.0
     }
-    // A relative part, because large numbers absorb 1/2.
-    let beyond = (least.abs() * 1e-6).max(0.5);
-    [least - beyond, least + beyond]
+
+    /// What a [`ValueList`](super::ValueList) stores of a value: the nearest finite f32, or NaN.
+    #[must_use]
+    pub fn stored(number: f64) -> f32 {
+        (number as f32).clamp(f32::MIN, f32::MAX)
+    }
+
+    /// The range of a gradient for values between these: with a single value, a range about it,
+    /// and from 0 to 1 without any.
+    #[must_use]
+    pub fn automatic_range(values: Option<[f32; 2]>) -> [f64; 2] {
+        let Some([least, greatest]) = values else {
+            return [0.0, 1.0];
+        };
+        let [least, greatest] = [least, greatest].map(f64::from);
+        if least < greatest {
+            return [least, greatest];
+        }
+        // A relative part, because large numbers absorb 1/2.
+        let beyond = (least.abs() * 1e-6).max(0.5);
+        [least - beyond, least + beyond]
+    }
 }
 
 #[cfg(test)]
@@ -94,11 +111,11 @@ mod tests {
 
     #[test]
     fn automatic_ranges_are_never_empty() {
-        assert_eq!(automatic_range(None), [0.0, 1.0]);
-        assert_eq!(automatic_range(Some([-1.0, 4.0])), [-1.0, 4.0]);
-        assert_eq!(automatic_range(Some([7.0, 7.0])), [6.5, 7.5]);
+        assert_eq!(DataColor::automatic_range(None), [0.0, 1.0]);
+        assert_eq!(DataColor::automatic_range(Some([-1.0, 4.0])), [-1.0, 4.0]);
+        assert_eq!(DataColor::automatic_range(Some([7.0, 7.0])), [6.5, 7.5]);
         for value in [f32::MAX, f32::MIN, -0.0] {
-            let [first, last] = automatic_range(Some([value, value]));
+            let [first, last] = DataColor::automatic_range(Some([value, value]));
             assert!(first < last && (last - first).is_finite(), "{value}");
         }
     }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use toml::Spanned;
 
 use super::columns::check_name;
-use super::data::{DataColor, MISSING, automatic_range};
+use super::data::{DataColor, MISSING};
 use super::key_types::{ColorKey, ColorKeys, CountKey, RangeKey, TableKeys};
 use super::map::ColorMap;
 use super::pattern::{Along, Checker, Stripes};
@@ -289,7 +289,7 @@ impl TableKeys {
 
     fn ends(&self, source: &Source, map: ColorMap) -> Result<[f64; 2], SceneError> {
         let Some(key) = &self.range else {
-            return Ok(automatic_range(None));
+            return Ok(DataColor::automatic_range(None));
         };
         if map.has_categories() {
             let name = map.name();
@@ -297,7 +297,7 @@ impl TableKeys {
             return Err(source.error(key.span(), message));
         }
         match key.get_ref() {
-            RangeKey::Word(word) if word == "auto" => Ok(automatic_range(None)),
+            RangeKey::Word(word) if word == "auto" => Ok(DataColor::automatic_range(None)),
             RangeKey::Word(word) => Err(source.error_with_help(
                 key.span(),
                 format!("{} is not a value of range", quoted(word)),

@@ -16,7 +16,7 @@ mod srgb;
 mod texture;
 mod value_list;
 
-pub(super) use columns::{DataColumn, DataColumns, Found, ValueKeys, stored, union};
+pub(super) use columns::{DataColumn, DataColumns, Found, ValueKeys, union};
 pub use data::DataColor;
 pub(super) use key_types::ColorKeys;
 pub(super) use keys::{color, reflectance};

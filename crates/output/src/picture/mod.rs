@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use super::{FileError, Film, NewFile};
 
 pub use self::contents::{Band, Bands, Channel, Contents, Numbers};
-pub use self::png::{film_png_bytes, png_bytes};
+pub use self::png::{picture_png_bytes, png_bytes};
 
 /// Why a picture cannot be written.
 #[derive(Debug, thiserror::Error)]

@@ -5,8 +5,7 @@ use std::io::{self, Cursor, Write};
 use image::{ImageBuffer, ImageError, ImageFormat, Rgba};
 use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter, StreamWriter};
 
-use super::contents::{Band, Bands, Contents, bands};
-use crate::Film;
+use super::contents::{Band, Bands, Contents};
 
 /// The keyword of the text with the estimated error.
 const ERROR: &str = "relative error";
@@ -30,14 +29,23 @@ pub fn png_bytes(width: u32, height: u32, pixels: &[[u8; 4]]) -> Result<Vec<u8>,
     Ok(bytes)
 }
 
-/// The bytes of the PNG file that [`Output`](crate::Output) writes of a film.
+/// The bytes of the PNG file that [`Output`](crate::Output) writes of a picture of `width` by
+/// `height` pixels, at least one, whose rows come in bands.
 ///
 /// # Errors
-/// If the encoder fails.
-pub fn film_png_bytes(film: &Film) -> io::Result<Vec<u8>> {
+/// If a band cannot be read, or the encoder fails.
+///
+/// # Panics
+/// If the contents have another channel than opacity.
+pub fn picture_png_bytes(
+    size: (u32, u32),
+    contents: &Contents,
+    bands: impl Bands,
+) -> io::Result<Vec<u8>> {
+    let channels = &contents.channels;
+    assert!(!contents.need_exr(), "a PNG does not have {channels:?}");
     let mut bytes = Vec::new();
-    let size = (film.width(), film.height());
-    write_bands(&mut bytes, size, &Contents::default(), bands(film))?;
+    write_bands(&mut bytes, size, contents, bands)?;
     Ok(bytes)
 }
 

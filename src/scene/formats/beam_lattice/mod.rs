@@ -41,7 +41,7 @@ use self::lattice::{Beam, End, Lattice};
 use self::model::{Model, UNITS};
 use self::part::{Part, parsed};
 use super::{Context, SolidFile, SolidFormat};
-use crate::scene::colors::stored;
+use crate::scene::colors::DataColor;
 use crate::scene::contents::ExpectedSolids;
 use crate::scene::error::SceneError;
 use crate::scene::record::{MaterialIndex, Records};
@@ -255,7 +255,8 @@ impl Lowering<'_, '_> {
     /// Sets the radius of the solid that was added last as its value, if it is shown.
     fn value(&mut self, radius: f64) {
         if self.shows_radius {
-            self.solids.value(self.keys.material, stored(radius));
+            self.solids
+                .value(self.keys.material, DataColor::stored(radius));
         }
     }
 

@@ -9,7 +9,7 @@
 //!   soma to the first branch point, and 1 on the branches behind that.
 
 use super::Neuron;
-use crate::scene::colors::stored;
+use crate::scene::colors::DataColor;
 
 /// A column of a neuron.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +36,9 @@ impl Neuron {
         let samples = self.samples.iter();
         match measure {
             Measure::Type => samples.map(|sample| sample.kind as f32).collect(),
-            Measure::Radius => samples.map(|sample| stored(sample.radius)).collect(),
+            Measure::Radius => samples
+                .map(|sample| DataColor::stored(sample.radius))
+                .collect(),
             Measure::Depth => {
                 let mut children = vec![0_u8; self.samples.len()];
                 for &parent in self.parents.iter().flatten() {
@@ -73,6 +75,6 @@ impl Neuron {
                 };
             }
         }
-        sums.into_iter().map(stored).collect()
+        sums.into_iter().map(DataColor::stored).collect()
     }
 }
