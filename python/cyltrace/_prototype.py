@@ -13,12 +13,15 @@ from ._placements import NO_TURN, composed, stated
 from ._polylines import pairs
 from ._rows import Rows
 from ._solid import Solid
+from ._values import each, placement_values, solid_values
 
 if TYPE_CHECKING:
     from ._scene import Scene
 
 Caps: TypeAlias = Literal["none", "p0", "p1", "both"]
 Degenerate: TypeAlias = Literal["error", "skip"]
+#: Numbers, or by the column that the material shows.
+Values: TypeAlias = npt.ArrayLike | dict[str, npt.ArrayLike] | None
 Joints: TypeAlias = Literal["round", "flat", "none"]
 
 _CAPS = {"none": 0, "p0": 1, "p1": 2, "both": 3}
@@ -64,7 +67,7 @@ class Prototype:
         radius: npt.ArrayLike,
         caps: Caps | Sequence[Caps] = "both",
         material: str | None = None,
-        values: npt.ArrayLike | None = None,
+        values: Values = None,
         degenerate: Degenerate = "error",
     ) -> Ints:
         """Adds circular cylinders.
@@ -79,8 +82,10 @@ class Prototype:
             Which ends are closed by a disk.
         material : str, optional
             The name given to :meth:`Scene.add_material`; gray otherwise.
-        values : (n,) or number, optional
-            A number for each solid, which :attr:`Hits.value` returns.
+        values : (n,) or number, or a dict of one, optional
+            A number for each solid, which :attr:`Hits.value` returns. A dict has the name of the
+            column that the material shows (:meth:`Scene.add_material`): the values are also the
+            colors of the solids. NaN is no value; labels may stand for numbers.
         degenerate : "error" or "skip"
             Whether rows that are no solid (a length or radius of zero, or NaN) are an error
             or left out. Those that are left out keep their numbers.
@@ -123,7 +128,7 @@ class Prototype:
         radius: npt.ArrayLike,
         caps: Caps | Sequence[Caps] = "both",
         material: str | None = None,
-        values: npt.ArrayLike | None = None,
+        values: Values = None,
         degenerate: Degenerate = "error",
     ) -> Ints:
         """Adds cylinders as QSM tables state them: ``p1 = start + axis / |axis| * length``.
@@ -172,7 +177,7 @@ class Prototype:
         radius1: npt.ArrayLike,
         caps: Caps | Sequence[Caps] = "both",
         material: str | None = None,
-        values: npt.ArrayLike | None = None,
+        values: Values = None,
         degenerate: Degenerate = "error",
     ) -> Ints:
         """Adds cones between flat ends; one of the radii may be zero.
@@ -201,7 +206,7 @@ class Prototype:
         radius0: npt.ArrayLike,
         radius1: npt.ArrayLike,
         material: str | None = None,
-        values: npt.ArrayLike | None = None,
+        values: Values = None,
         degenerate: Degenerate = "error",
     ) -> Ints:
         """Adds the convex hulls of pairs of balls; with equal radii these are capsules.
@@ -227,7 +232,7 @@ class Prototype:
         center: npt.ArrayLike,
         radius: npt.ArrayLike,
         material: str | None = None,
-        values: npt.ArrayLike | None = None,
+        values: Values = None,
         degenerate: Degenerate = "error",
     ) -> Ints:
         """Adds spheres.
@@ -250,7 +255,7 @@ class Prototype:
         half_widths: npt.ArrayLike,
         quaternion: npt.ArrayLike = NO_TURN,
         material: str | None = None,
-        values: npt.ArrayLike | None = None,
+        values: Values = None,
     ) -> Ints:
         """Adds boxes, which may be turned.
 
@@ -276,7 +281,7 @@ class Prototype:
         normal: npt.ArrayLike,
         radius: npt.ArrayLike,
         material: str | None = None,
-        values: npt.ArrayLike | None = None,
+        values: Values = None,
         degenerate: Degenerate = "error",
     ) -> Ints:
         """Adds flat disks.
@@ -304,7 +309,7 @@ class Prototype:
         radius: npt.ArrayLike = 1.0,
         joints: Joints = "round",
         material: str | None = None,
-        values: npt.ArrayLike | None = None,
+        values: Values = None,
         degenerate: Degenerate = "error",
     ) -> Ints:
         """Adds tubes along lines of points: streamlines, neurons, lattices.
@@ -322,8 +327,9 @@ class Prototype:
         joints : "round", "flat", "none"
             The solid of a segment: a rounded cone, so that the tube has no gaps; a cone with
             flat ends; or a cylinder with the radius of the segment's second point.
-        values : (n,) or number, optional
-            A number for each point. A segment gets that of its second point.
+        values : (n,) or number, or a dict of one, optional
+            A number for each point, as of :meth:`add_cylinders`. A segment gets that of its second
+            point.
 
         ``material``, ``degenerate`` and the errors are those of :meth:`add_cylinders`.
 
@@ -344,8 +350,10 @@ class Prototype:
         joined = pairs(len(points), offsets, edges)
         first, second = joined[:, 0], joined[:, 1]
         radius = np.broadcast_to(radius, len(points))
-        if values is not None:
-            values = np.broadcast_to(numbers("values", values), len(points))[second]
+        if isinstance(values, dict):
+            values = {name: each(name, one, len(points))[second] for name, one in values.items()}
+        elif values is not None:
+            values = each("values", values, len(points))[second]
         p0, p1, radius1 = points[first], points[second], radius[second]
         if joints == "none":
             return self.add_cylinders(p0, p1, radius1, "both", material, values, degenerate)
@@ -357,15 +365,20 @@ class Prototype:
             return self.add_rounded_cones(p0, p1, *radii, material, values, degenerate)
         raise ValueError(f'joints is {joints!r}: it must be "round", "flat" or "none"')
 
-    def add(self, solid: Solid, material: str | None = None, value: float | None = None) -> int:
+    def add(
+        self,
+        solid: Solid,
+        material: str | None = None,
+        value: float | dict[str, float | str] | None = None,
+    ) -> int:
         """Adds what set operations make of some solids.
 
         Parameters
         ----------
         solid : Solid
         material : str, optional
-        value : float, optional
-            A number that :attr:`Hits.value` returns.
+        value : float, or a dict of one, optional
+            A number that :attr:`Hits.value` returns, as ``values`` of :meth:`add_cylinders`.
 
         Returns
         -------
@@ -383,11 +396,10 @@ class Prototype:
         """
         if not isinstance(solid, Solid):
             raise TypeError(f"solid is a {type(solid).__name__}: it must be a cyltrace.Solid")
-        number = self._scene._core.add_composition(
-            self._index, solid._core, self._scene._material(material)
-        )
-        if value is not None:
-            self._values.append((number, np.array([value], dtype=np.float64)))
+        code = self._scene._material(material)
+        given, is_shown = solid_values(self._scene._core, code, value, 1)
+        number = self._scene._core.add_composition(self._index, solid._core, code)
+        self._keep(number, code, given, is_shown)
         return number
 
     def add_union(self, *solids: Solid, material: str | None = None) -> int:
@@ -410,6 +422,7 @@ class Prototype:
         positions: npt.ArrayLike | None = None,
         quaternions: npt.ArrayLike | None = None,
         scales: npt.ArrayLike | None = None,
+        values: dict[str, npt.ArrayLike] | None = None,
     ) -> Ints:
         """Places a prototype in this one, any number of times.
 
@@ -425,6 +438,9 @@ class Prototype:
             Turns as ``x, y, z, w`` (SciPy's order), of any length.
         scales : (n,), (n, 3) or number, optional
             Factors, the same in all directions or one for each of the prototype's axes.
+        values : dict of (n,) or numbers, optional
+            Values of the placements in columns that materials show (:meth:`Scene.add_material`):
+            the colors of solids in them that have none themselves. NaN is no value.
 
         Returns
         -------
@@ -457,9 +473,11 @@ class Prototype:
             raise ValueError(
                 "matrices exclude positions, quaternions and scales: give one or the others"
             )
-        first = self._scene._core.add_placements(
-            self._index, prototype._index, stacked.reshape(-1, 16)
-        )
+        core = self._scene._core
+        columns = placement_values(core, values, len(stacked))
+        first = core.add_placements(self._index, prototype._index, stacked.reshape(-1, 16))
+        for column, shown in columns.items():
+            core.set_placement_values(self._index, column, first, shown)
         return np.arange(first, first + len(stacked), dtype=np.int64)
 
     def cylinders(self) -> dict[str, Any]:
@@ -486,21 +504,33 @@ class Prototype:
         count: int,
         columns: list[Any],
         material: str | None,
-        values: npt.ArrayLike | None,
+        values: Values,
         degenerate: Degenerate = "error",
     ) -> Ints:
         if degenerate not in ("error", "skip"):
             raise ValueError(f'degenerate is {degenerate!r}: it must be "error" or "skip"')
-        if values is not None:
-            values = numbers("values", values)
-            if len(values) not in (1, count):
-                raise ValueError(f"values has {len(values)} rows, and there are {count} solids")
-            values = np.broadcast_to(values, count).copy()
         number = self._scene._material(material)
-        first, _ = add(Rows(self._index, count, number, degenerate == "skip"), *columns)
-        if values is not None:
-            self._values.append((first, values))
+        given, is_shown = solid_values(self._scene._core, number, values, count)
+        first, left_out = add(Rows(self._index, count, number, degenerate == "skip"), *columns)
+        self._keep(first, number, given, is_shown, left_out)
         return np.arange(first, first + count, dtype=np.int64)
+
+    def _keep(
+        self,
+        first: int,
+        material: int,
+        values: Floats | None,
+        is_shown: bool,
+        left_out: Sequence[int] = (),
+    ) -> None:
+        """Keeps the values of solids whose numbers count up from ``first``."""
+        if values is None:
+            return
+        self._values.append((first, values))
+        if is_shown:
+            shown = values.copy()
+            shown[list(left_out)] = np.nan
+            self._scene._core.set_solid_values(self._index, material, first, shown)
 
 
 def _caps(caps: Caps | Sequence[Caps]) -> npt.NDArray[np.uint8]:

@@ -6,13 +6,15 @@
 
 mod arrays;
 mod check;
+mod choice;
 mod found;
-mod look;
 mod picture;
 mod placement;
 mod rows;
 mod scene;
+mod shown;
 mod solid;
+mod statement;
 mod tracer;
 mod work;
 
@@ -28,12 +30,15 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<tracer::PyTracer>()?;
     module.add_class::<found::Found>()?;
     module.add_class::<check::PyCheck>()?;
+    module.add_class::<picture::PyInsets>()?;
+    module.add_class::<picture::Rendered>()?;
     module.add_function(wrap_pyfunction!(check::check, module)?)?;
     module.add_function(wrap_pyfunction!(check::check_hits, module)?)?;
     module.add_function(wrap_pyfunction!(check::parse_size, module)?)?;
     module.add_function(wrap_pyfunction!(picture::render, module)?)?;
     module.add_function(wrap_pyfunction!(picture::png, module)?)?;
     module.add_function(wrap_pyfunction!(picture::write_picture, module)?)?;
+    module.add("CHANNELS", picture::channels())?;
     let kinds: Vec<&str> = found::kinds().map(|kind| kind.name()).collect();
     module.add("SOLIDS", kinds)?;
     let parts: Vec<&str> = found::PARTS.iter().map(|part| part.name()).collect();

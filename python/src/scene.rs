@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use cyltrace::scene::{
-    Background, CylinderList, Integrator, MaterialIndex, MaterialKind, Placement, Prototype,
-    Records, SaveError, Scene, Sky, SolidRecord, Sun,
+    CylinderList, Environment, MaterialIndex, Placement, Prototype, Records, SaveError, Scene,
+    SceneError, SceneFile, SolidRecord,
 };
 use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 use cyltrace_output::NewFile;
@@ -14,12 +14,14 @@ use glam::DVec3;
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyOSError, PyOverflowError};
 use pyo3::prelude::*;
+use toml::Table;
 
 use crate::arrays::{Numbers, Quaternions, Vectors, value_error};
-use crate::look;
 use crate::placement::placement;
 use crate::rows::{Rows, has_no_size, is_degenerate};
+use crate::shown::Shown;
 use crate::solid::{PySolid, orientation};
+use crate::statement;
 
 /// A scene. Tracers share it until it is changed.
 #[pyclass(name = "Scene", module = "cyltrace._core")]
@@ -28,18 +30,14 @@ pub struct PyScene {
     pub(crate) records: Records,
     /// For each prototype, the number of the next solid. Rows that were left out keep theirs.
     pub(crate) next: Vec<u32>,
+    /// The single tables that it states; `None` if it is as it was loaded.
+    pub(crate) stated: Option<Table>,
+    /// Whether the file that it was loaded from states an integrator.
+    pub(crate) states_integrator: bool,
+    pub(crate) shown: Shown,
 }
 
 impl PyScene {
-    /// Makes `path` the integrator of a scene with more than diffuse materials, a sun and a sky,
-    /// as it is that of such a file that states none.
-    fn trace_paths(&mut self) {
-        let render = &mut Arc::make_mut(&mut self.scene).render;
-        if render.integrator == Integrator::Sun {
-            render.integrator = Integrator::Path;
-        }
-    }
-
     pub(crate) fn prototype(&mut self, index: u32) -> PyResult<&mut Prototype> {
         let prototypes = &mut Arc::make_mut(&mut self.scene).prototypes;
         let prototype = prototypes.get_mut(index as usize);
@@ -100,6 +98,9 @@ impl PyScene {
             scene: Arc::new(Scene::new(Vec::new())),
             records,
             next: Vec::new(),
+            stated: Some(Table::new()),
+            states_integrator: false,
+            shown: Shown::default(),
         };
         scene.add_prototype(String::new());
         Ok(scene)
@@ -114,11 +115,17 @@ impl PyScene {
                 format!("{}: {error}", path.display()),
             ))
         })?;
-        let scene = py.detach(|| cyltrace::scene::load(&path));
-        let scene = scene.map_err(|error| value_error(error.to_string()))?;
+        let loaded = py.detach(|| {
+            let file = SceneFile::read(&path)?;
+            Ok::<_, SceneError>((file.states_integrator(), file.load()?))
+        });
+        let (states_integrator, scene) = loaded.map_err(|error| value_error(error.to_string()))?;
         let records = scene.records();
         Ok(Self {
             next: scene.prototypes.iter().map(next_primitive).collect(),
+            stated: None,
+            states_integrator,
+            shown: Shown::of_file(&scene),
             scene: Arc::new(scene),
             records,
         })
@@ -126,6 +133,7 @@ impl PyScene {
 
     /// Writes `STEM.toml` and its tables to a folder: all files, or none.
     fn save(&self, py: Python<'_>, folder: PathBuf, stem: &str) -> PyResult<()> {
+        self.check_columns()?;
         let mut files = Vec::new();
         let create = |name: &str| NewFile::create(&folder.join(name)).map_err(io::Error::other);
         let complete = |file| {
@@ -158,24 +166,68 @@ impl PyScene {
         self.next.len() as u32 - 1
     }
 
-    /// `numbers` are the roughness, the index of refraction and the strength.
-    fn add_material(
+    /// States a key of a scene file; those of arrays of tables get one more entry.
+    fn state(&mut self, key: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.apply(key, statement::value(value)?)
+    }
+
+    /// Makes a picture, linear RGB row by row from the top, the light from all directions.
+    fn set_environment(
         &mut self,
-        name: String,
-        color: [f64; 3],
-        kind: &str,
-        numbers: [Option<f64>; 3],
-    ) -> PyResult<u16> {
-        let material = look::material(name, color, kind, numbers)?;
-        let materials = &mut Arc::make_mut(&mut self.scene).materials;
-        let number = u16::try_from(materials.len())
-            .map_err(|_| value_error(format!("a scene has at most {} materials", u16::MAX)))?;
-        let is_diffuse = material.kind == MaterialKind::Diffuse;
-        materials.push(material);
-        if !is_diffuse {
-            self.trace_paths();
-        }
-        Ok(number)
+        width: u32,
+        height: u32,
+        pixels: PyReadonlyArray1<'_, f32>,
+        strength: f64,
+        rotate_degrees: f64,
+    ) -> PyResult<()> {
+        let (pixels, _) = pixels.as_slice()?.as_chunks::<3>();
+        let environment = Environment::new(width, height, pixels.into());
+        let mut environment = environment.map_err(|error| value_error(error.to_string()))?;
+        environment.strength = strength;
+        environment.rotate_degrees = rotate_degrees;
+        self.surround(environment)
+    }
+
+    /// The column that a material shows.
+    fn column(&self, material: u16) -> Option<String> {
+        self.column_of(material)
+    }
+
+    /// The texts that stand for the values 0, 1, 2 and so on in a column.
+    fn labels(&self, column: &str) -> Vec<String> {
+        self.labels_of(column)
+    }
+
+    /// Checks the values of a column.
+    fn check_values(&self, column: &str, values: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
+        self.check_column(column, values.as_slice()?)
+    }
+
+    /// Adds the values that the material of solids shows; their numbers count up from `first`.
+    fn set_solid_values(
+        &mut self,
+        prototype: u32,
+        material: u16,
+        first: u32,
+        values: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<()> {
+        self.show_solids(prototype, material, first, values.as_slice()?)
+    }
+
+    /// Adds the values of placements in a column; their numbers count up from `first`.
+    fn set_placement_values(
+        &mut self,
+        prototype: u32,
+        column: &str,
+        first: u32,
+        values: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<()> {
+        self.show_placements(prototype, column, first, values.as_slice()?)
+    }
+
+    /// Checks that each column that a material shows has values.
+    fn check_shown(&self) -> PyResult<()> {
+        self.check_columns()
     }
 
     fn add_cylinders(
@@ -336,61 +388,6 @@ impl PyScene {
         }
         parent.placements.extend(placements);
         Ok(first as u32)
-    }
-
-    #[expect(clippy::too_many_arguments, reason = "as the keys of a scene file")]
-    fn set_camera(
-        &mut self,
-        position: Option<[f64; 3]>,
-        look_at: Option<[f64; 3]>,
-        up: [f64; 3],
-        orthographic: bool,
-        fov_degrees: f64,
-        height: Option<f64>,
-        lens: Option<(f64, Option<f64>)>,
-    ) {
-        let frame = look::frame(position, look_at, up);
-        let camera = look::camera(frame, orthographic, fov_degrees, height, lens);
-        Arc::make_mut(&mut self.scene).camera = camera;
-    }
-
-    fn set_sun(
-        &mut self,
-        direction: Option<[f64; 3]>,
-        color: [f64; 3],
-        strength: f64,
-        angle_degrees: f64,
-    ) {
-        Arc::make_mut(&mut self.scene).sun = direction.map(|direction| Sun {
-            direction: direction.into(),
-            color: color.into(),
-            strength,
-            angle_degrees,
-        });
-    }
-
-    fn set_sky(&mut self, color: Option<[f64; 3]>, strength: f64) {
-        Arc::make_mut(&mut self.scene).sky = color.map(|color| Sky {
-            color: color.into(),
-            strength,
-        });
-    }
-
-    fn add_light(
-        &mut self,
-        place: [f64; 3],
-        radius: Option<f64>,
-        edges: Option<[[f64; 3]; 2]>,
-        color: [f64; 3],
-        strength: f64,
-    ) {
-        let light = look::light(place, radius, edges, color, strength);
-        Arc::make_mut(&mut self.scene).lights.push(light);
-        self.trace_paths();
-    }
-
-    fn set_background(&mut self, color: [f64; 3]) {
-        Arc::make_mut(&mut self.scene).background = Background::Color(color.into());
     }
 
     /// The names of prototypes; the root's is empty.

@@ -246,7 +246,7 @@ def test_materials_of_all_kinds_have_the_numbers_of_their_kind() -> None:
     scene.add_material("steel", [0.6, 0.6, 0.6], "metal", roughness=0.4)
     scene.add_material("window", kind="glass", ior=1.3)
     scene.add_material("lamp", kind="light", strength=20)
-    with pytest.raises(ValueError, match="'paint' has no color"):
+    with pytest.raises(ValueError, match='"paint" has no color'):
         scene.add_material("paint", kind="plastic")
     with pytest.raises(ValueError, match="roughness is 2: it must be between 0 and 1"):
         scene.add_material("paint", [1, 0, 0], "plastic", roughness=2)
@@ -254,7 +254,7 @@ def test_materials_of_all_kinds_have_the_numbers_of_their_kind() -> None:
         scene.add_material("tin", [1, 1, 1], "metal", ior=1.5)
     with pytest.raises(ValueError, match="strength is inf: it must be finite"):
         scene.add_material("tin", [1, 1, 1], "light", strength=np.inf)
-    with pytest.raises(ValueError, match='kind is "wood": it must be one of diffuse, metal'):
+    with pytest.raises(ValueError, match='"wood" is not a value of kind'):
         scene.add_material("tin", [1, 1, 1], "wood")  # type: ignore[arg-type]
 
 
