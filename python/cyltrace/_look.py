@@ -65,7 +65,8 @@ class Look(Drawings):
         map : str, optional
             The color map: ``viridis`` by default. ``tab10`` and others show categories.
         range : (least, greatest) or "auto", optional
-            The values of its first and last color. By default those that are added to the scene.
+            The values of its first and last color: by default, the least and the greatest one that
+            are added to the scene in that column.
         labels : list of str, optional
             Texts that stand for the values 0, 1, 2 and so on; the legend shows them.
         missing : (3,), optional
@@ -344,13 +345,11 @@ class Look(Drawings):
             strength=strength,
         )
 
-    def set_background(self, background: npt.ArrayLike | Literal["transparent"]) -> None:
+    def set_background(self, color: npt.ArrayLike | Literal["transparent"]) -> None:
         """What is seen where a scene without a sky is not hit: linear RGB, not negative. With
         ``"transparent"``, not even the sky is seen there, and pictures have opacity."""
-        if isinstance(background, str):
-            self._core.state("background", background)
-        else:
-            self._core.state("background", vector("background", background))
+        value = color if isinstance(color, str) else vector("color", color)
+        self._core.state("background", value)
 
 
 def _check_file(path: str | os.PathLike[str]) -> None:

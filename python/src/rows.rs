@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
-use cyltrace::scene::{CylinderList, CylinderRecord, MaterialIndex, Records, SolidRecord};
-use cyltrace::solid::{AnySolid, Cylinder};
+use cyltrace::scene::{
+    CylinderList, CylinderRecord, MaterialIndex, Prototype, Records, SolidRecord,
+};
+use cyltrace::solid::{AnySolid, Caps, Cylinder, SolidKind};
 use glam::DVec3;
 use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
@@ -103,4 +105,23 @@ pub fn is_degenerate(p0: DVec3, p1: DVec3, radii: &[f64]) -> bool {
 pub fn has_no_size(radii: &[f64]) -> bool {
     let is_none = |radius: &f64| (0.0..Cylinder::LEAST).contains(radius);
     radii.iter().any(|radius| radius.is_nan()) || radii.iter().all(is_none)
+}
+
+/// The number of the next solid: one more than the greatest.
+pub fn next_primitive(prototype: &Prototype) -> u32 {
+    let last = SolidKind::LISTS.iter().filter_map(|&kind| {
+        let count = prototype.solids.len_of(kind);
+        (count > 0).then(|| prototype.solids.primitive(kind, count - 1))
+    });
+    last.max().map_or(0, |last| last + 1)
+}
+
+/// The ends that are closed: bit 0 for `p0`, bit 1 for `p1`.
+pub fn caps_of(code: u8) -> Caps {
+    Caps::at(code & 1 != 0, code & 2 != 0)
+}
+
+/// What an error says.
+pub fn text(error: impl std::fmt::Display) -> String {
+    error.to_string()
 }

@@ -5,20 +5,19 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use cyltrace::scene::{
-    CylinderList, Environment, MaterialIndex, Placement, Prototype, Records, SaveError, Scene,
-    SceneError, SceneFile, SolidRecord,
+    CylinderList, Environment, MaterialIndex, Prototype, Records, SaveError, Scene, SceneError,
+    SceneFile, SolidRecord,
 };
-use cyltrace::solid::{AnySolid, Caps, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
+use cyltrace::solid::{AnySolid, Cone, Cuboid, Cylinder, Disk, RoundedCone, Sphere};
 use cyltrace_output::NewFile;
 use glam::DVec3;
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
-use pyo3::exceptions::{PyOSError, PyOverflowError};
+use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use toml::Table;
 
 use crate::arrays::{Numbers, Quaternions, Vectors, value_error};
-use crate::placement::placement;
-use crate::rows::{Rows, has_no_size, is_degenerate};
+use crate::rows::{Rows, caps_of, has_no_size, is_degenerate, next_primitive, text};
 use crate::shown::Shown;
 use crate::solid::{PySolid, orientation};
 use crate::statement;
@@ -43,42 +42,6 @@ impl PyScene {
         let prototype = prototypes.get_mut(index as usize);
         prototype.ok_or_else(|| value_error(format!("the scene has no prototype {index}")))
     }
-
-    /// Whether a prototype places another, itself or through others, or is the other.
-    fn reaches(&self, from: u32, to: u32) -> bool {
-        let mut seen = vec![false; self.scene.prototypes.len()];
-        let mut stack = vec![from];
-        while let Some(index) = stack.pop() {
-            if index == to {
-                return true;
-            }
-            if !std::mem::replace(&mut seen[index as usize], true) {
-                let placements = self.scene.prototypes[index as usize].placements.iter();
-                let mut placed: Vec<u32> = placements.map(|placement| placement.of.0).collect();
-                placed.dedup();
-                stack.extend(placed);
-            }
-        }
-        false
-    }
-}
-
-/// The number of the next solid: one more than the greatest.
-fn next_primitive(prototype: &Prototype) -> u32 {
-    use cyltrace::solid::SolidKind;
-    let last = SolidKind::LISTS.iter().filter_map(|&kind| {
-        let count = prototype.solids.len_of(kind);
-        (count > 0).then(|| prototype.solids.primitive(kind, count - 1))
-    });
-    last.max().map_or(0, |last| last + 1)
-}
-
-fn caps_of(code: u8) -> Caps {
-    Caps::at(code & 1 != 0, code & 2 != 0)
-}
-
-fn text(error: impl std::fmt::Display) -> String {
-    error.to_string()
 }
 
 #[pymethods]
@@ -364,30 +327,7 @@ impl PyScene {
         of: u32,
         matrices: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<u32> {
-        if self.reaches(of, prototype) {
-            return Err(value_error(
-                "a prototype would contain itself: place it in another one",
-            ));
-        }
-        let matrices = matrices.as_slice()?.chunks_exact(16);
-        let placements: Result<Vec<Placement>, String> = matrices
-            .enumerate()
-            .map(|(row, matrix)| {
-                placement(of, matrix).map_err(|fault| format!("matrices[{row}]: {fault}"))
-            })
-            .collect();
-        let placements = placements.map_err(value_error)?;
-        let parent = self.prototype(prototype)?;
-        let first = parent.placements.len();
-        let end = first as u64 + placements.len() as u64;
-        if end > u64::from(u32::MAX) {
-            return Err(PyOverflowError::new_err(format!(
-                "a prototype has at most {} placements, and this makes {end}",
-                u32::MAX
-            )));
-        }
-        parent.placements.extend(placements);
-        Ok(first as u32)
+        self.place(prototype, of, matrices.as_slice()?)
     }
 
     /// The names of prototypes; the root's is empty.

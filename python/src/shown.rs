@@ -25,8 +25,22 @@ pub struct Shown {
 impl Shown {
     /// Those of a scene that was loaded.
     pub fn of_file(scene: &Scene) -> Self {
+        let mut placements = BTreeMap::new();
+        let lists = scene
+            .prototypes
+            .iter()
+            .flat_map(|one| &one.placement_values);
+        for list in lists {
+            let values = list.values.iter().map(|(_, value)| value);
+            let values = values.filter(|value| !value.is_nan());
+            if let Some(added) = values.map(|value| [value; 2]).reduce(union) {
+                let range = placements.entry(list.column.clone()).or_insert(added);
+                *range = union(*range, added);
+            }
+        }
         Self {
             of_file: scene.materials.len(),
+            placements,
             ..Self::default()
         }
     }

@@ -218,8 +218,9 @@ impl PyScene {
         document.insert("material".to_owned(), materials.into());
         let text = toml::to_string(&document).map_err(|error| value_error(error.to_string()))?;
         // Names of files are relative to the working directory.
-        let file = SceneFile::parse(Path::new("scene"), text);
-        file.and_then(SceneFile::load).map_err(fault)
+        let file = SceneFile::parse(Path::new("scene"), text.clone());
+        let loaded = file.and_then(SceneFile::load);
+        loaded.map_err(|error| fault(error, &text))
     }
 }
 
@@ -260,14 +261,20 @@ fn keys_of_material(material: &Material) -> Value {
 }
 
 /// What is wrong, without the place in a file that the user has not written.
-fn fault(error: SceneError) -> PyErr {
-    match error {
-        SceneError::Statement(statement) => value_error(match statement.help {
-            Some(help) => format!("{}; {help}", statement.message),
-            None => statement.message,
-        }),
-        other => value_error(other.to_string()),
+fn fault(error: SceneError, text: &str) -> PyErr {
+    let SceneError::Statement(statement) = error else {
+        return value_error(error.to_string());
+    };
+    let mut message = statement.message;
+    // Of a wrong type, the message does not have the key.
+    if message.starts_with("invalid ") {
+        let line = text.lines().nth(statement.line - 1).unwrap_or_default();
+        message = format!("{line}: {message}");
     }
+    value_error(match statement.help {
+        Some(help) => format!("{message}; {help}"),
+        None => message,
+    })
 }
 
 /// The value of a key: a dict of keys, a list, a text or a number.

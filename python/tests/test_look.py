@@ -212,6 +212,7 @@ def test_columns_without_values_are_errors(tmp_path: Path) -> None:
         (lambda s: s.add_clip([0, 0, 0], [0, 0, 1], "data"), "has not the same color everywhere"),
         (lambda s: s.set_render("paths"), '"paths" is not a value of integrator'),
         (lambda s: s.set_render(spp=0), "spp is 0: it must be between 1"),
+        (lambda s: s.set_render(spp=2.5), "spp = 2.5: invalid type"),
         (lambda s: s.set_background("clear"), "transparent"),
         (lambda s: s.set_sky(turbidity=3), "turbidity is for the clear sky"),
         (lambda s: s.set_sky(model="clear", turbidity=30), "turbidity is 30"),
@@ -231,7 +232,7 @@ def test_columns_without_values_are_errors(tmp_path: Path) -> None:
         (lambda s: s.add_spheres([0, 0, 0], 1, "data", {"a": 0.5}), "is 0.5: a category must be"),
         (
             lambda s: s.add_spheres([0, 0, 0], 1, "data", {"a": ["axon"]}),
-            "is 'axon': it is no label of the column; there are 'soma'",
+            "is axon: it is no label of the column; there are 'soma'",
         ),
         (
             lambda s: s.add_instances(s.prototype("p"), np.eye(4), values={"b": 1}),
@@ -263,3 +264,36 @@ def test_values_that_are_shown_are_those_of_hits() -> None:
     scene.add_polylines(line, radius=0.1, material="data", values={"a": [1, 2, 3]})
     assert_array_equal(scene.values(), [3, 4, 2, 3])
     assert cyltrace.Tracer(scene).closest([5, 0, 9], [0, 0, -1]).value == [4]
+
+
+def test_texts_are_the_numbers_of_labels_and_may_be_missing() -> None:
+    scene = Scene()
+    scene.add_material("data", column="a", map="set1", labels=["soma", "axon"])
+    texts = np.array(["axon", None, "soma", np.nan, ""], dtype=object)
+    centers = [[3 * place, 0, 0] for place in range(5)]
+    scene.add_spheres(centers, 1, material="data", values={"a": texts})
+    assert_array_equal(scene.values(), [1, np.nan, 0, np.nan, np.nan])
+    with pytest.raises(ValueError, match="is 7: it is no label"):
+        scene.add_spheres(centers[:2], 1, "data", {"a": np.array(["axon", 7], dtype=object)})
+
+
+def test_loaded_scenes_get_more_of_everything(tmp_path: Path) -> None:
+    drawn().save(tmp_path / "one.toml")
+    scene = cyltrace.load(tmp_path / "one.toml")
+    # The legend is in this corner, and the new one replaces it.
+    with pytest.raises(ValueError, match="both in the corner"):
+        scene.set_axes(corner="top right")
+    scene.set_legend("by order", corner="bottom right")
+    scene.set_axes(corner="top right")
+    scene.add_spheres([1, 1, 1.2], 0.3, material="by order", values={"order": 3})
+    scene.save(tmp_path / "two.toml")
+    pictures = [cyltrace.render(scene, size=SIZE) for scene in (scene, cyltrace.load("two.toml"))]
+    assert pictures[0]._repr_png_() == pictures[1]._repr_png_()
+    assert pictures[0]._repr_png_() != cyltrace.render(drawn(), size=SIZE)._repr_png_()
+
+    typed().save(tmp_path / "three.toml")
+    scene = cyltrace.load(tmp_path / "three.toml")
+    # The placements of the file have values in this column.
+    scene.add_material("more", column="type", map="dark2")
+    scene.prototypes["tree"].add_spheres([0, 0, 1], 0.1, material="more")
+    assert cyltrace.render(scene, size=SIZE).shape == (30, 40, 3)
