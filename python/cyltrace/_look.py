@@ -154,6 +154,7 @@ class Look(Drawings):
         *,
         max_depth: int | None = None,
         ao_distance: float | None = None,
+        sampler: Literal["sobol", "random"] | None = None,
     ) -> None:
         """How pictures are computed, where :func:`render` leaves a choice. None leaves it as it is.
 
@@ -167,6 +168,8 @@ class Look(Drawings):
             The most rays of a path of ``path``: 16 by default.
         ao_distance : float, optional
             The distance beyond which surfaces do not occlude under ``ao``: any by default.
+        sampler : "sobol" or "random", optional
+            How samples are spread: ``sobol`` by default.
         """
         self._state(
             "render",
@@ -174,6 +177,7 @@ class Look(Drawings):
             spp=spp,
             max_depth=max_depth,
             ao_distance=ao_distance,
+            sampler=sampler,
         )
 
     def set_sun(

@@ -20,9 +20,6 @@ use crate::choice::one_of;
 use crate::tracer::PyTracer;
 use crate::work::{self, Work};
 
-/// Samples of a pixel at most, with an error or a time to reach: as many as of the program.
-const MOST_SAMPLES: u32 = 16_384;
-
 /// What is drawn over a picture.
 #[pyclass(frozen, name = "Insets", module = "cyltrace._core")]
 pub struct PyInsets(Arc<Insets>);
@@ -68,7 +65,7 @@ impl Request {
             )));
         }
         let spp = match is_limited {
-            true => MOST_SAMPLES,
+            true => Target::MOST_SAMPLES,
             false => of_scene.spp,
         };
         let integrator = self.integrator.as_ref();

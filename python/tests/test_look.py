@@ -81,7 +81,7 @@ def around() -> Scene:
     scene.set_environment(rng.uniform(0, 2, (6, 12, 3)), strength=0.5, rotate_degrees=30)
     scene.set_camera([3, 3, 3], [0, 0, 0], panorama=True)
     scene.add_sphere_light([0, 0, 4], 0.5, strength=3)
-    scene.set_render(spp=3, max_depth=4)
+    scene.set_render(spp=3, max_depth=4, sampler="random")
     scene.set_film(*SIZE)
     return scene
 

@@ -40,26 +40,15 @@ pub(super) struct KindNumbers<'a> {
 }
 
 /// A number that a kind of material cannot have.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{message}")]
-pub struct MaterialKindError {
+struct WrongNumber {
     /// The position of the number among roughness, index of refraction and strength.
     number: usize,
     message: String,
 }
 
 impl MaterialKind {
-    /// The kind of a name, with its default numbers.
-    #[must_use]
-    pub fn named(name: &str) -> Option<Self> {
-        KINDS.into_iter().find(|kind| kind.name() == name)
-    }
-
     /// The kind with the stated numbers: roughness, index of refraction and strength.
-    ///
-    /// # Errors
-    /// If the kind does not have a number that is stated, or a number is out of its range.
-    pub fn with_numbers(mut self, stated: [Option<f64>; 3]) -> Result<Self, MaterialKindError> {
+    fn with_numbers(mut self, stated: [Option<f64>; 3]) -> Result<Self, WrongNumber> {
         for (number, value) in stated.into_iter().enumerate() {
             let Some(value) = value else {
                 continue;
@@ -84,7 +73,7 @@ impl MaterialKind {
                     quoted(self.name())
                 ),
             };
-            return Err(MaterialKindError { number, message });
+            return Err(WrongNumber { number, message });
         }
         Ok(self)
     }

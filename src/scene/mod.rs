@@ -105,7 +105,6 @@ pub use legend::Legend;
 pub use light::{ClearSky, Light, LightShape, Sky, Sun};
 pub use limits::*;
 pub use material::{Color, Material, MaterialKind};
-pub use material_kinds::MaterialKindError;
 pub use number_table::{NumberColumns, NumberRow, NumberTable};
 pub use origins::{Origin, Origins};
 pub use record::{

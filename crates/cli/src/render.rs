@@ -13,7 +13,7 @@ use cyltrace::scene::SceneFile;
 use cyltrace::tracer::{Options, Tracer};
 use cyltrace_output::{Contents, Display, Format, Insets, Output};
 use cyltrace_parts::{Header, PartNumber};
-use cyltrace_render::{Channels, Settings, Tiles};
+use cyltrace_render::{Channels, Settings, Target, Tiles};
 use serde_json::json;
 
 use super::arguments::RenderArguments;
@@ -190,9 +190,6 @@ pub fn output_files(arguments: &RenderArguments) -> Files<'_> {
     }
 }
 
-/// Samples of a pixel unless the command line says otherwise, with `--error` or `--time`.
-const MOST_SAMPLES: u32 = 16_384;
-
 /// Checks that the picture can be written, as far as this is known before the scene is read.
 pub fn check_output(arguments: &RenderArguments) -> anyhow::Result<()> {
     let picture = &arguments.picture;
@@ -228,7 +225,7 @@ pub fn settings(arguments: &RenderArguments, file: &SceneFile) -> anyhow::Result
     settings.channels = Channels::new(channels, background.is_transparent());
     settings.target = picture.target();
     if settings.target.is_some() {
-        settings.spp = MOST_SAMPLES;
+        settings.spp = Target::MOST_SAMPLES;
     }
     settings.seed = arguments.seed;
     if let Some(size) = arguments.size {

@@ -81,6 +81,11 @@ pub struct Target {
     pub time: Option<Duration>,
 }
 
+impl Target {
+    /// The most samples that a pixel gets unless more or fewer are requested.
+    pub const MOST_SAMPLES: u32 = 16_384;
+}
+
 /// Renders tiles on the rayon pool that this is called in.
 pub(super) fn render(
     work: &Work,
