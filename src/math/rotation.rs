@@ -30,7 +30,7 @@ pub fn unit_or_same(vector: DVec3) -> Option<DVec3> {
 }
 
 /// Whether the square of a vector's length is within 2^-49 of 1, 16 u. A direction from angles
-/// has components of 3 roundings, one from [`unit`] a length of 3 roundings, and the square has
+/// has components of 3 roundings, one from [`unit()`] a length of 3 roundings, and the square has
 /// two more: 8 u.
 #[must_use]
 pub fn is_unit(vector: DVec3) -> bool {
