@@ -16,7 +16,8 @@ class Drawings:
     """Clip planes, outlines, depth cue, and what is drawn over the corners of pictures.
 
     What is not given has the default of a scene file (docs/scene-file.md). Colors are linear RGB
-    in [0, 1]. A second call replaces what the first one has set.
+    in [0, 1]. A second call of a ``set_`` method replaces what the
+    first one has set.
     """
 
     _core: _core.Scene
@@ -39,9 +40,9 @@ class Drawings:
         point, normal : (3,)
             The plane.
         material : str, optional
-            That of the cut faces, of one color; otherwise, each has that of its solid.
+            That of the cut faces, of one color and not glass; otherwise, each has that of its solid.
         shadows : bool
-            Whether what is removed still casts shadows.
+            Whether what is removed still casts shadows and is seen in mirrors.
         """
         self._state("clip", point=point, normal=normal, material=material, shadows=shadows)
 

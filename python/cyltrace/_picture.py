@@ -230,9 +230,8 @@ def render(
     >>> picture.channels["depth"].shape, picture.channels["ids"].shape
     ((48, 64), (48, 64, 5))
     """
-    if isinstance(scene, Scene):
-        scene._core.check_shown()
     tracer = scene if isinstance(scene, Tracer) else Tracer(scene, threads)
+    tracer._scene._core.check_shown()
     names: list[str] = [channels] if isinstance(channels, str) else [*channels]
     request = Request(size, spp, integrator, seed, names, error, time)
     rendered = _core.render(tracer._core, request, progress)

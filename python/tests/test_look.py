@@ -12,7 +12,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import cyltrace
-from cyltrace import Scene, Solid
+from cyltrace import Scene, Solid, Tracer
 
 SIZE = (40, 30)
 
@@ -189,7 +189,12 @@ def test_columns_without_values_are_errors(tmp_path: Path) -> None:
     scene = Scene()
     scene.add_material("by order", column="order")
     scene.add_spheres([0, 0, 0], 1, material="by order")
-    for use in [cyltrace.render, lambda scene: scene.save(tmp_path / "scene.toml")]:
+    uses: list[Callable[[Scene], object]] = [
+        cyltrace.render,
+        lambda scene: cyltrace.render(Tracer(scene)),
+        lambda scene: scene.save(tmp_path / "scene.toml"),
+    ]
+    for use in uses:
         with pytest.raises(ValueError, match='"by order" and no placement has a value'):
             use(scene)
     assert not list(tmp_path.iterdir())

@@ -6,7 +6,7 @@ use toml::Spanned;
 use super::clip::Clip;
 use super::error::SceneError;
 use super::light_values::point;
-use super::material::Color;
+use super::material::{Color, MaterialKind};
 use super::materials::Materials;
 use super::names::quoted;
 use super::record::MaterialIndex;
@@ -63,7 +63,18 @@ fn material(
         return Ok(None);
     };
     let index = materials.find(source, Some(name))?;
-    match materials.list[usize::from(index.0)].color {
+    let material = &materials.list[usize::from(index.0)];
+    if let MaterialKind::Glass { .. } = material.kind {
+        return Err(source.error_with_help(
+            name.span(),
+            format!(
+                "the material {} is glass, which only whole solids are of",
+                quoted(name.get_ref())
+            ),
+            "without material, each cut face has the material of its solid",
+        ));
+    }
+    match material.color {
         Color::Constant(_) => Ok(Some(index)),
         _ => Err(source.error_with_help(
             name.span(),

@@ -227,6 +227,11 @@ fn clip_planes_are_read_and_cut_faces_have_one_color() {
             "point = [0, 0, 0]\nnormal = [0, 0, 1]\nmaterial = \"b\"",
             "unknown material \"b\"",
         ),
+        (
+            "point = [0, 0, 0]\nnormal = [0, 0, 1]\nmaterial = \"g\"\n\
+             [[material]]\nname = \"g\"\nkind = \"glass\"",
+            "the material \"g\" is glass",
+        ),
     ] {
         let message = failure(&format!("{SOLID}{checker}[[clip]]\n{keys}\n"));
         assert!(message.contains(expected), "{keys}: {message}");

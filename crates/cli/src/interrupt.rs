@@ -35,7 +35,7 @@ pub enum Interrupted {
     #[error("interrupted; the table written so far is incomplete")]
     PartWritten,
     /// After some pictures of a film were written.
-    #[error("interrupted; the first {0} pictures are complete")]
+    #[error("interrupted; pictures that are complete: {0}")]
     AfterPictures(usize),
 }
 

@@ -183,7 +183,11 @@ fn insets(
 /// The files that are read and written.
 pub fn output_files(arguments: &RenderArguments) -> Files<'_> {
     let files = Files::new(&arguments.scene, arguments.common.json.as_deref());
-    let files = files.output("-o", &arguments.output);
+    // Pictures of a film have names of their own.
+    let files = match arguments.frames.frames {
+        Some(_) => files,
+        None => files.output("-o", &arguments.output),
+    };
     match &arguments.checkpoint {
         Some(path) => files.output("--checkpoint", path),
         None => files,

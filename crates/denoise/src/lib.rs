@@ -41,7 +41,7 @@ pub const LIBRARY: &str = if cfg!(target_os = "macos") {
 pub enum DenoiseError {
     /// The library, or a function in it, cannot be loaded.
     #[error(
-        "Open Image Denoise 2 cannot be loaded ({source}): install it, or put the folder of {LIBRARY} into LD_LIBRARY_PATH"
+        "Open Image Denoise 2 cannot be loaded: install it, or put the folder of {LIBRARY} into LD_LIBRARY_PATH"
     )]
     Load {
         /// The error of the system's loader.

@@ -35,10 +35,10 @@ const WRITE_INTERVAL: Duration = Duration::from_millis(200);
 /// outlive the machine.
 const SYNC_INTERVAL: Duration = Duration::from_secs(5);
 
-/// Bytes of finished units that are written at once, however little time has passed,
+/// Bytes of finished units that are written at once, however little time has passed.
 const MOST_PENDING: usize = 1 << 20;
 
-/// and those for which a thread waits while another writes.
+/// Bytes of finished units for which a thread waits while another one writes.
 const MOST_WAITING: usize = 4 * MOST_PENDING;
 
 /// Bytes of a record beside its content.

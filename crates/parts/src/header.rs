@@ -15,7 +15,7 @@ pub(crate) const FORMAT: u32 = 1;
 /// Most bytes of a line of JSON. Lines are some kilobytes.
 pub(crate) const LONGEST_LINE: u64 = 1 << 22;
 
-/// What a part is.
+/// What a part is, or what a checkpoint is of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// The version of cyltrace that wrote the part.

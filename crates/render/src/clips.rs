@@ -67,6 +67,9 @@ impl Clips {
 
     /// The cut face at which a ray within a solid leaves the region, if it ends there.
     pub fn at_end(&self, tracer: &Tracer, ray: &Ray) -> Option<PartialHit> {
+        if ray.t_max.is_infinite() {
+            return None;
+        }
         let unlimited = Ray {
             t_max: f64::INFINITY,
             ..*ray

@@ -48,8 +48,8 @@ impl Spread {
         greatest / (limit * limit * self.pixels)
     }
 
-    /// Whether the error is at most `target` with the probability of the promise. No pixels say
-    /// nothing, and no noise is enough for any target.
+    /// Whether the error is at most `target` with the probability of the promise. Without
+    /// pixels nothing is decided, and no noise is enough for any target.
     pub fn is_within(&self, target: f64) -> bool {
         self.pixels > 0.0 && (self.variances == 0.0 || self.excess(target) <= 1.0)
     }

@@ -19,9 +19,9 @@
 //! one. The number `N` of samples of a pixel is then a function of samples of other pixels,
 //! which are independent of its own, and of nothing else. For every `n` the mean `M(n)` of its
 //! samples has the expectation `I`, the pixel's true value, because every point of a scrambled
-//! sequence is uniform, and every number of the sampler `random`. So `E M(N) = Σ P(N = n) E M(n) = I`. Until both halves have stopped,
-//! both are sampled; what the one that stopped first gets after that is not used for its own
-//! pixels. (The idea is that of the dual buffers of Rousselle, Knaus, Zwicker, "Adaptive
+//! sequence is uniform, and every number of the sampler `random`. So
+//! `E M(N) = Σ P(N = n) E M(n) = I`. Until both halves have stopped, both are sampled; what the one
+//! that stopped first gets after that is not used for its own pixels. (The idea is that of the dual buffers of Rousselle, Knaus, Zwicker, "Adaptive
 //! Rendering with Non-Local Means Filtering", ACM Transactions on Graphics 31(6), 2012, with
 //! pixels in place of buffers, so that no pixel has half of its samples.)
 //!
@@ -37,8 +37,8 @@
 //! are taken as one value, since they vary together.
 //!
 //! # When is decided
-//! A half is decided at numbers of samples of two or three significant bits, each a fifth or so above
-//! the one before. Far from the target most of them would be in vain, and small steps trace few
+//! A half is decided at numbers of samples of two or three significant bits, each a fifth or so
+//! above the one before. Far from the target most decisions are unneeded, and small steps trace few
 //! samples of a pixel together, which costs time. So after a decision the next one is
 //! at the number where the error is expected to be nearly small enough ([`next`]). That number is
 //! computed from the other half's samples too, so that `N` remains a function of them alone. With a

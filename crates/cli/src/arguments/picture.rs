@@ -30,7 +30,7 @@ pub struct PictureArguments {
     /// of `--spp`: 16384]
     #[arg(long, value_name = "E", value_parser = parse_error, allow_negative_numbers = true)]
     pub error: Option<f64>,
-    /// Render for at most this time, without loading; `--spp` is as with `--error`. The picture
+    /// Render for at most this time, without loading, or each picture of `--frames` for it; `--spp` is as with `--error`. The picture
     /// depends on the speed of the machine, so it cannot have parts
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, conflicts_with = "divided", allow_negative_numbers = true)]
     pub time: Option<Duration>,

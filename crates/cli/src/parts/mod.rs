@@ -10,6 +10,7 @@ mod folder;
 pub mod list;
 pub mod merge;
 pub mod parent;
+mod passed_on;
 pub mod render;
 pub mod trace;
 pub mod workers;

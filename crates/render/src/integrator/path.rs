@@ -71,7 +71,13 @@ impl View<'_> {
                 .rays
                 .extend(batch.paths.paths.iter().map(|path| path.ray));
             match is_first {
-                true => self.closest_to_camera(batch, fields),
+                true => {
+                    self.closest_to_camera(batch, fields);
+                    // Lights in front of clip planes are seen, so that rays keep their start.
+                    for (path, ray) in batch.paths.paths.iter_mut().zip(&batch.rays) {
+                        path.ray.t_max = ray.t_max;
+                    }
+                }
                 false => self.closest(batch, fields),
             }
             is_first = false;

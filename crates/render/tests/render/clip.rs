@@ -235,3 +235,24 @@ fn cut_faces_have_the_material_of_the_plane() {
     let expected = DVec3::new(0.8, 0.1, 0.1) * (3.0 * cosine / PI + sky);
     assert_all_pixels(&stage::film_of(scene, 1), expected);
 }
+
+/// A camera in glass sees the cut face from inside, and the light that it refracts and reflects.
+#[test]
+fn cut_face_of_glass_around_the_camera_is_that_of_an_intersection() {
+    let view = "[camera]\nposition = [0, 0, 0]\nlook_at = [0.2, 1, 0.1]\nfov_degrees = 60\n[film]\n\
+                width = 24\nheight = 24\n[render]\nspp = 64\n[sky]\ncolor = [0.6, 0.8, 1]\n\
+                [[material]]\nname = \"g\"\nkind = \"glass\"\n\
+                [[sphere]]\ncenter = [1, -4, 0]\nradius = 2\n";
+    let planes = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"g\"\n\
+                  [[clip]]\npoint = [0, 0.5, 0]\nnormal = [0, 1, 0]\nshadows = false\n";
+    let operation = "[[intersection]]\nmaterial = \"g\"\nof = [{ sphere = { center = [0, 0, 0], \
+                     radius = 1 } }, { cuboid = { center = [0, -9.5, 0], \
+                     half_widths = [20, 10, 20] } }]\n";
+    let [planes, operation] = [planes, operation].map(|text| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("scene.toml");
+        fs::write(&path, format!("{view}{text}")).expect("a scene file");
+        stage::film_of(scene::load(&path).expect("a scene"), 64)
+    });
+    assert!(greatest_difference(&planes, &operation) < 1e-5);
+}

@@ -184,7 +184,7 @@ fn flat_faces_have_no_outlines() {
     }
 }
 
-/// Two steps of a solid that is one: the same normals, a jump of depth between them.
+/// Two steps with the same normals, and a jump of depth between them.
 #[test]
 fn jumps_of_depth_on_one_solid_have_a_line_and_smooth_joints_only_between_solids() {
     // Two boxes beside each other whose tops are one plane.
@@ -220,7 +220,10 @@ fn jumps_of_depth_on_one_solid_have_a_line_and_smooth_joints_only_between_solids
         .iter()
         .map(|pixel| f64::from(1.0 - pixel[1]));
     let shadow = shadow.sum::<f64>() / 32.0;
-    assert!(line(&joined, false) > 0.9 && shadow < 1.0, "{shadow}");
+    // The line covers half a pixel beside the step with its half of 1 pixel, and the shadow there is
+    // less than a pixel of the darkest.
+    let line = line(&joined, false);
+    assert!(line > 0.9 && line - shadow > 0.2, "{line} {shadow}");
 }
 
 /// The picture does not depend on the tiles that are rendered together, nor on `--error`, and

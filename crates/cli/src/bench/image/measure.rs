@@ -17,13 +17,12 @@ const LEAST: u32 = 4;
 /// A reference has this many times the samples of the largest picture.
 const REFERENCE: u32 = 16;
 
-/// A reference until an error has this part of the least error of a picture. As an error falls at
-/// least as the root of the number of samples, and of even samples at most as the power 0.58 or so
-/// of what was measured, the reference of even samples takes 16 times as many or more.
-const REFERENCE_ERROR: f64 = 1.0 / 5.0;
+/// A reference until an error has this part of the least error of a picture. Errors of even samples
+/// fall at most as the power 0.7 of the number of samples of what was measured, so that the
+/// reference takes 7^(1/0.7) = 16 times as many or more.
+const REFERENCE_ERROR: f64 = 1.0 / 7.0;
 
-/// Most samples of a pixel until an error, and of a reference.
-const MOST: u32 = 16_384;
+/// Most samples of a pixel of a reference.
 const MOST_OF_REFERENCE: u32 = 1 << 18;
 
 /// What is rendered of each scene.
@@ -191,7 +190,7 @@ impl Plan {
 fn settings_of(settings: &Settings, (sampler, mode): (Sampler, Mode)) -> Settings {
     let (spp, target) = match mode {
         Mode::Uniform(spp) => (spp, None),
-        Mode::Error(error) => (MOST, Some(Target { error, time: None })),
+        Mode::Error(error) => (Target::MOST_SAMPLES, Some(Target { error, time: None })),
     };
     Settings {
         sampler,

@@ -53,9 +53,9 @@ fn picture_of_killed_processes_is_that_of_one() {
             &format!("{line} {threads}"),
             Duration::from_millis(later),
         );
-        assert!(is_killed == folder.join("c").exists());
-        if !is_killed {
-            // A very fast machine.
+        assert!(is_killed || !folder.join("c").exists());
+        if !folder.join("c").exists() {
+            // A very fast machine: the picture is written.
             break;
         }
     }
