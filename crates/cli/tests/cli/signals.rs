@@ -184,7 +184,7 @@ fn a_signal_ends_a_film_with_whole_pictures() {
     send("INT", &child);
     let (code, error) = end_of(child);
     assert_eq!(code, Some(130), "{error}");
-    assert!(error.contains("pictures are complete"), "{error}");
+    assert!(error.contains("pictures that are complete: "), "{error}");
     assert!(!has_temporary(folder.path()));
     let files = fs::read_dir(folder.path()).expect("a folder");
     for file in files {
