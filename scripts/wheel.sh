@@ -6,13 +6,14 @@
 #
 # The wheel is written to target/wheel/dist and tried in a clean virtual environment. It
 # runs on Linux with glibc 2.28 or later: the bundled libraries need no later one, and zig
-# links against it, whatever this machine's is. With --here, the wheel needs this machine's,
-# and crates that embree4.sh has compiled are not compiled again. Needs a Debian system, as
+# links against it, whatever this machine's is. With --here, the wheel needs this machine's
+# and is for a trial: it has less optimization, and what `embree4.sh cargo test --profile quick`
+# has compiled is not compiled again. Needs a Debian system, as
 # embree4.sh, and python3 with venv. Tools are installed to target/wheel/tools only.
 set -eu
 case "$#:${1-}" in
-0:) linker="--zig --compatibility manylinux_2_28" ;;
-1:--here) linker= ;;
+0:) options="--release --zig --compatibility manylinux_2_28" ;;
+1:--here) options="--profile quick" ;;
 *)
     echo "wheel.sh: the only argument is --here, not $*" >&2
     exit 2
@@ -31,8 +32,8 @@ export PATH
 
 rm -rf "$dist"
 # shellcheck disable=SC2086 # options without blanks
-sh scripts/embree4.sh maturin build --release --manifest-path python/Cargo.toml --out "$dist" \
-    --auditwheel repair $linker
+sh scripts/embree4.sh maturin build --manifest-path python/Cargo.toml --out "$dist" \
+    --auditwheel repair $options
 
 echo "wheel.sh: trying $dist/"*.whl
 rm -rf "$wheel/try"
