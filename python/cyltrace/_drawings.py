@@ -40,7 +40,7 @@ class Drawings:
         point, normal : (3,)
             The plane.
         material : str, optional
-            That of the cut faces, of one color and not glass; otherwise, each has that of its solid.
+            That of the cut faces, of one color and not glass; otherwise, that of each solid.
         shadows : bool
             Whether what is removed still casts shadows and is seen in mirrors.
         """
