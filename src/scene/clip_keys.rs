@@ -5,10 +5,10 @@ use toml::Spanned;
 
 use super::clip::Clip;
 use super::error::SceneError;
-use super::light_values::point;
 use super::material::{Color, MaterialKind};
 use super::materials::Materials;
 use super::names::quoted;
+use super::point::point;
 use super::record::MaterialIndex;
 use super::source::Source;
 use super::values::{Keys, Triple, vector};

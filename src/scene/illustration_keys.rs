@@ -7,36 +7,26 @@ use super::description::{Camera, Projection};
 use super::error::SceneError;
 use super::illustration::{Axes, DepthCue, Illustration, Outlines, ScaleBar};
 use super::inset::Corner;
-use super::inset_keys::{InsetKeys, check_corners, color, number};
+use super::inset_keys::{check_corners, color, number, with_inset_keys};
 use super::legend::Legend;
 use super::legend_keys::LegendKeys;
 use super::source::Source;
 use super::values::{Keys, Number, Triple};
 use crate::solid::Cylinder;
 
-/// `[scale_bar]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ScaleBarKeys {
-    length: Option<Spanned<Number>>,
-    unit: Option<Spanned<String>>,
-    corner: Option<Spanned<String>>,
-    size: Option<Spanned<Number>>,
-    color: Option<Triple>,
-    background: Option<Triple>,
-    opacity: Option<Spanned<Number>>,
+with_inset_keys! {
+    /// `[scale_bar]`
+    ScaleBarKeys {
+        length: Option<Spanned<Number>>,
+        unit: Option<Spanned<String>>,
+    }
 }
 
-/// `[axes]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct AxesKeys {
-    labels: Option<bool>,
-    corner: Option<Spanned<String>>,
-    size: Option<Spanned<Number>>,
-    color: Option<Triple>,
-    background: Option<Triple>,
-    opacity: Option<Spanned<Number>>,
+with_inset_keys! {
+    /// `[axes]`
+    AxesKeys {
+        labels: Option<bool>,
+    }
 }
 
 /// `[outlines]`
@@ -101,17 +91,14 @@ fn check_insets(
 ) -> Result<(), SceneError> {
     let mut insets = Vec::new();
     if let Some((keys, legend)) = legend {
-        insets.push(("legend", legend.inset.corner, keys.corner.as_ref()));
+        insets.push(("legend", legend.inset.corner, keys.inset_keys()));
     }
     if let (Some(bar), Some(key)) = (&illustration.scale_bar, keys.scale_bar) {
-        insets.push((
-            "scale_bar",
-            bar.inset.corner,
-            key.get_ref().0.corner.as_ref(),
-        ));
+        let Keys(keys) = key.get_ref();
+        insets.push(("scale_bar", bar.inset.corner, keys.inset_keys()));
     }
     if let (Some(axes), Some(Keys(keys))) = (&illustration.axes, keys.axes) {
-        insets.push(("axes", axes.inset.corner, keys.corner.as_ref()));
+        insets.push(("axes", axes.inset.corner, keys.inset_keys()));
     }
     check_corners(source, &insets)
 }
@@ -146,33 +133,19 @@ impl ScaleBarKeys {
             )),
             unit => Ok(unit.clone()),
         });
-        let keys = InsetKeys {
-            corner: self.corner.as_ref(),
-            size: self.size.as_ref(),
-            color: self.color.as_ref(),
-            background: self.background.as_ref(),
-            opacity: self.opacity.as_ref(),
-        };
         Ok(ScaleBar {
             length: length.transpose()?,
             unit: unit.transpose()?.unwrap_or_default(),
-            inset: keys.inset(source, Corner::BottomLeft)?,
+            inset: self.inset_keys().inset(source, Corner::BottomLeft)?,
         })
     }
 }
 
 impl AxesKeys {
     fn axes(&self, source: &Source) -> Result<Axes, SceneError> {
-        let keys = InsetKeys {
-            corner: self.corner.as_ref(),
-            size: self.size.as_ref(),
-            color: self.color.as_ref(),
-            background: self.background.as_ref(),
-            opacity: self.opacity.as_ref(),
-        };
         Ok(Axes {
             labels: self.labels.unwrap_or(true),
-            inset: keys.inset(source, Corner::TopLeft)?,
+            inset: self.inset_keys().inset(source, Corner::TopLeft)?,
         })
     }
 }

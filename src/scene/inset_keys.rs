@@ -10,7 +10,42 @@ use super::names::quoted;
 use super::source::Source;
 use super::values::{Number, Triple, vector};
 
-/// The keys of an inset, which the tables of all kinds repeat.
+/// Declares the keys of a table with those of an inset, which `inset_keys` returns. serde's own
+/// `flatten` would lose the places of values and accept unknown keys.
+macro_rules! with_inset_keys {
+    (
+        $(#[$attribute:meta])*
+        $table:ident { $($field:ident: $type:ty,)* }
+    ) => {
+        $(#[$attribute])*
+        #[derive(serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub(super) struct $table {
+            $($field: $type,)*
+            corner: Option<toml::Spanned<String>>,
+            size: Option<toml::Spanned<super::values::Number>>,
+            color: Option<super::values::Triple>,
+            background: Option<super::values::Triple>,
+            opacity: Option<toml::Spanned<super::values::Number>>,
+        }
+
+        impl $table {
+            /// The keys of the inset.
+            pub fn inset_keys(&self) -> super::inset_keys::InsetKeys<'_> {
+                super::inset_keys::InsetKeys {
+                    corner: self.corner.as_ref(),
+                    size: self.size.as_ref(),
+                    color: self.color.as_ref(),
+                    background: self.background.as_ref(),
+                    opacity: self.opacity.as_ref(),
+                }
+            }
+        }
+    };
+}
+pub(super) use with_inset_keys;
+
+/// The keys of an inset.
 #[derive(Clone, Copy)]
 pub(super) struct InsetKeys<'a> {
     pub corner: Option<&'a Spanned<String>>,
@@ -67,19 +102,20 @@ pub(super) fn number(
     }
 }
 
-/// Rejects two insets in one corner. Each has the name of its table and the key of its corner.
+/// Rejects two insets in one corner. Each has the name of its table, its corner and its keys.
 pub(super) fn check_corners(
     source: &Source,
-    insets: &[(&str, Corner, Option<&Spanned<String>>)],
+    insets: &[(&str, Corner, InsetKeys)],
 ) -> Result<(), SceneError> {
-    for (number, (name, corner, key)) in insets.iter().enumerate() {
+    for (number, (name, corner, keys)) in insets.iter().enumerate() {
         let before = insets[..number].iter();
-        let Some((other, _, other_key)) = before.clone().find(|(_, other, _)| other == corner)
+        let Some((other, _, other_keys)) = before.clone().find(|(_, other, _)| other == corner)
         else {
             continue;
         };
         // The default corners differ, so one of the two is stated.
-        let place = key.or(*other_key).map_or(0..0, Spanned::span);
+        let place = keys.corner.or(other_keys.corner);
+        let place = place.map_or(0..0, Spanned::span);
         let taken: Vec<Corner> = insets.iter().map(|(_, corner, _)| *corner).collect();
         let free = Corner::NAMES
             .iter()

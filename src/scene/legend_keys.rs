@@ -1,29 +1,22 @@
 //! `[legend]` of a scene file.
 
-use serde::Deserialize;
 use toml::Spanned;
 
 use super::error::SceneError;
 use super::inset::Corner;
-use super::inset_keys::InsetKeys;
+use super::inset_keys::with_inset_keys;
 use super::legend::Legend;
 use super::material::Color;
 use super::materials::Materials;
 use super::names::quoted;
 use super::source::Source;
-use super::values::{Number, Triple};
 
-/// `[legend]`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct LegendKeys {
-    material: Spanned<String>,
-    title: Option<String>,
-    pub corner: Option<Spanned<String>>,
-    size: Option<Spanned<Number>>,
-    color: Option<Triple>,
-    background: Option<Triple>,
-    opacity: Option<Spanned<Number>>,
+with_inset_keys! {
+    /// `[legend]`
+    LegendKeys {
+        material: Spanned<String>,
+        title: Option<String>,
+    }
 }
 
 impl LegendKeys {
@@ -38,17 +31,10 @@ impl LegendKeys {
                 "color = { column = \"NAME\" } shows the values of a column",
             ));
         };
-        let keys = InsetKeys {
-            corner: self.corner.as_ref(),
-            size: self.size.as_ref(),
-            color: self.color.as_ref(),
-            background: self.background.as_ref(),
-            opacity: self.opacity.as_ref(),
-        };
         Ok(Legend {
             material,
             title: self.title.clone().unwrap_or_else(|| data.column.clone()),
-            inset: keys.inset(source, Corner::BottomRight)?,
+            inset: self.inset_keys().inset(source, Corner::BottomRight)?,
         })
     }
 }

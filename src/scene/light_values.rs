@@ -1,4 +1,4 @@
-//! The color, the strength and the place of a light in a scene file.
+//! The color and the strength of a light in a scene file.
 
 use glam::DVec3;
 use toml::Spanned;
@@ -6,7 +6,6 @@ use toml::Spanned;
 use super::error::SceneError;
 use super::source::Source;
 use super::values::{Number, Triple, vector};
-use crate::solid::Cylinder;
 
 /// The linear RGB of a light, which must not be negative.
 pub(super) fn color(
@@ -44,18 +43,4 @@ pub(super) fn strength(
         )),
         _ => Ok(strength),
     }
-}
-
-/// A point whose coordinates are not too large.
-pub(super) fn point(source: &Source, name: &str, key: &Triple) -> Result<DVec3, SceneError> {
-    let point = vector(key);
-    let size = point.abs().max_element();
-    if size <= Cylinder::GREATEST {
-        return Ok(point);
-    }
-    let greatest = Cylinder::GREATEST;
-    let message = format!(
-        "{name} has a coordinate of the size {size:.1e}: it must be at most {greatest:.1e}"
-    );
-    Err(source.error(key.span(), message))
 }

@@ -61,6 +61,7 @@ mod number_table;
 mod origins;
 mod placed_lights;
 mod placing;
+mod point;
 mod pose;
 mod record;
 mod regular_file;

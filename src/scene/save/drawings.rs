@@ -1,8 +1,7 @@
 //! What a scene file states of what is drawn into and over the picture, and of what is cut away.
 
-use super::SaveError;
 use super::text::{Entry, Text};
-use crate::math::is_unit;
+use super::{SaveError, check_unit};
 use crate::scene::description::Scene;
 use crate::scene::inset::Inset;
 use crate::scene::record::MaterialIndex;
@@ -64,12 +63,7 @@ fn clips(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
             return Err(SaveError::DefaultMaterialOfClip);
         }
         let material = clip.material.map(|index| material_name(scene, index));
-        if !is_unit(clip.normal) {
-            return Err(SaveError::NotUnit {
-                what: "the normal of a clip plane",
-                length: clip.normal.length(),
-            });
-        }
+        check_unit("the normal of a clip plane", clip.normal)?;
         let mut entry = text.table("[[clip]]");
         entry.vector("point", clip.point);
         entry.vector("normal", clip.normal);

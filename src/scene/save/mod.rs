@@ -3,8 +3,8 @@
 //!
 //! `text` writes keys, and `tables` the rows of tables; the parts of a scene are written one a
 //! file: `picture` (camera, film, lights, materials), `drawings` (legend, scale bar, axes, outlines,
-//! depth cue), `environment`, `solids`, `cylinders`, `operations` and `placements`. The keys of each kind of solid are written where they are read, in
-//! [`solids`](super::solids).
+//! depth cue, clip planes), `environment`, `solids`, `cylinders`, `operations` and `placements`. The
+//! keys of each kind of solid are written where they are read, in [`solids`](super::solids).
 //!
 //! A number is written as the shortest decimal that reads back as the same f64. Primitive
 //! numbers follow from the order of a scene file; where they do not, the key or column
@@ -27,10 +27,13 @@ use std::io::{self, Write};
 pub use error::SaveError;
 pub(super) use text::Entry;
 
+use glam::DVec3;
+
 use self::tables::Tables;
 use self::text::Text;
 use super::description::{Prototype, PrototypeIndex, Scene};
 use super::record::{MaterialIndex, Records};
+use crate::math::is_unit;
 
 /// What is being written.
 struct Saver<'a, W> {
@@ -51,9 +54,9 @@ struct Saver<'a, W> {
 /// **What is promised.** [`load`](super::load()) reads the same scene from the files, to the
 /// last bit of every number: prototypes, solids with their primitive numbers and materials,
 /// placements with their instance numbers, the values that materials show, camera, film,
-/// render settings, lights, environment, legend, illustration and background. If the scene breaks a rule of
-/// `docs/scene-file.md`, which only scenes made in code
-/// do, this function or `load` fails; `load` never reads another scene.
+/// render settings, lights, environment, clip planes, legend, illustration and background. If the
+/// scene breaks a rule of `docs/scene-file.md`, which only scenes made in code do, this function or
+/// `load` fails; `load` never reads another scene.
 ///
 /// Some of a [`Scene`] is about the files that it was read from, and is not written:
 /// [`Scene::notes`], [`Scene::skipped_rows`] (the numbers of skipped rows stay unused),
@@ -173,6 +176,17 @@ fn records(scene: &Scene) -> Result<Records, SaveError> {
     match stored.all(|records| records == first) {
         true => Ok(first),
         false => Err(SaveError::MixedRecords),
+    }
+}
+
+/// Rejects a vector whose length is not 1 to within roundings.
+fn check_unit(what: &'static str, vector: DVec3) -> Result<(), SaveError> {
+    match is_unit(vector) {
+        true => Ok(()),
+        false => Err(SaveError::NotUnit {
+            what,
+            length: vector.length(),
+        }),
     }
 }
 

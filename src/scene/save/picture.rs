@@ -5,8 +5,7 @@ use std::io::Write;
 use super::drawings;
 use super::tables::Tables;
 use super::text::{Entry, Text};
-use super::{SaveError, check_names};
-use crate::math::is_unit;
+use super::{SaveError, check_names, check_unit};
 use crate::scene::background::Background;
 use crate::scene::defaults;
 use crate::scene::description::{Camera, Frame, Projection, Scene};
@@ -81,12 +80,7 @@ fn camera(text: &mut Text, camera: &Camera) {
 
 fn lights(text: &mut Text, scene: &Scene) -> Result<(), SaveError> {
     if let Some(sun) = scene.sun {
-        if !is_unit(sun.direction) {
-            return Err(SaveError::NotUnit {
-                what: "the sun's direction",
-                length: sun.direction.length(),
-            });
-        }
+        check_unit("the sun's direction", sun.direction)?;
         let mut entry = text.table("[sun]");
         entry.vector("direction", sun.direction);
         entry.vector("color", sun.color);

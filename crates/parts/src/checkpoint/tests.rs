@@ -54,16 +54,18 @@ fn checkpoint_goes_on_where_it_was_left() {
     assert!(!path.exists());
 }
 
+/// The length of the line of the header.
+fn first_line(bytes: &[u8]) -> usize {
+    let end = bytes.iter().position(|&byte| byte == LINE_FEED);
+    end.expect("a line") + 1
+}
+
 #[test]
 fn every_cut_keeps_the_records_before_it() {
     let directory = tempfile::tempdir().expect("directory");
     let path = directory.path().join("checkpoint");
     let bytes = written(&path);
-    let line = bytes
-        .iter()
-        .position(|&byte| byte == LINE_FEED)
-        .expect("a line")
-        + 1;
+    let line = first_line(&bytes);
     // Two units in the first record.
     let second = line + 40 + 2 * UNIT + content(7).len() + content(3).len();
     for cut in 0..bytes.len() {
@@ -91,11 +93,7 @@ fn every_changed_byte_is_noticed() {
     let directory = tempfile::tempdir().expect("directory");
     let path = directory.path().join("checkpoint");
     let bytes = written(&path);
-    let line = bytes
-        .iter()
-        .position(|&byte| byte == LINE_FEED)
-        .expect("a line")
-        + 1;
+    let line = first_line(&bytes);
     for at in 0..bytes.len() {
         let mut changed = bytes.clone();
         changed[at] ^= 1;
