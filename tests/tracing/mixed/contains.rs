@@ -2,11 +2,11 @@
 //! the exhaustive search says, through placements.
 
 use cyltrace::math::Random;
-use cyltrace::scene::{MaterialIndex, Prototype, SolidRecord};
+use cyltrace::scene::{MaterialIndex, Placement, Prototype, PrototypeIndex, SolidRecord};
 use cyltrace::solid::{AnySolid, Caps, Cuboid, Sphere};
 use cyltrace::tracer::{Containing, Tracer};
 use cyltrace::{math::Orientation, solid::Cylinder};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use super::{SEED, traced, tracer_of};
@@ -125,4 +125,38 @@ fn nested_placements_lose_no_point() {
             .sum();
         assert!(held > 300, "{held} at {}", nested.translation);
     }
+}
+
+/// The last one counts, in the order of placements and numbers: a placed solid after those of the
+/// root.
+#[test]
+fn material_at_is_that_of_the_last_solid_that_counts() {
+    let balls = |materials: &[u16]| {
+        let mut prototype = Prototype::default();
+        for (number, &material) in (0..).zip(materials) {
+            let ball = Sphere::new(DVec3::ZERO, 1.0 + f64::from(number)).expect("a ball");
+            let record = SolidRecord::new(ball.into(), number, MaterialIndex(material));
+            prototype.solids.push(record).expect("f64 keeps it");
+        }
+        prototype
+    };
+    let mut root = balls(&[1, 2, 1, 3]);
+    root.placements.push(Placement {
+        of: PrototypeIndex(1),
+        parent_from_child: DAffine3::IDENTITY,
+    });
+    let tracer = tracer_of(vec![root, balls(&[5, 4])]);
+    let at = |x: f64, counts: fn(u16) -> bool| {
+        let material = tracer.material_at(DVec3::new(x, 0.0, 0.0), |one| counts(one.0));
+        material.map(|one| one.0)
+    };
+    assert_eq!(at(0.5, |_| true), Some(4));
+    assert_eq!(at(0.5, |one| one < 4), Some(3));
+    assert_eq!(at(0.5, |one| one < 3), Some(1));
+    assert_eq!(at(0.5, |one| one == 2), Some(2));
+    assert_eq!(at(0.5, |_| false), None);
+    // The inner balls do not contain these.
+    assert_eq!(at(1.5, |one| one > 4), None);
+    assert_eq!(at(3.5, |_| true), Some(3));
+    assert_eq!(at(4.5, |_| true), None);
 }

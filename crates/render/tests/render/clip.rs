@@ -8,8 +8,10 @@ use cyltrace::scene::{
 };
 use cyltrace::solid::{AnySolid, Sphere};
 use cyltrace_output::Film;
+use cyltrace_render::{ChannelGroup, Channels};
 use glam::DVec3;
 
+use super::illustration::{outlines, rendered};
 use super::stage::{self, assert_all_pixels, mean, picture};
 
 const VIEW: &str = r#"
@@ -56,11 +58,15 @@ const SOLIDS: [(&str, &str); 6] = [
     ),
 ];
 
-/// Loads a scene from text.
+/// Loads a scene from text, after that of the view.
 fn load(text: &str) -> Scene {
+    load_text(&format!("{VIEW}{text}"))
+}
+
+fn load_text(text: &str) -> Scene {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("scene.toml");
-    fs::write(&path, format!("{VIEW}{text}")).expect("a scene file");
+    fs::write(&path, text).expect("a scene file");
     scene::load(&path).expect("a scene")
 }
 
@@ -236,23 +242,91 @@ fn cut_faces_have_the_material_of_the_plane() {
     assert_all_pixels(&stage::film_of(scene, 1), expected);
 }
 
-/// A camera in glass sees the cut face from inside, and the light that it refracts and reflects.
+/// Channels and outlines are of what planes leave, too.
+#[test]
+fn channels_and_outlines_are_those_of_intersections() {
+    let groups = [
+        ChannelGroup::Depth,
+        ChannelGroup::Position,
+        ChannelGroup::Normal,
+        ChannelGroup::Albedo,
+    ];
+    let scenes = by_planes_and_by_operations(&SOLIDS[..5], false);
+    let [planes, operations] = scenes.map(|mut scene| {
+        scene.illustration.outlines = Some(outlines(1.0));
+        scene.render.integrator = Integrator::Ao;
+        rendered(scene, |settings| {
+            settings.channels = Channels::new(groups, false);
+        })
+    });
+    assert!(greatest_difference(&planes.film, &operations.film) < 1e-5);
+    assert_eq!(planes.words.len(), operations.words.len());
+    let numbers = planes.words.iter().zip(&operations.words);
+    for (place, (&one, &other)) in numbers.enumerate() {
+        let [one, other] = [one, other].map(f32::from_bits);
+        assert!(
+            one == other || (one - other).abs() < 1e-5,
+            "{place}: {one} {other}"
+        );
+    }
+}
+
+/// Where cut solids overlap, the first one shows, but glass only if there is nothing else.
+#[test]
+fn first_of_overlapping_solids_shows_its_cut_face() {
+    let face = |first: &str, second: &str| {
+        let block = |material: &str| {
+            format!("[[cuboid]]\nhalf_widths = [200, 200, 1]\nmaterial = \"{material}\"\n")
+        };
+        let materials = "[[material]]\nname = \"red\"\ncolor = [0.8, 0.1, 0.1]\n\
+                         [[material]]\nname = \"green\"\ncolor = [0.1, 0.8, 0.1]\n\
+                         [[material]]\nname = \"glass\"\nkind = \"glass\"\n";
+        let plane = "[[clip]]\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n";
+        let scene = load(&format!(
+            "{materials}{}{}{plane}",
+            block(first),
+            block(second)
+        ));
+        rendered(scene, |settings| {
+            settings.integrator = Integrator::Sun;
+            settings.spp = 1;
+        })
+        .film
+    };
+    let is_red = |film: &Film| film.pixels().iter().all(|pixel| pixel[0] > 2.0 * pixel[1]);
+    let is_green = |film: &Film| film.pixels().iter().all(|pixel| pixel[1] > pixel[0]);
+    assert!(is_red(&face("red", "green")));
+    assert!(is_green(&face("green", "red")));
+    assert!(is_red(&face("glass", "red")));
+    assert!(is_red(&face("red", "glass")));
+}
+
+/// A camera within the glass that is left sees the cut face from inside; within the glass that is
+/// removed, from outside.
 #[test]
 fn cut_face_of_glass_around_the_camera_is_that_of_an_intersection() {
-    let view = "[camera]\nposition = [0, 0, 0]\nlook_at = [0.2, 1, 0.1]\nfov_degrees = 60\n[film]\n\
-                width = 24\nheight = 24\n[render]\nspp = 64\n[sky]\ncolor = [0.6, 0.8, 1]\n\
-                [[material]]\nname = \"g\"\nkind = \"glass\"\n\
-                [[sphere]]\ncenter = [1, -4, 0]\nradius = 2\n";
-    let planes = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"g\"\n\
-                  [[clip]]\npoint = [0, 0.5, 0]\nnormal = [0, 1, 0]\nshadows = false\n";
-    let operation = "[[intersection]]\nmaterial = \"g\"\nof = [{ sphere = { center = [0, 0, 0], \
-                     radius = 1 } }, { cuboid = { center = [0, -9.5, 0], \
-                     half_widths = [20, 10, 20] } }]\n";
-    let [planes, operation] = [planes, operation].map(|text| {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let path = folder.path().join("scene.toml");
-        fs::write(&path, format!("{view}{text}")).expect("a scene file");
-        stage::film_of(scene::load(&path).expect("a scene"), 64)
-    });
-    assert!(greatest_difference(&planes, &operation) < 1e-5);
+    for (eye, plane, normal, middle) in [(0.0, 0.5, 1.0, -9.5), (-0.8, -0.5, -1.0, 9.5)] {
+        let view = format!(
+            "[camera]\nposition = [0, {eye}, 0]\nlook_at = [0.2, 1, 0.1]\nfov_degrees = 60\n\
+             [film]\nwidth = 24\nheight = 24\n[sky]\ncolor = [0.6, 0.8, 1]\n\
+             [[material]]\nname = \"g\"\nkind = \"glass\"\n\
+             [[sphere]]\ncenter = [1, {}, 0]\nradius = 2\n",
+            -4.0 * normal
+        );
+        let planes = format!(
+            "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"g\"\n\
+             [[clip]]\npoint = [0, {plane}, 0]\nnormal = [0, {normal}, 0]\nshadows = false\n"
+        );
+        let operation = format!(
+            "[[intersection]]\nmaterial = \"g\"\nof = [{{ sphere = {{ center = [0, 0, 0], \
+             radius = 1 }} }}, {{ cuboid = {{ center = [0, {middle}, 0], \
+             half_widths = [20, 10, 20] }} }}]\n"
+        );
+        let [planes, operation] = [planes, operation].map(|text| {
+            let scene = load_text(&format!("{view}{text}"));
+            stage::film_of(scene, 64)
+        });
+        let apart = greatest_difference(&planes, &operation);
+        assert!(apart < 1e-5, "eye at {eye}: {apart}");
+    }
 }

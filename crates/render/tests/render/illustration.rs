@@ -46,7 +46,7 @@ fn scene(solids: &[AnySolid], side: u32) -> Scene {
     }
 }
 
-fn outlines(width: f64) -> Outlines {
+pub fn outlines(width: f64) -> Outlines {
     Outlines {
         width,
         color: DVec3::X,
@@ -55,7 +55,7 @@ fn outlines(width: f64) -> Outlines {
     }
 }
 
-fn rendered(scene: Scene, change: impl Fn(&mut Settings)) -> Picture {
+pub fn rendered(scene: Scene, change: impl Fn(&mut Settings)) -> Picture {
     let tracer = Tracer::new(Arc::new(scene), &Options::default()).expect("built");
     let mut settings = Settings::of(tracer.scene());
     settings.spp = 1;
