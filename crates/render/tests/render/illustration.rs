@@ -5,8 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use cyltrace::math::Orientation;
 use cyltrace::scene::{
-    self, Background, Camera, DepthCue, Frame, Integrator, MaterialIndex, Outlines, Projection,
-    Prototype, Scene, SolidRecord, Solids,
+    self, Background, Camera, DepthCue, Frame, Integrator, Light, LightShape, MaterialIndex,
+    Outlines, Projection, Prototype, Scene, SolidRecord, Solids,
 };
 use cyltrace::solid::{AnySolid, Cuboid, Sphere};
 use cyltrace::tracer::{Options, Tracer, workers};
@@ -350,5 +350,31 @@ fn depth_cues_without_keys_fade_to_the_background_over_the_box() {
         }
         scene.camera.projection = Projection::Orthographic { height: Some(2.0) };
         assert_eq!(sun(&scene)[0], [0.5; 3]);
+    }
+}
+
+/// What a light with a place hides has no line and does not fade it: the light fills the picture.
+#[test]
+fn lights_hide_lines_and_do_not_fade() {
+    let solid = cuboid(DVec3::splat(-0.5), DVec3::new(0.5, 0.5, 0.0));
+    let mut scene = scene(&[solid], 16);
+    scene.lights = vec![Light {
+        shape: LightShape::Sphere {
+            center: DVec3::new(0.0, 0.0, 2.0),
+            radius: 1.5,
+        },
+        color: DVec3::new(0.5, 0.75, 0.25),
+        strength: 1.0,
+    }];
+    scene.illustration.outlines = Some(outlines(3.0));
+    scene.illustration.depth_cue = Some(DepthCue {
+        color: Some(DVec3::X),
+        start: Some(0.0),
+        end: Some(1.0),
+        strength: 1.0,
+    });
+    let path = |settings: &mut Settings| settings.integrator = Integrator::Path;
+    for pixel in rendered(scene, path).film.pixels() {
+        assert_eq!(*pixel, [0.5, 0.75, 0.25]);
     }
 }

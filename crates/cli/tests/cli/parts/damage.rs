@@ -133,7 +133,22 @@ fn resume_keeps_valid_parts_only() {
     let figures: Value = serde_json::from_slice(&bytes(folder, "figures.json")).expect("JSON");
     assert_eq!(figures["part"], "1/2");
 
-    // Another setting, another scene.
+    // Every setting that changes the picture, and another scene.
+    for option in [
+        "--size 33x17",
+        "--seed 1",
+        "--integrator normal",
+        "--sampler random",
+        "--exposure 1",
+        "--tonemap agx",
+        "--channels ids",
+        "--exact",
+    ] {
+        for line in [format!("{line} {option}"), line.to_owned()] {
+            let output = run(folder, &line);
+            assert!(!output.contains("already there"), "{line}: {output}");
+        }
+    }
     let output = run(folder, &line.replace("--spp 1", "--spp 2"));
     assert!(!output.contains("already there"), "{output}");
     fs::write(folder.join("scene.toml"), SCENE.replace("0.7", "0.6")).expect("written");
