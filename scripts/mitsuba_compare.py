@@ -8,9 +8,10 @@ are two pictures, so that the differences between rounds measure the noise.
 
 - Blocks of 16 x 16 pixels: the difference of the means in standard errors, Welch's t. Of n blocks
   and three colors, the greatest is 3 to 4 if the light is the same.
-- Time at equal error: the product of the time of a picture and the mean variance of its pixels, which
-  does not depend on the number of samples as long as the variance falls with it. The ratio says how
-  many times longer Mitsuba takes for the same error. Its spread is from halves of the rounds.
+- Time at equal error: the product of the time of a picture and the mean variance of its pixels. That
+  of Mitsuba's independent samples does not depend on their number; that of cyltrace falls with it.
+  The ratio says how many times longer Mitsuba takes for the same error. Its spread is from halves
+  of the rounds.
 """
 
 from __future__ import annotations

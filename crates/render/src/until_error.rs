@@ -20,29 +20,15 @@
 //! which are independent of its own, and of nothing else. For every `n` the mean `M(n)` of its
 //! samples has the expectation `I`, the pixel's true value, because every point of a scrambled
 //! sequence is uniform, and every number of the sampler `random`. So
-//! `E M(N) = Σ P(N = n) E M(n) = I`. Until both halves have stopped, both are sampled; what the one
-//! that stopped first gets after that is not used for its own pixels. (The idea is that of the dual buffers of Rousselle, Knaus, Zwicker, "Adaptive
-//! Rendering with Non-Local Means Filtering", ACM Transactions on Graphics 31(6), 2012, with
-//! pixels in place of buffers, so that no pixel has half of its samples.)
+//! `E M(N) = Σ P(N = n) E M(n) = I`. A half that has stopped is sampled further while the other half
+//! is undecided; these samples are not used for its own pixels. (The idea is that of the dual buffers
+//! of Rousselle, Knaus, Zwicker, "Adaptive Rendering with Non-Local Means Filtering", ACM
+//! Transactions on Graphics 31(6), 2012, with pixels in place of buffers, so that no pixel has half
+//! of its samples.)
 //!
 //! A limit of time stops all tiles whatever their values are.
 //!
-//! # The promise
-//! A tile stops when the error is small enough with a probability of about 95 %. With `S` the
-//! sum of `v` over the values of a half, normal `a` and `b` make each `v` its variance `σ²`
-//! times a chi-squared variable of one degree of freedom, so that `E v² = 3 σ⁴`. The squared
-//! error that the half will have varies by `2 Σ σ⁴`, `S` itself by as much, together by
-//! `4/3 Σ v²`. Of a tile of two such halves the relative deviation is `1/√2` of that. So a half
-//! stops where `S + 1.645/√2 √(4/3 Σ v²)` is at most the target's. The components of a color
-//! are taken as one value, since they vary together.
-//!
-//! # When is decided
-//! A half is decided at numbers of samples of two or three significant bits, each a fifth or so
-//! above the one before. Far from the target most decisions are unneeded, and small steps trace few
-//! samples of a pixel together, which costs time. So after a decision the next one is
-//! at the number where the error is expected to be nearly small enough ([`next`]). That number is
-//! computed from the other half's samples too, so that `N` remains a function of them alone. With a
-//! limit of time, no number is left out.
+//! `spread` derives how many samples an error needs, and how sure that is.
 
 use std::time::{Duration, Instant};
 
@@ -55,11 +41,8 @@ use super::outlines;
 use super::place::{Place, Sums, write};
 use super::rendering::{Work, pixels, stream, trace};
 use super::sampler::PixelSampler;
-use super::spread::Spread;
+use super::spread::{Spread, Spreads};
 use super::{RayCounts, RenderError, Settings, Tiles};
-
-/// Samples of a sequence before the first decision. Fewer would decide by luck.
-const FIRST: u32 = 4;
 
 /// Sequences of a pixel.
 const SEQUENCES: usize = 2;
@@ -139,27 +122,6 @@ pub(super) fn samples_bytes(settings: &Settings) -> u64 {
     pixels * of_pixel as u64 + Tiles::of(settings.film).count() * of_tile
 }
 
-/// How fast the squared error is taken to fall, `N^(-1/FALL)`. It falls as `N^-1` or faster; less
-/// is expected of more samples than they do, so that few tiles take more than they need.
-const FALL: f64 = 0.8;
-
-/// Most growth of a number of samples between two decisions: the first estimates are rough.
-const MOST_GROWTH: f64 = 4.0;
-
-/// The number of samples of a sequence at which a half is decided after `taken`, where the squared
-/// error was `excess` times the greatest that would be small enough.
-fn next(taken: u32, excess: f64) -> u32 {
-    if taken == 0 {
-        return FIRST;
-    }
-    // The numbers up to the next power of two are a multiple of an eighth of it.
-    let unit = |number: u32| (number.next_power_of_two() / 8).max(1);
-    let least = taken + unit(taken + 1);
-    let growth = libm::pow(excess, FALL).clamp(1.0, MOST_GROWTH);
-    let expected = (f64::from(taken) * growth) as u32;
-    (expected / unit(expected) * unit(expected)).max(least)
-}
-
 /// A tile while it is sampled.
 struct TileSamples<'a, 'p> {
     work: &'a Work<'a>,
@@ -171,8 +133,10 @@ struct TileSamples<'a, 'p> {
     sums: Sums,
     /// Samples of each sequence so far.
     samples_of_each: u32,
-    /// The number of samples at which each half is decided next.
-    due: [u32; 2],
+    /// How the values spread that decide for each half, as far as it was undecided.
+    spreads: [Spreads; 2],
+    /// The number of samples at which each half stops, once that is decided.
+    ends: [Option<u32>; 2],
     /// What each half has come to, once it has stopped.
     stopped: [Option<Spread>; 2],
     rays: RayCounts,
@@ -199,7 +163,8 @@ impl<'a, 'p> TileSamples<'a, 'p> {
             samplers: all.map(|pixels| pixels.into_iter().map(|(_, sampler)| sampler).collect()),
             sums,
             samples_of_each: 0,
-            due: [next(0, 1.0); 2],
+            spreads: [Spreads::default(), Spreads::default()],
+            ends: [None, None],
             stopped: [None, None],
             rays: RayCounts::default(),
             samples: 0,
@@ -210,59 +175,94 @@ impl<'a, 'p> TileSamples<'a, 'p> {
         self.stopped.iter().all(Option::is_some)
     }
 
-    /// Takes samples up to the next decision, and decides.
+    /// The half that decides for a half: the other one, unless that has no pixels. A tile of few
+    /// pixels may have all of them in one half.
+    fn decider(&self, half: usize) -> usize {
+        match self.pixels.iter().any(|(_, of)| *of == 1 - half) {
+            true => 1 - half,
+            false => half,
+        }
+    }
+
+    /// Whether a half decides for one that is undecided.
+    fn decides(&self, half: usize) -> bool {
+        let mut halves = [0, 1].into_iter();
+        halves.any(|one| self.ends[one].is_none() && self.decider(one) == half)
+    }
+
+    /// The number of samples at which a half that has not stopped is decided or stops.
+    fn due(&self, half: usize) -> u32 {
+        self.ends[half].unwrap_or_else(|| self.spreads[half].next(self.error))
+    }
+
+    /// Takes samples up to the next number at which something is decided or stops.
     fn advance(&mut self) -> Result<(), RenderError> {
-        let most = (self.work.settings.spp / LEAST_SAMPLES).max(1);
-        let halves = [0, 1].into_iter();
-        let due = halves.filter(|&half| self.stopped[half].is_none());
-        let due = due.map(|half| self.due[half]).min();
-        let end = due.unwrap_or(most).min(most);
+        let settings = self.work.settings;
+        let most = (settings.spp / LEAST_SAMPLES).max(1);
+        let has_time = settings.target.is_some_and(|target| target.time.is_some());
+        let taken = self.samples_of_each;
+        let soon = match has_time && taken > 0 {
+            // Up to an eighth of a power of two, so that little is left when the time is over.
+            true => taken + ((taken + 1).next_power_of_two() / 8).max(1),
+            false => u32::MAX,
+        };
+        let due = [0, 1].map(|half| match self.stopped[half] {
+            Some(_) => u32::MAX,
+            None => self.due(half),
+        });
+        let end = due[0].min(due[1]).min(most).min(soon);
+        self.sample(end)?;
+        for half in [0, 1] {
+            if due[half] == end && self.ends[half].is_none() {
+                self.decide(half);
+            }
+        }
+        for half in [0, 1] {
+            let is_over = end == most || self.ends[half] == Some(end);
+            if self.stopped[half].is_none() && is_over {
+                self.stop_half(half);
+            }
+        }
+        Ok(())
+    }
+
+    /// Decides when a half stops, if its decider's values say so already.
+    fn decide(&mut self, half: usize) {
+        let spread = self.spread(self.decider(half));
+        let spreads = &mut self.spreads[half];
+        spreads.push(self.samples_of_each, spread);
+        self.ends[half] = spreads.enough(self.error);
+    }
+
+    /// Takes samples up to a number, of the pixels whose samples matter.
+    fn sample(&mut self, end: u32) -> Result<(), RenderError> {
+        let matters = [0, 1].map(|half| self.stopped[half].is_none() || self.decides(half));
+        let numbers = 0..self.pixels.len();
+        let pixels: Vec<_> = numbers.filter(|&one| matters[self.pixels[one].1]).collect();
         let more = u64::from(end - self.samples_of_each);
         // The samples of a pixel are neighbours, those of both sequences.
-        let place = |number: u64| (number / more) as usize;
+        let place = |number: u64| {
+            let sequence = (number / more) as usize;
+            (pixels[sequence / SEQUENCES], sequence % SEQUENCES)
+        };
         let sample = |number: u64| {
-            let (pixel, sequence) = (place(number) / SEQUENCES, place(number) % SEQUENCES);
+            let (pixel, sequence) = place(number);
             Sample {
                 pixel: self.pixels[pixel].0,
                 sampler: self.samplers[sequence][pixel],
                 number: self.samples_of_each + (number % more) as u32,
             }
         };
-        let count = (self.pixels.len() * SEQUENCES) as u64 * more;
+        let count = (pixels.len() * SEQUENCES) as u64 * more;
         let sums = &mut self.sums;
         trace(self.work, count, sample, &mut self.rays, |first, batch| {
-            sums.add(batch, |sample| place(first + sample as u64));
+            sums.add(batch, |sample| {
+                let (pixel, sequence) = place(first + sample as u64);
+                pixel * SEQUENCES + sequence
+            });
         })?;
         self.samples_of_each = end;
-        let spreads = [0, 1].map(|half| self.spread(half));
-        for half in [0, 1] {
-            // A tile of few pixels may have all of them in one half, which then decides for itself.
-            let other = match spreads[1 - half].pixels > 0.0 {
-                true => spreads[1 - half],
-                false => spreads[half],
-            };
-            if self.stopped[half].is_none() && (end >= self.due[half] || end == most) {
-                match end == most || other.is_within(self.error) {
-                    true => self.stop_half(half),
-                    false => self.due[half] = next(end, self.foreseen(other)),
-                }
-            }
-        }
         Ok(())
-    }
-
-    /// How much greater than permitted the squared error of a half was, if that says when it
-    /// is decided next.
-    fn foreseen(&self, spread: Spread) -> f64 {
-        let has_time = self
-            .work
-            .settings
-            .target
-            .is_some_and(|target| target.time.is_some());
-        match has_time {
-            true => 1.0,
-            false => spread.excess(self.error),
-        }
     }
 
     /// Stops with the samples so far.
@@ -326,24 +326,5 @@ impl<'a, 'p> TileSamples<'a, 'p> {
                 samples: self.samples,
             },
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn decisions_are_at_numbers_of_few_bits_that_grow_with_the_error() {
-        let all = |excess: f64| {
-            let numbers =
-                std::iter::successors(Some(next(0, excess)), move |&n| Some(next(n, excess)));
-            numbers.take(12).collect::<Vec<_>>()
-        };
-        assert_eq!(all(1.0), [4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28]);
-        // 2^0.8 is 1.74.
-        assert_eq!(all(2.0)[..6], [4, 6, 10, 16, 24, 40]);
-        assert_eq!(all(f64::INFINITY)[..4], [4, 16, 64, 256]);
-        assert_eq!(next(8, f64::NAN), 10);
     }
 }
