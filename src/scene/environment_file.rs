@@ -70,21 +70,26 @@ pub(super) fn environment(
 /// An upper bound of the bytes that reading the file takes, the pixels included; 0 if it cannot be
 /// read.
 pub(super) fn reading_bytes(source: &Source, keys: &EnvironmentKeys) -> u64 {
+    let decoding = pixels(source, keys).saturating_mul(DECODING_BYTES);
+    let metadata = fs::metadata(source.resolve(keys.file.get_ref()));
+    match (decoding, metadata) {
+        (1.., Ok(metadata)) => metadata.len().saturating_add(decoding),
+        _ => 0,
+    }
+}
+
+/// The number of pixels of the file; 0 if it cannot be read.
+pub(super) fn pixels(source: &Source, keys: &EnvironmentKeys) -> u64 {
     let path = source.resolve(keys.file.get_ref());
-    let bytes = || {
+    let count = || {
         // Opening a pipe would wait for a writer.
-        let found = fs::metadata(&path).ok().filter(fs::Metadata::is_file)?;
+        fs::metadata(&path).ok().filter(fs::Metadata::is_file)?;
         let file = BufReader::new(File::open(&path).ok()?);
         let reader = ImageReader::with_format(file, format_of(&path)?);
         let (width, height) = reader.into_dimensions().ok()?;
-        let pixels = u64::from(width) * u64::from(height);
-        Some(
-            found
-                .len()
-                .saturating_add(pixels.saturating_mul(DECODING_BYTES)),
-        )
+        Some(u64::from(width) * u64::from(height))
     };
-    bytes().unwrap_or(0)
+    count().unwrap_or(0)
 }
 
 fn format_of(path: &Path) -> Option<ImageFormat> {

@@ -10,7 +10,7 @@ use super::colors::{ValueList, header_bytes};
 use super::contents::{ExpectedCounts, ExpectedSolids, mark_used, placed_counts};
 use super::description::{Film, PrototypeIndex, RenderSettings, Scene};
 use super::document::{Body, Document};
-use super::environment_file::reading_bytes;
+use super::environment_file::{pixels, reading_bytes};
 use super::error::SceneError;
 use super::formats::{self, SolidFile};
 use super::load::{lower, records};
@@ -255,6 +255,20 @@ impl SceneFile {
             }
         }
         (solids, values_bytes)
+    }
+
+    /// The scene without its environment, which only pictures show: its file is not read.
+    #[must_use]
+    pub fn without_environment(mut self) -> Self {
+        self.document.environment = None;
+        self
+    }
+
+    /// The number of pixels of the environment; 0 without one, or if its file cannot be read.
+    #[must_use]
+    pub fn environment_pixels(&self) -> u64 {
+        let environment = self.document.environment.as_ref();
+        environment.map_or(0, |Keys(keys)| pixels(&self.source, keys))
     }
 
     /// Reads the files that the scene names, and validates the scene.

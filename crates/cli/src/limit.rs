@@ -68,17 +68,23 @@ pub struct MemoryLimit {
     is_stated: bool,
     /// The layout that the estimate assumes.
     layout: Layout,
-    /// What the samples of a picture take beside the scene.
-    samples_bytes: u64,
+    /// What a picture takes beside the scene.
+    picture: PictureBytes,
+}
+
+/// The memory of a picture beside the scene, in bytes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PictureBytes {
+    /// Samples of all tiles at once.
+    pub samples: u64,
+    /// The environment and how it is sampled.
+    pub environment: u64,
 }
 
 impl MemoryLimit {
-    /// This limit, for a command that also needs memory for samples.
-    pub fn with_samples(self, samples_bytes: u64) -> Self {
-        Self {
-            samples_bytes,
-            ..self
-        }
+    /// This limit, for a command that also renders a picture.
+    pub fn with_picture(self, picture: PictureBytes) -> Self {
+        Self { picture, ..self }
     }
 
     /// The limit of `--max-memory`, or the memory that the system has available.
@@ -88,7 +94,7 @@ impl MemoryLimit {
                 bytes: Some(bytes),
                 is_stated: true,
                 layout: arguments.layout.into(),
-                samples_bytes: 0,
+                picture: PictureBytes::default(),
             },
             None => Self {
                 layout: arguments.layout.into(),
@@ -106,7 +112,7 @@ impl MemoryLimit {
             bytes: [free, address_space_left()].into_iter().flatten().min(),
             is_stated: false,
             layout: Layout::default(),
-            samples_bytes: 0,
+            picture: PictureBytes::default(),
         }
     }
 
@@ -134,7 +140,9 @@ impl MemoryLimit {
         let needed = match need {
             Need::Records => estimate.records_bytes,
             // Prototypes are built when a ray reaches them, beside the samples.
-            Need::Build => estimate.peak_bytes().saturating_add(self.samples_bytes),
+            Need::Build => [self.picture.samples, self.picture.environment]
+                .into_iter()
+                .fold(estimate.peak_bytes(), u64::saturating_add),
         };
         let needed = needed.max(estimate.records_bytes.saturating_add(reading_bytes));
         let left = self.bytes.map(|allowed| allowed.checked_sub(needed));
@@ -146,7 +154,7 @@ impl MemoryLimit {
             path.display(),
             readable(needed),
             self.allowed(allowed),
-            takers(contents, &estimate, need, needed, self.samples_bytes)
+            takers(contents, &estimate, need, needed, self.picture)
         ))
     }
 
@@ -179,7 +187,7 @@ fn takers(
     estimate: &MemoryEstimate,
     need: Need,
     needed: u64,
-    samples_bytes: u64,
+    picture: PictureBytes,
 ) -> String {
     let quoted = |name: &str| match name {
         "" => "the scene itself".to_owned(),
@@ -202,7 +210,8 @@ fn takers(
         let building = "Embree, while it builds".to_owned();
         lines.push((estimate.building_bytes, building));
         let samples = "the samples of all tiles at once, for --time".to_owned();
-        lines.push((samples_bytes, samples));
+        lines.push((picture.samples, samples));
+        lines.push((picture.environment, "the environment".to_owned()));
     }
     lines.retain(|(bytes, _)| *bytes > needed / 100);
     lines.sort_by_key(|(bytes, _)| std::cmp::Reverse(*bytes));

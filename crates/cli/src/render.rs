@@ -9,15 +9,15 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::{Context, anyhow, bail};
-use cyltrace::scene::SceneFile;
+use cyltrace::scene::{Integrator, SceneFile};
 use cyltrace::tracer::{Options, Tracer};
 use cyltrace_output::{Contents, Display, Format, Insets, Output};
 use cyltrace_parts::{Header, PartNumber};
-use cyltrace_render::{Channels, Settings, Target, Tiles};
+use cyltrace_render::{Channels, EnvironmentMap, Settings, Target, Tiles};
 use serde_json::json;
 
 use super::arguments::RenderArguments;
-use super::limit::{MemoryLimit, Need};
+use super::limit::{MemoryLimit, Need, PictureBytes};
 use super::outputs::Files;
 use super::parts::checkpoint::KeptInFile;
 use super::parts::{self, Work};
@@ -73,7 +73,14 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         work(arguments, settings, &file).header(whole)
     });
     let whole = whole.transpose()?;
-    let limit = limit.with_samples(settings.samples_bytes());
+    let file = match settings.integrator {
+        Integrator::Sun | Integrator::Path => file,
+        Integrator::Ao | Integrator::Normal => file.without_environment(),
+    };
+    let limit = limit.with_picture(PictureBytes {
+        samples: settings.samples_bytes(),
+        environment: EnvironmentMap::bytes(file.environment_pixels()),
+    });
     let scene = Arc::new(scene::load(common, file, Need::Build, limit)?);
     let load = start.elapsed().as_secs_f64();
 

@@ -28,6 +28,7 @@ pub fn run(arguments: &TessellateArguments) -> anyhow::Result<()> {
     let start = Instant::now();
     let file = scene::read(&arguments.scene, MemoryLimit::available())?;
     files.check_with(&file)?;
+    let file = file.without_environment();
     let scene = scene::load(common, file, Need::Records, MemoryLimit::available())?;
     let load = start.elapsed().as_secs_f64();
 

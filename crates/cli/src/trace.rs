@@ -214,7 +214,12 @@ impl<R: NumberRow + Sync> Task<'_, R> {
         let check = start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let scene = Arc::new(scene::load(common, file, Need::Build, limit)?);
+        let scene = Arc::new(scene::load(
+            common,
+            file.without_environment(),
+            Need::Build,
+            limit,
+        )?);
         let load = (read + start.elapsed()).as_secs_f64();
         let start = Instant::now();
         let tracer = scene::build(

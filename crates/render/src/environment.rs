@@ -80,6 +80,12 @@ impl EnvironmentMap {
         clear.or_else(|| scene.environment.as_ref().map(Self::new))
     }
 
+    /// About the bytes that an environment of some pixels takes, with the pixels of the scene.
+    #[must_use]
+    pub fn bytes(pixels: u64) -> u64 {
+        pixels.saturating_mul((size_of::<[f32; 3]>() + size_of::<f64>()) as u64)
+    }
+
     /// Prepares an environment. It takes 8 bytes per pixel besides the pixels, which are shared.
     #[must_use]
     pub fn new(environment: &Environment) -> Self {

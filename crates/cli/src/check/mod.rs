@@ -85,7 +85,7 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<u8> {
     let external = workers.install(|| ExternalInput::read(arguments))?;
     let loaded = Arc::new(scene::load(
         common,
-        file,
+        file.without_environment(),
         Need::Build,
         MemoryLimit::available(),
     )?);

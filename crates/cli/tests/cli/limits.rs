@@ -234,3 +234,59 @@ fn numbers_beyond_their_limits_are_refused_with_them() {
         assert!(error.contains(limit), "{line}: {error}");
     }
 }
+
+/// A Radiance HDR picture of one gray.
+fn environment(width: usize, height: usize) -> Vec<u8> {
+    let header = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n");
+    let pixels = [128, 128, 128, 128].repeat(width * height);
+    [header.into_bytes(), pixels].concat()
+}
+
+#[test]
+fn environment_counts_for_pictures_that_show_it() {
+    let scene = "[environment]\nfile = \"sky.hdr\"\n\
+        [[prototype]]\nname = \"tree\"\n\
+        [[prototype.cylinder]]\np0 = [0, 0, 0]\np1 = [0, 0, 1]\nradius = 0.1\n\
+        [[scatter]]\nof = \"tree\"\npattern = \"grid\"\ncount = 300000\nspacing = 2\n";
+    let folder = folder_of(&[("scene.toml", scene)]);
+    let sky = folder.path().join("sky.hdr");
+    let needed = |(width, height), more: &str| {
+        fs::write(&sky, environment(width, height)).expect("written");
+        let line = format!("render scene.toml -o picture.png --max-memory 1MB {more}");
+        let (code, _, error) = cyltrace(folder.path(), &words(&line));
+        assert_eq!(code, 2, "{error}");
+        let after = error.split("needs up to ").nth(1).expect("the memory");
+        let megabytes = after.split(" MB").next().expect("megabytes");
+        let is_stated = error.contains("  the environment\n") || error.ends_with("the environment");
+        (megabytes.parse::<f64>().expect("a number"), is_stated)
+    };
+    let (small, _) = needed((2, 1), "");
+    let (large, is_stated) = needed((1024, 512), "");
+    // 20 bytes for each pixel.
+    assert!((large - small - 10.5).abs() < 0.2, "{small} and {large} MB");
+    assert!(is_stated);
+    let (without, is_stated) = needed((1024, 512), "--integrator ao");
+    assert!((without - small).abs() < 0.2 && !is_stated, "{without} MB");
+}
+
+#[test]
+fn environment_is_read_only_for_pictures_that_show_it() {
+    let scene = format!("[environment]\nfile = \"missing.hdr\"\n{CYLINDER}");
+    let folder = folder_of(&[("scene.toml", scene.as_str()), ("rays.csv", RAYS)]);
+    for line in [
+        "trace scene.toml --rays rays.csv -o hits.csv",
+        "check scene.toml --rays 10",
+        "tessellate scene.toml -o mesh.obj",
+        "render scene.toml -o picture.png --size 4x4 --spp 1 --integrator normal",
+    ] {
+        let (code, _, error) = cyltrace(folder.path(), &words(line));
+        assert_eq!(code, 0, "{line}: {error}");
+    }
+    for integrator in ["sun", "path"] {
+        let line = format!("render scene.toml -o light.png --integrator {integrator}");
+        let (code, _, error) = cyltrace(folder.path(), &words(&line));
+        assert_eq!(code, 2, "{integrator}");
+        assert!(error.contains("missing.hdr"), "{error}");
+        assert!(!folder.path().join("light.png").exists());
+    }
+}
