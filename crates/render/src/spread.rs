@@ -251,6 +251,8 @@ mod tests {
         // It falls even faster: only powers of two are worth it.
         let smooth = spreads(&[9000.0, 1000.0, 100.0, 10.0, 1.0]);
         assert_eq!(smooth.enough(error_of(0.99)), None);
+        // By chance it falls more slowly than that of independent samples: 8 samples to 12.
+        assert_eq!(spreads(&[4.0, 3.9]).enough(error_of(2.61)), Some(12));
         // One estimate does not show how the variance falls.
         assert_eq!(spreads(&[4.0]).enough(error_of(3.9)), None);
         assert_eq!(spreads(&[4.0, 2.0]).enough(error_of(1.7)), Some(10));

@@ -128,6 +128,12 @@ fn picture_does_not_depend_on_threads() {
     }
     let samples = one.reached.expect("a target").samples / (57 * 41);
     assert!((8..128).contains(&samples), "{samples} samples a pixel");
+    // Half of a tile's pixels may be sampled on, to decide for the others, but not for long.
+    let (taken, kept) = (one.rays.camera, one.reached.expect("a target").samples);
+    assert!(
+        taken >= kept && taken * 20 < kept * 21,
+        "{taken} for {kept}"
+    );
 
     // The error of each tile, from a picture of an independent one with 16 times the samples.
     let settings = Settings {
