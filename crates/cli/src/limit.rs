@@ -75,6 +75,8 @@ pub struct MemoryLimit {
 /// The memory of a picture beside the scene, in bytes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PictureBytes {
+    /// The pixels, colors and channels.
+    pub pixels: u64,
     /// Samples of all tiles at once.
     pub samples: u64,
     /// The environment and how it is sampled.
@@ -140,9 +142,15 @@ impl MemoryLimit {
         let needed = match need {
             Need::Records => estimate.records_bytes,
             // Prototypes are built when a ray reaches them, beside the samples.
-            Need::Build => [self.picture.samples, self.picture.environment]
-                .into_iter()
-                .fold(estimate.peak_bytes(), u64::saturating_add),
+            Need::Build => {
+                let PictureBytes {
+                    pixels,
+                    samples,
+                    environment,
+                } = self.picture;
+                let picture = [pixels, samples, environment].into_iter();
+                picture.fold(estimate.peak_bytes(), u64::saturating_add)
+            }
         };
         let needed = needed.max(estimate.records_bytes.saturating_add(reading_bytes));
         let left = self.bytes.map(|allowed| allowed.checked_sub(needed));
@@ -211,6 +219,7 @@ fn takers(
         lines.push((estimate.building_bytes, building));
         let samples = "the samples of all tiles at once, for --time".to_owned();
         lines.push((picture.samples, samples));
+        lines.push((picture.pixels, "the pixels of the picture".to_owned()));
         lines.push((picture.environment, "the environment".to_owned()));
     }
     lines.retain(|(bytes, _)| *bytes > needed / 100);

@@ -77,7 +77,11 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         Integrator::Sun | Integrator::Path => file,
         Integrator::Ao | Integrator::Normal => file.without_environment(),
     };
+    let all = 0..Tiles::of(settings.film).count();
+    let tiles = header.as_ref().map_or(all, |header| header.range.clone());
+    let rendered = denoising.as_ref().map_or(&settings, Denoising::settings);
     let limit = limit.with_picture(PictureBytes {
+        pixels: rendered.pixels_bytes(tiles),
         samples: settings.samples_bytes(),
         environment: EnvironmentMap::bytes(file.environment_pixels()),
     });

@@ -123,6 +123,15 @@ impl Settings {
         camera.view_volume()
     }
 
+    /// The bytes of the rendered pixels of some tiles, all of which are in memory.
+    #[must_use]
+    pub fn pixels_bytes(&self, tiles: Range<u64>) -> u64 {
+        let words = self.channels.list().len() * size_of::<u32>();
+        let each = size_of::<[f32; 3]>() + words;
+        let pixels = Tiles::of(self.film).pixels(tiles);
+        pixels.saturating_mul(each as u64)
+    }
+
     /// The bytes that the samples take while the picture is rendered: with a limit of time those of
     /// all tiles, otherwise little.
     #[must_use]

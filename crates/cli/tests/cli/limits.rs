@@ -290,3 +290,26 @@ fn environment_is_read_only_for_pictures_that_show_it() {
         assert!(!folder.path().join("light.png").exists());
     }
 }
+
+#[test]
+fn pixels_count_for_the_memory_of_a_picture() {
+    let folder = folder_of(&[("scene.toml", CYLINDER)]);
+    for (more, megabytes) in [
+        ("", "300 MB"),
+        ("--channels depth", "400 MB"),
+        ("--part 2/5", "60.1 MB"),
+    ] {
+        let output = if more.starts_with("--part") {
+            "part"
+        } else {
+            "picture.exr"
+        };
+        let line =
+            format!("render scene.toml -o {output} --size 5000x5000 --max-memory 1MB {more}");
+        let (code, _, error) = cyltrace(folder.path(), &words(&line));
+        assert_eq!(code, 2, "{error}");
+        let expected = format!("{megabytes}  the pixels of the picture");
+        assert!(error.contains(&expected), "{error}");
+        assert_eq!(names_in(folder.path()), ["scene.toml"]);
+    }
+}
