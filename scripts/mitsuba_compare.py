@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import subprocess
 import tempfile
 import tomllib
@@ -53,21 +54,18 @@ def main() -> None:
     times: dict[str, list[float]] = {"cyltrace": [], "mitsuba": []}
     with tempfile.TemporaryDirectory() as folder:
         own = own_scene(options, Path(folder))
-        try:
-            for seed in range(options.rounds):
-                picture, seconds = cyltrace(options, own, Path(folder), seed)
-                pictures["cyltrace"].append(picture)
-                times["cyltrace"].append(seconds)
-                picture, seconds = mitsuba(scene, options.spp, seed)
-                pictures["mitsuba"].append(picture)
-                times["mitsuba"].append(seconds)
-        finally:
-            own.unlink()
+        for seed in range(options.rounds):
+            picture, seconds = cyltrace(options, own, Path(folder), seed)
+            pictures["cyltrace"].append(picture)
+            times["cyltrace"].append(seconds)
+            picture, seconds = mitsuba(scene, options.spp, seed)
+            pictures["mitsuba"].append(picture)
+            times["mitsuba"].append(seconds)
     report(pictures, times)
 
 
 def own_scene(options: argparse.Namespace, folder: Path) -> Path:
-    """The scene with a sun without an extent, beside the scene that its tables are beside."""
+    """The scene with a sun without an extent, in the folder."""
     text = options.scene.read_text().replace("[sun]", "[sun]\nangle_degrees = 0", 1)
     if options.glass:
         name = f'name = "{options.glass}"\nkind = "diffuse"'
@@ -76,7 +74,10 @@ def own_scene(options: argparse.Namespace, folder: Path) -> Path:
         start = text.index(name)
         end = text.index("\n\n", start)
         text = text[:start] + f'name = "{options.glass}"\nkind = "glass"' + text[end:]
-    path = options.scene.with_name(f"{options.scene.stem}.compared-{folder.name}.toml")
+    # Files are relative to the folder of the scene.
+    beside = options.scene.parent.resolve()
+    text = re.sub(r'file = "([^"]*)"', lambda found: f'file = "{beside / found[1]}"', text)
+    path = folder / "compared.toml"
     path.write_text(text)
     return path
 
