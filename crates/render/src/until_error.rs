@@ -15,8 +15,8 @@
 //! # No bias
 //! To stop when a tile looks good is a bias if the samples that are kept made it look so: a tile
 //! that has not found its bright light yet looks good and is too dark. So the pixels of a
-//! tile are divided at random into two halves, and each half stops by the error of the other
-//! one. The number `N` of samples of a pixel is then a function of samples of other pixels,
+//! tile are divided at random into two halves, neither empty, and each half stops by the error of
+//! the other one. (A tile of one pixel gets the greatest number of samples.) The number `N` of samples of a pixel is then a function of samples of other pixels,
 //! which are independent of its own, and of nothing else. For every `n` the mean `M(n)` of its
 //! samples has the expectation `I`, the pixel's true value, because every point of a scrambled
 //! sequence is uniform, and every number of the sampler `random`. So
@@ -41,7 +41,7 @@ use super::outlines;
 use super::place::{Place, Sums, write};
 use super::rendering::{Work, pixels, stream, trace};
 use super::sampler::PixelSampler;
-use super::spread::{Spread, Spreads};
+use super::spread::{Spread, SpreadHistory};
 use super::{RayCounts, RenderError, Settings, Tiles};
 
 /// Sequences of a pixel.
@@ -65,6 +65,10 @@ pub struct Target {
 }
 
 impl Target {
+    /// The number of the rule that decides how many samples a tile gets. Parts of a picture belong
+    /// together if they have the same one.
+    pub const RULE: u32 = 2;
+
     /// The most samples that a pixel gets unless more or fewer are requested.
     pub const MOST_SAMPLES: u32 = 16_384;
 }
@@ -118,7 +122,8 @@ pub(super) fn samples_bytes(settings: &Settings) -> u64 {
     let of_pixel = size_of::<((u32, u32), usize)>()
         + SEQUENCES * size_of::<((u32, u32), PixelSampler)>()
         + SEQUENCES * Sums::bytes_each(&settings.channels);
-    let of_tile = (size_of::<TileSamples>() + size_of::<Place>()) as u64;
+    let of_spreads = 2 * SpreadHistory::MOST_BYTES;
+    let of_tile = (size_of::<TileSamples>() + size_of::<Place>() + of_spreads) as u64;
     pixels * of_pixel as u64 + Tiles::of(settings.film).count() * of_tile
 }
 
@@ -133,8 +138,9 @@ struct TileSamples<'a, 'p> {
     sums: Sums,
     /// Samples of each sequence so far.
     samples_of_each: u32,
-    /// How the values spread that decide for each half, as far as it was undecided.
-    spreads: [Spreads; 2],
+    /// How the values that decide for each half, those of the other one, spread while it was
+    /// undecided.
+    spreads: [SpreadHistory; 2],
     /// The number of samples at which each half stops, once that is decided.
     ends: [Option<u32>; 2],
     /// What each half has come to, once it has stopped.
@@ -151,19 +157,23 @@ impl<'a, 'p> TileSamples<'a, 'p> {
             let stream = stream(position, settings, STREAM_OF_HALVES);
             Random::new(settings.seed, stream).below(2) as usize
         };
-        let halves = all[0]
-            .iter()
-            .map(|&(position, _)| (position, half(position)));
+        let positions = all[0].iter().map(|&(position, _)| position);
+        let mut halves: Vec<_> = positions.map(|one| (one, half(one))).collect();
+        if let [first, rest @ ..] = &mut halves[..]
+            && rest.iter().all(|(_, half)| *half == first.1)
+        {
+            first.1 = 1 - first.1;
+        }
         let sums = Sums::new(all[0].len(), SEQUENCES, &settings.channels);
         Self {
             work,
             error,
             place,
-            pixels: halves.collect(),
+            pixels: halves,
             samplers: all.map(|pixels| pixels.into_iter().map(|(_, sampler)| sampler).collect()),
             sums,
             samples_of_each: 0,
-            spreads: [Spreads::default(), Spreads::default()],
+            spreads: [SpreadHistory::default(), SpreadHistory::default()],
             ends: [None, None],
             stopped: [None, None],
             rays: RayCounts::default(),
@@ -173,21 +183,6 @@ impl<'a, 'p> TileSamples<'a, 'p> {
 
     fn is_done(&self) -> bool {
         self.stopped.iter().all(Option::is_some)
-    }
-
-    /// The half that decides for a half: the other one, unless that has no pixels. A tile of few
-    /// pixels may have all of them in one half.
-    fn decider(&self, half: usize) -> usize {
-        match self.pixels.iter().any(|(_, of)| *of == 1 - half) {
-            true => 1 - half,
-            false => half,
-        }
-    }
-
-    /// Whether a half decides for one that is undecided.
-    fn decides(&self, half: usize) -> bool {
-        let mut halves = [0, 1].into_iter();
-        halves.any(|one| self.ends[one].is_none() && self.decider(one) == half)
     }
 
     /// The number of samples at which a half that has not stopped is decided or stops.
@@ -201,8 +196,9 @@ impl<'a, 'p> TileSamples<'a, 'p> {
         let most = (settings.spp / LEAST_SAMPLES).max(1);
         let has_time = settings.target.is_some_and(|target| target.time.is_some());
         let taken = self.samples_of_each;
-        let soon = match has_time && taken > 0 {
-            // Up to an eighth of a power of two, so that little is left when the time is over.
+        let step_end = match has_time && taken > 0 {
+            // With a limit of time, a step is at most an eighth of the next power of two, so that
+            // little time passes after the end.
             true => taken + ((taken + 1).next_power_of_two() / 8).max(1),
             false => u32::MAX,
         };
@@ -210,7 +206,7 @@ impl<'a, 'p> TileSamples<'a, 'p> {
             Some(_) => u32::MAX,
             None => self.due(half),
         });
-        let end = due[0].min(due[1]).min(most).min(soon);
+        let end = due[0].min(due[1]).min(most).min(step_end);
         self.sample(end)?;
         for half in [0, 1] {
             if due[half] == end && self.ends[half].is_none() {
@@ -226,19 +222,22 @@ impl<'a, 'p> TileSamples<'a, 'p> {
         Ok(())
     }
 
-    /// Decides when a half stops, if its decider's values say so already.
+    /// Decides when a half stops, if the other half's values say so already.
     fn decide(&mut self, half: usize) {
-        let spread = self.spread(self.decider(half));
+        let spread = self.spread(1 - half);
         let spreads = &mut self.spreads[half];
         spreads.push(self.samples_of_each, spread);
         self.ends[half] = spreads.enough(self.error);
     }
 
-    /// Takes samples up to a number, of the pixels whose samples matter.
+    /// Takes samples up to a number, of the halves that have not stopped or decide.
     fn sample(&mut self, end: u32) -> Result<(), RenderError> {
-        let matters = [0, 1].map(|half| self.stopped[half].is_none() || self.decides(half));
+        let decides = |half: usize| self.ends[1 - half].is_none();
+        let is_sampled = [0, 1].map(|half| self.stopped[half].is_none() || decides(half));
         let numbers = 0..self.pixels.len();
-        let pixels: Vec<_> = numbers.filter(|&one| matters[self.pixels[one].1]).collect();
+        let pixels: Vec<_> = numbers
+            .filter(|&one| is_sampled[self.pixels[one].1])
+            .collect();
         let more = u64::from(end - self.samples_of_each);
         // The samples of a pixel are neighbours, those of both sequences.
         let place = |number: u64| {

@@ -8,7 +8,7 @@ use anyhow::bail;
 use cyltrace::scene::{Film, GREATEST_PIXELS};
 use cyltrace_output::{Band, Channel, Contents, Display, Insets, Output, ToneMap, with_overlays};
 use cyltrace_parts::{PartFile, PartSet, PartWriter, Payload};
-use cyltrace_render::{ChannelGroup, Channels, RenderedTiles, Settings, Tiles};
+use cyltrace_render::{ChannelGroup, Channels, RenderedTiles, Settings, Target, Tiles};
 use serde_json::{Value, json};
 
 use super::value;
@@ -21,7 +21,7 @@ const WORD: usize = 4;
 /// The settings that determine a picture.
 pub fn settings(settings: &Settings, display: Display, exact: bool) -> Value {
     let channels = settings.channels.groups().iter();
-    json!({
+    let mut determining = json!({
         "size": [settings.film.width, settings.film.height],
         "spp": settings.spp,
         "integrator": settings.integrator.name(),
@@ -33,7 +33,11 @@ pub fn settings(settings: &Settings, display: Display, exact: bool) -> Value {
         "exposure": display.exposure,
         "tonemap": display.tone_map.name(),
         "error": settings.target.map(|target| target.error),
-    })
+    });
+    if settings.target.is_some() {
+        determining["error_rule"] = json!(Target::RULE);
+    }
+    determining
 }
 
 /// Writes the payload.

@@ -106,6 +106,27 @@ fn mean_over_many_seeds_has_no_bias() {
     assert!(deviation < expected * 0.005, "{deviation}");
 }
 
+/// A pixel stops by the samples of others, so that one alone does not stop.
+#[test]
+fn tiles_of_one_pixel_get_all_samples_and_of_two_may_stop() {
+    let tracer = Tracer::new(Arc::new(tube()), &Options::default()).expect("built");
+    let samples = |width, seed| {
+        let settings = Settings {
+            film: scene::Film { width, height: 1 },
+            spp: 64,
+            integrator: Integrator::Ao,
+            seed,
+            target: until(0.6),
+            ..Settings::of(tracer.scene())
+        };
+        let reached = picture(&tracer, &settings, 1).reached;
+        reached.expect("a target").samples
+    };
+    assert!((0..20).all(|seed| samples(1, seed) == 64));
+    let of_two: Vec<_> = (0..20).map(|seed| samples(2, seed)).collect();
+    assert!(of_two.iter().any(|&count| count < 64), "{of_two:?}");
+}
+
 #[test]
 fn picture_does_not_depend_on_threads() {
     let scenes = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("scenes");
