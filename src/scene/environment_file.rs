@@ -18,11 +18,13 @@ use super::source::Source;
 /// The bytes that a pixel takes while a picture is decoded (four f32) and converted (three).
 const DECODING_BYTES: u64 = 28;
 
-/// The environment with the pixels of its file.
+/// The environment with the pixels of its file, or `None` if that is not to be read. The keys are
+/// validated in any case.
 pub(super) fn environment(
     source: &Source,
     keys: &EnvironmentKeys,
-) -> Result<Environment, SceneError> {
+    is_read: bool,
+) -> Result<Option<Environment>, SceneError> {
     let wrong = |message: String| {
         source.error_with_help(
             keys.file.span(),
@@ -37,6 +39,9 @@ pub(super) fn environment(
         let name = quoted(keys.file.get_ref());
         wrong(format!("{name} is not the name of such a picture"))
     })?;
+    if !is_read {
+        return Ok(None);
+    }
     let bytes = read_regular(&path, MOST_PICTURE_BYTES).map_err(|error| {
         let unreadable = SceneError::Unreadable {
             path: path.clone(),
@@ -64,7 +69,7 @@ pub(super) fn environment(
         .map_err(|error| wrong(format!("{shown}: {error}")))?;
     environment.strength = strength;
     environment.rotate_degrees = keys.rotate_degrees.map_or(0.0, |number| number.0);
-    Ok(environment)
+    Ok(Some(environment))
 }
 
 /// An upper bound of the bytes that reading the file takes, the pixels included; 0 if it cannot be

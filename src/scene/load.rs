@@ -40,6 +40,7 @@ pub(super) fn lower(
     source: &Source,
     document: Document,
     memory: Option<u64>,
+    reads_environment: bool,
 ) -> Result<Scene, SceneError> {
     let memory = PipeMemory::new(memory);
     let mut materials = Materials::new(source, &document.material)?;
@@ -99,8 +100,10 @@ pub(super) fn lower(
             "[environment] excludes [sky], as both are light from all directions: use one",
         ));
     }
-    let environment = document.environment.as_ref();
-    let environment = environment.map(|Keys(keys)| environment_file::environment(source, keys));
+    let environment = match &document.environment {
+        Some(Keys(keys)) => environment_file::environment(source, keys, reads_environment)?,
+        None => None,
+    };
     let sun = document.sun.map(|Keys(keys)| keys);
     let sky = document.sky.map(|Keys(keys)| keys);
     let lights = lights(source, sun.as_ref(), sky.as_ref())?;
@@ -114,7 +117,7 @@ pub(super) fn lower(
         sun: lights.sun,
         sky: lights.sky,
         clear_sky: lights.clear_sky,
-        environment: environment.transpose()?,
+        environment,
         lights: placed_lights,
         background: background(source, document.background.as_ref())?,
         clips,

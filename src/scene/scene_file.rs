@@ -9,7 +9,7 @@ use super::background::{Background, background};
 use super::colors::{ValueList, header_bytes};
 use super::contents::{ExpectedCounts, ExpectedSolids, mark_used, placed_counts};
 use super::description::{Film, PrototypeIndex, RenderSettings, Scene};
-use super::document::{Body, Document};
+use super::document::{Body, Document, EnvironmentKeys};
 use super::environment_file::{pixels, reading_bytes};
 use super::error::SceneError;
 use super::formats::{self, SolidFile};
@@ -38,6 +38,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
 pub struct SceneFile {
     source: Source,
     document: Document,
+    reads_environment: bool,
 }
 
 impl SceneFile {
@@ -69,7 +70,11 @@ impl SceneFile {
     fn of(source: Source) -> Result<Self, SceneError> {
         let document =
             toml::from_str(source.text()).map_err(|error| toml_error(&source, &error))?;
-        Ok(Self { source, document })
+        Ok(Self {
+            source,
+            document,
+            reads_environment: true,
+        })
     }
 
     /// The path of the scene file.
@@ -214,8 +219,8 @@ impl SceneFile {
         };
         let mut bytes: Vec<u64> = self.document.bodies().map(of_body).collect();
         bytes.sort_unstable_by(|one, other| other.cmp(one));
-        let environment = self.document.environment.iter();
-        let environment = environment.map(|Keys(keys)| reading_bytes(&self.source, keys));
+        let environment = self.read_environment().into_iter();
+        let environment = environment.map(|keys| reading_bytes(&self.source, keys));
         bytes.into_iter().take(threads).chain(environment).sum()
     }
 
@@ -257,18 +262,29 @@ impl SceneFile {
         (solids, values_bytes)
     }
 
-    /// The scene without its environment, which only pictures show: its file is not read.
+    /// The scene without its environment, which only pictures show. Its keys are validated, but its
+    /// file is not read.
     #[must_use]
-    pub fn without_environment(mut self) -> Self {
-        self.document.environment = None;
-        self
+    pub fn without_environment(self) -> Self {
+        Self {
+            reads_environment: false,
+            ..self
+        }
     }
 
-    /// The number of pixels of the environment; 0 without one, or if its file cannot be read.
+    /// The environment whose file is read.
+    fn read_environment(&self) -> Option<&EnvironmentKeys> {
+        let environment = self.document.environment.as_ref();
+        let Keys(keys) = environment.filter(|_| self.reads_environment)?;
+        Some(keys)
+    }
+
+    /// The number of pixels of the environment; 0 if there is none, or if its file is not or
+    /// cannot be read.
     #[must_use]
     pub fn environment_pixels(&self) -> u64 {
-        let environment = self.document.environment.as_ref();
-        environment.map_or(0, |Keys(keys)| pixels(&self.source, keys))
+        self.read_environment()
+            .map_or(0, |keys| pixels(&self.source, keys))
     }
 
     /// Reads the files that the scene names, and validates the scene.
@@ -285,7 +301,7 @@ impl SceneFile {
     /// # Errors
     /// See [`load`](super::load()); also if the rows of pipes exceed the memory.
     pub fn load_within(self, memory: Option<u64>) -> Result<Scene, SceneError> {
-        lower(&self.source, self.document, memory)
+        lower(&self.source, self.document, memory, self.reads_environment)
     }
 }
 

@@ -255,7 +255,7 @@ fn environment_counts_for_pictures_that_show_it() {
         let line = format!("render scene.toml -o picture.png --max-memory 1MB {more}");
         let (code, _, error) = cyltrace(folder.path(), &words(&line));
         assert_eq!(code, 2, "{error}");
-        let after = error.split("needs up to ").nth(1).expect("the memory");
+        let after = error.split(" up to ").nth(1).expect("the memory");
         let megabytes = after.split(" MB").next().expect("megabytes");
         let is_stated = error.contains("  the environment\n") || error.ends_with("the environment");
         (megabytes.parse::<f64>().expect("a number"), is_stated)
@@ -278,9 +278,19 @@ fn environment_is_read_only_for_pictures_that_show_it() {
         "check scene.toml --rays 10",
         "tessellate scene.toml -o mesh.obj",
         "render scene.toml -o picture.png --size 4x4 --spp 1 --integrator normal",
+        "render scene.toml -o open.png --size 4x4 --spp 1 --integrator ao",
     ] {
         let (code, _, error) = cyltrace(folder.path(), &words(line));
         assert_eq!(code, 0, "{line}: {error}");
+    }
+    // Its keys are validated in any case.
+    for keys in ["strength = -1", "[sky]"] {
+        let scene = format!("[environment]\nfile = \"missing.hdr\"\n{keys}\n{CYLINDER}");
+        fs::write(folder.path().join("wrong.toml"), scene).expect("written");
+        let line = "trace wrong.toml --rays rays.csv -o wrong.csv";
+        let (code, _, error) = cyltrace(folder.path(), &words(line));
+        assert_eq!(code, 2, "{keys}");
+        assert!(error.contains("wrong.toml:"), "{error}");
     }
     for integrator in ["sun", "path"] {
         let line = format!("render scene.toml -o light.png --integrator {integrator}");
