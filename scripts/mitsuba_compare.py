@@ -76,7 +76,8 @@ def own_scene(options: argparse.Namespace, folder: Path) -> Path:
         text = text[:start] + f'name = "{options.glass}"\nkind = "glass"' + text[end:]
     # Files are relative to the folder of the scene.
     beside = options.scene.parent.resolve()
-    text = re.sub(r'file = "([^"]*)"', lambda found: f'file = "{beside / found[1]}"', text)
+    files = r'\b(file|image)\s*=\s*"([^"]*)"'
+    text = re.sub(files, lambda found: f'{found[1]} = "{beside / found[2]}"', text)
     path = folder / "compared.toml"
     path.write_text(text)
     return path
