@@ -77,10 +77,24 @@ pub struct MemoryLimit {
 pub struct PictureBytes {
     /// The pixels, colors and channels.
     pub pixels: u64,
+    /// Copies for removing the noise.
+    pub denoising: u64,
     /// Samples of all tiles at once.
     pub samples: u64,
     /// The environment and how it is sampled.
     pub environment: u64,
+}
+
+impl PictureBytes {
+    /// The bytes of each purpose.
+    fn by_purpose(self) -> [(u64, &'static str); 4] {
+        [
+            (self.pixels, "the pixels of the picture"),
+            (self.denoising, "copies of the picture, for --denoise"),
+            (self.samples, "the samples of all tiles at once, for --time"),
+            (self.environment, "the environment"),
+        ]
+    }
 }
 
 impl MemoryLimit {
@@ -141,15 +155,11 @@ impl MemoryLimit {
         let estimate = MemoryEstimate::of(contents, self.layout, max_isa);
         let needed = match need {
             Need::Records => estimate.records_bytes,
-            // Prototypes are built when a ray reaches them, beside the samples.
+            // Prototypes are built when a ray reaches them, while the picture is in memory.
             Need::Build => {
-                let PictureBytes {
-                    pixels,
-                    samples,
-                    environment,
-                } = self.picture;
-                let picture = [pixels, samples, environment].into_iter();
-                picture.fold(estimate.peak_bytes(), u64::saturating_add)
+                let parts = self.picture.by_purpose().into_iter();
+                let parts = parts.map(|(bytes, _)| bytes);
+                parts.fold(estimate.peak_bytes(), u64::saturating_add)
             }
         };
         let needed = needed.max(estimate.records_bytes.saturating_add(reading_bytes));
@@ -158,8 +168,12 @@ impl MemoryLimit {
             return Ok(left.flatten());
         };
         Err(anyhow!(
-            "{}: the scene needs up to {} of memory, but {}\n{}",
+            "{}: {} up to {} of memory, but {}\n{}",
             path.display(),
+            match self.picture.pixels {
+                0 => "the scene needs",
+                _ => "the scene and its picture need",
+            },
             readable(needed),
             self.allowed(allowed),
             takers(contents, &estimate, need, needed, self.picture)
@@ -217,10 +231,8 @@ fn takers(
         lines.push((estimate.embree_bytes, "Embree's trees of them".to_owned()));
         let building = "Embree, while it builds".to_owned();
         lines.push((estimate.building_bytes, building));
-        let samples = "the samples of all tiles at once, for --time".to_owned();
-        lines.push((picture.samples, samples));
-        lines.push((picture.pixels, "the pixels of the picture".to_owned()));
-        lines.push((picture.environment, "the environment".to_owned()));
+        let picture = picture.by_purpose().into_iter();
+        lines.extend(picture.map(|(bytes, purpose)| (bytes, purpose.to_owned())));
     }
     lines.retain(|(bytes, _)| *bytes > needed / 100);
     lines.sort_by_key(|(bytes, _)| std::cmp::Reverse(*bytes));

@@ -82,6 +82,7 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let rendered = denoising.as_ref().map_or(&settings, Denoising::settings);
     let limit = limit.with_picture(PictureBytes {
         pixels: rendered.pixels_bytes(tiles),
+        denoising: denoising.as_ref().map_or(0, Denoising::bytes),
         samples: settings.samples_bytes(),
         environment: EnvironmentMap::bytes(file.environment_pixels()),
     });

@@ -123,7 +123,7 @@ impl Settings {
         camera.view_volume()
     }
 
-    /// The bytes of the rendered pixels of some tiles, all of which are in memory.
+    /// The bytes of the rendered pixels of some tiles, which are all in memory.
     #[must_use]
     pub fn pixels_bytes(&self, tiles: Range<u64>) -> u64 {
         let words = self.channels.list().len() * size_of::<u32>();

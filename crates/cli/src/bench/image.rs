@@ -11,14 +11,14 @@ use cyltrace::scene::{Integrator, Sampler};
 use cyltrace::tracer::Options;
 use cyltrace_bench::Environment;
 use cyltrace_output::{Table, csv, write_text};
-use cyltrace_render::Settings;
+use cyltrace_render::{EnvironmentMap, Settings};
 use serde_json::json;
 
 use self::measure::{Group, Plan};
 use self::outputs::{SLOPE_HEADINGS, SUMMARY_HEADINGS, figures, page, records, slopes, summaries};
 use super::{print_summary, with_environment};
 use crate::arguments::ImageArguments;
-use crate::limit::{MemoryLimit, Need};
+use crate::limit::{MemoryLimit, Need, PictureBytes};
 use crate::output_sink::make_directory;
 use crate::{interrupt, json, progress, scene};
 
@@ -101,6 +101,14 @@ fn measure(
     let common = &arguments.common;
     let limit = MemoryLimit::of(&arguments.memory);
     let file = scene::read(path, limit)?;
+    let film = arguments.size;
+    let pixels = u64::from(film.width) * u64::from(film.height);
+    let limit = limit.with_picture(PictureBytes {
+        // A picture and its reference.
+        pixels: 2 * pixels * size_of::<[f32; 3]>() as u64,
+        environment: EnvironmentMap::bytes(file.environment_pixels()),
+        ..PictureBytes::default()
+    });
     let scene = Arc::new(scene::load(common, file, Need::Build, limit)?);
     let options = Options {
         layout: arguments.memory.layout.into(),

@@ -49,11 +49,24 @@ impl Denoising {
         &self.rendered
     }
 
+    /// The bytes that a picture takes while its noise is removed, beside the rendered pixels and
+    /// what the library takes: a copy, the guides, and the channels that are written.
+    pub fn bytes(&self) -> u64 {
+        let all = 0..Tiles::of(self.written.film).count();
+        let film = self.written.film;
+        let guides = 2 * size_of::<[f32; 3]>() as u64;
+        let pixels = u64::from(film.width) * u64::from(film.height);
+        let copies = self.rendered.pixels_bytes(all.clone()) + self.written.pixels_bytes(all);
+        copies + guides * pixels
+    }
+
     /// The picture without noise, and without channels that were not requested.
     pub fn apply(&self, rendered: &RenderedTiles) -> anyhow::Result<Denoised> {
         let start = Instant::now();
         let film = self.written.film;
         let (mut whole, mut band) = (Band::default(), Band::default());
+        whole.colors.reserve_exact(rendered.pixels.len());
+        whole.words.reserve_exact(rendered.words.len());
         let mut bands = rendered.bands(film);
         for _ in 0..Tiles::of(film).rows() {
             band.clear();

@@ -25,7 +25,8 @@ fn scatter_beyond_the_limit_is_refused_with_what_takes_the_memory() {
         let (code, printed, error) = cyltrace(folder.path(), &arguments);
         assert_eq!((code, printed.as_str()), (2, ""), "{arguments:?}: {error}");
         for part in [
-            "scene.toml: the scene needs up to ",
+            "scene.toml: the scene ",
+            " up to ",
             "--max-memory allows 100 GB",
             "447 GB  4294967295 placements of \"tree\" in the scene itself",
         ] {
