@@ -8,8 +8,8 @@ are two pictures, so that the differences between rounds measure the noise.
 
 - Blocks of 16 x 16 pixels: the difference of the means in standard errors, Welch's t. Of n blocks
   and three colors, the greatest is 3 to 4 if the light is the same.
-- Time at equal error: the product of the time of a picture and the mean variance of its pixels. That
-  of Mitsuba's independent samples does not depend on their number; that of cyltrace falls with it.
+- Time at equal error: the product of the time of a picture and the mean variance of its pixels.
+  That of Mitsuba's independent samples does not depend on their number; that of cyltrace falls.
   The ratio says how many times longer Mitsuba takes for the same error. Its spread is from halves
   of the rounds.
 """
@@ -132,9 +132,7 @@ def report(pictures: dict[str, list[np.ndarray]], times: dict[str, list[float]])
     print(f"({ratios[0]:.1f} and {ratios[1]:.1f} in the halves)")
 
 
-def cost(
-    stacks: dict[str, np.ndarray], times: dict[str, list[float]], rounds: slice
-) -> float:
+def cost(stacks: dict[str, np.ndarray], times: dict[str, list[float]], rounds: slice) -> float:
     costs = {
         name: stack[rounds].var(axis=0, ddof=1).mean() * np.median(times[name][rounds])
         for name, stack in stacks.items()
