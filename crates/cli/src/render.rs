@@ -5,6 +5,7 @@ mod frames;
 mod pictures;
 mod report;
 
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -77,11 +78,9 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         Integrator::Sun | Integrator::Path => file,
         Integrator::Ao | Integrator::Normal => file.without_environment(),
     };
-    let all = 0..Tiles::of(settings.film).count();
-    let tiles = header.as_ref().map_or(all, |header| header.range.clone());
     let rendered = denoising.as_ref().map_or(&settings, Denoising::settings);
     let limit = limit.with_picture(PictureBytes {
-        pixels: rendered.pixels_bytes(tiles),
+        pixels: rendered.pixels_bytes(tiles(&settings, header.as_ref())),
         denoising: denoising.as_ref().map_or(0, Denoising::bytes),
         samples: settings.samples_bytes(),
         environment: EnvironmentMap::bytes(file.environment_pixels()),
@@ -145,6 +144,14 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     match common.prints() {
         true => print(&run.text()),
         false => Ok(()),
+    }
+}
+
+/// The tiles of a run: those of its part, or all.
+fn tiles(settings: &Settings, part: Option<&Header>) -> Range<u64> {
+    match part {
+        Some(header) => header.range.clone(),
+        None => Tiles::of(settings.film).all(),
     }
 }
 

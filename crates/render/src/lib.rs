@@ -280,7 +280,7 @@ pub fn render(
 ) -> Result<Picture, RenderError> {
     settings.check()?;
     let tiles = Tiles::of(settings.film);
-    let all = 0..tiles.count();
+    let all = tiles.all();
     let watch = Watch {
         progress,
         cancelled,

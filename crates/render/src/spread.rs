@@ -114,7 +114,7 @@ impl Spread {
 pub(super) struct SpreadHistory(Vec<(u32, Spread)>);
 
 impl SpreadHistory {
-    /// The bytes of the estimates of up to 2^18 samples.
+    /// The bytes of the estimates for up to 2^18 samples of a pixel, 2^17 of each sequence.
     pub const MOST_BYTES: usize = 16 * size_of::<(u32, Spread)>();
 
     /// Adds what was estimated at more samples than before.

@@ -38,6 +38,12 @@ impl Tiles {
         u64::from(self.across()) * u64::from(down)
     }
 
+    /// The numbers of all tiles.
+    #[must_use]
+    pub fn all(self) -> Range<u64> {
+        0..self.count()
+    }
+
     /// The number of pixels of some tiles.
     #[must_use]
     pub fn pixels(self, tiles: Range<u64>) -> u64 {

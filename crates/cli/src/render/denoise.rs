@@ -52,12 +52,11 @@ impl Denoising {
     /// The bytes that a picture takes while its noise is removed, beside the rendered pixels and
     /// what the library takes: a copy, the guides, and the channels that are written.
     pub fn bytes(&self) -> u64 {
-        let all = 0..Tiles::of(self.written.film).count();
-        let film = self.written.film;
-        let guides = 2 * size_of::<[f32; 3]>() as u64;
-        let pixels = u64::from(film.width) * u64::from(film.height);
-        let copies = self.rendered.pixels_bytes(all.clone()) + self.written.pixels_bytes(all);
-        copies + guides * pixels
+        let tiles = Tiles::of(self.written.film);
+        let guides = 2 * size_of::<[f32; 3]>() as u64 * tiles.pixels(tiles.all());
+        let [copy, written] =
+            [&self.rendered, &self.written].map(|settings| settings.pixels_bytes(tiles.all()));
+        copy + written + guides
     }
 
     /// The picture without noise, and without channels that were not requested.

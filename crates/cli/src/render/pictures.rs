@@ -14,7 +14,7 @@ use rayon::ThreadPool;
 use super::denoise::Denoising;
 use super::frames::{Frame, FrameFigures};
 use super::report::Times;
-use super::{contents, insets};
+use super::{contents, insets, tiles};
 use crate::arguments::RenderArguments;
 use crate::interrupt::Interrupted;
 use crate::parts::checkpoint::KeptInFile;
@@ -52,11 +52,8 @@ enum Target {
 impl Pictures<'_> {
     /// Renders and writes pictures, one after the other.
     pub fn render(&self, frames: &[Frame]) -> anyhow::Result<Done> {
-        let all = Tiles::of(self.settings.film);
-        let tiles = self
-            .header
-            .map_or(0..all.count(), |header| header.range.clone());
-        let pixels = all.pixels(tiles) * frames.len() as u64;
+        let tiles = tiles(self.settings, self.header);
+        let pixels = Tiles::of(self.settings.film).pixels(tiles) * frames.len() as u64;
         let bar = progress::bar(&self.arguments.common, pixels, "pixels");
         let mut done = Done::default();
         for frame in frames {
@@ -128,8 +125,7 @@ impl Pictures<'_> {
             cancelled: self.cancelled,
             kept: self.kept.map(|kept| kept as &dyn KeptTiles),
         };
-        let all = 0..Tiles::of(settings.film).count();
-        let tiles = self.header.map_or(all, |header| header.range.clone());
+        let tiles = tiles(settings, self.header);
         let rendered =
             cyltrace_render::render_tiles(self.tracer, settings, tiles, self.workers, &watch);
         if let Some(failure) = self.kept.and_then(KeptInFile::flush) {
