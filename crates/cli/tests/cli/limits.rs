@@ -322,4 +322,12 @@ fn pixels_count_for_the_memory_of_a_picture() {
         assert!(error.contains(&expected), "{error}");
         assert_eq!(names_in(folder.path()), ["scene.toml"]);
     }
+    // A picture and its reference.
+    let line = "bench image scene.toml --size 5000x5000 --max-memory 1MB";
+    let (code, _, error) = cyltrace(folder.path(), &words(line));
+    assert_eq!(code, 2, "{error}");
+    assert!(
+        error.contains("600 MB  the pixels of the picture"),
+        "{error}"
+    );
 }

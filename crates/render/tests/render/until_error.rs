@@ -125,6 +125,8 @@ fn tiles_of_one_pixel_get_all_samples_and_of_two_may_stop() {
     assert!((0..20).all(|seed| samples(1, seed) == 64));
     let of_two: Vec<_> = (0..20).map(|seed| samples(2, seed)).collect();
     assert!(of_two.iter().any(|&count| count < 64), "{of_two:?}");
+    // With both in one half, neither would stop.
+    assert!(of_two.iter().all(|&count| count < 128), "{of_two:?}");
 }
 
 #[test]

@@ -133,6 +133,16 @@ fn resume_keeps_valid_parts_only() {
     let figures: Value = serde_json::from_slice(&bytes(folder, "figures.json")).expect("JSON");
     assert_eq!(figures["part"], "1/2");
 
+    // Only parts of a picture with an error have the rule of its samples.
+    let rule = br#""error_rule":2"#;
+    let has_rule = |part: &[u8]| part.windows(rule.len()).any(|bytes| bytes == rule);
+    assert!(!has_rule(&bytes(folder, "part")));
+    run(
+        folder,
+        "render scene.toml --error 1 --part 1/2 -o until.part",
+    );
+    assert!(has_rule(&bytes(folder, "until.part")));
+
     // Every setting that changes the picture, and another scene.
     for option in [
         "--size 33x17",
